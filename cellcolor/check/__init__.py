@@ -1,0 +1,1 @@
+"""The checker: independent of every solver, the only judge of what leaves the program."""

@@ -1,0 +1,143 @@
+"""Reading and writing the JSON files: strict, atomic, and with the field named in every error."""
+
+from __future__ import annotations
+
+import json
+import os
+import tempfile
+from pathlib import Path
+from typing import Any, TypeVar
+
+from pydantic import TypeAdapter, ValidationError
+
+from cellcolor.errors import InputError
+
+T = TypeVar("T")
+
+
+def _no_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    document = dict(pairs)
+    if len(document) != len(pairs):
+        names = [name for name, _ in pairs]
+        repeated = next(name for name in names if names.count(name) > 1)
+        raise InputError(None, repeated, "member stands twice in one object")
+    return document
+
+
+def _no_constant(text: str) -> Any:
+    raise InputError(None, None, f"{text} is not a JSON number")
+
+
+def parse_json(text: str) -> dict[str, Any]:
+    """Parse one JSON object; refuses NaN, infinities and repeated members.
+
+    Raises:
+        InputError: not JSON, or not an object.
+    """
+    try:
+        document = json.loads(text, object_pairs_hook=_no_repeats, parse_constant=_no_constant)
+    except json.JSONDecodeError as error:
+        raise InputError(
+            None, None, f"not JSON: {error.msg} at line {error.lineno} column {error.colno}"
+        ) from error
+    except RecursionError as error:
+        raise InputError(None, None, "not usable JSON: nested too deeply") from error
+    if not isinstance(document, dict):
+        raise InputError(None, None, "must be a JSON object")
+    return document
+
+
+def read_document(path: Path) -> dict[str, Any]:
+    """The JSON object in a file.
+
+    Raises:
+        InputError: the file is missing, unreadable, not UTF-8 or not a JSON object.
+    """
+    try:
+        text = path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(str(path), None, "not UTF-8 text") from error
+    except OSError as error:
+        raise InputError(str(path), None, error.strerror or "cannot be read") from error
+    try:
+        return parse_json(text)
+    except InputError as error:
+        raise error.in_file(str(path)) from error
+
+
+def take_body(document: dict[str, Any], expected: str) -> dict[str, Any]:
+    """The document without ``format`` and ``version``, both of which must be the expected ones."""
+    body = dict(document)
+    found = body.pop("format", None)
+    if found != expected:
+        raise InputError(None, "format", f"must be {expected!r}, is {found!r}")
+    version = body.pop("version", None)
+    if type(version) is not int or version != 1:
+        raise InputError(None, "version", f"must be 1, is {version!r}")
+    return body
+
+
+def validate(adapter: TypeAdapter[T], body: dict[str, Any]) -> T:
+    """Hold a parsed JSON object against a schema; the first fault becomes the error."""
+    try:
+        # Through JSON again, since strict validation takes lists for tuples only there.
+        return adapter.validate_json(json.dumps(body))
+    except ValidationError as error:
+        fault = error.errors(include_url=False)[0]
+        raise InputError(None, field_name(fault["loc"]), fault["msg"]) from error
+
+
+def field_name(location: tuple[int | str, ...]) -> str:
+    """``("cells", 3, "loops", 0)`` as ``cells[3].loops[0]``."""
+    text = ""
+    for part in location:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        elif part.replace("_", "").isalnum():
+            text += f".{part}" if text else part
+    return text
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a whole file or nothing: to a temporary name beside it, then rename.
+
+    Raises:
+        InputError: the place cannot be written to.
+    """
+    try:
+        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+    except OSError as error:
+        raise InputError(str(path), None, error.strerror or "cannot be written") from error
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8") as stream:
+            stream.write(text)
+        # mkstemp makes private files; what is written here is meant to be read by others.
+        umask = os.umask(0)
+        os.umask(umask)
+        Path(temporary).chmod(0o666 & ~umask)
+        Path(temporary).replace(path)
+    except OSError as error:
+        Path(temporary).unlink(missing_ok=True)
+        raise InputError(str(path), None, error.strerror or "cannot be written") from error
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
+
+
+def dump_lines(document: dict[str, Any], one_per_line: frozenset[str]) -> str:
+    """JSON text with a member a line, and the elements of some members a line each.
+
+    That keeps instances and solutions readable and their differences small.
+    """
+    members = []
+    for name, value in document.items():
+        if name in one_per_line and value:
+            items = ",\n  ".join(_dump(item) for item in value)
+            members.append(f"{_dump(name)}: [\n  {items}\n ]")
+        else:
+            members.append(f"{_dump(name)}: {_dump(value)}")
+    return "{" + ",\n ".join(members) + "}\n"
+
+
+def _dump(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)

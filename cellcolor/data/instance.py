@@ -1,0 +1,296 @@
+"""The topological graph: cells, topological edges, and loops of darts (paper, section III-C)."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Annotated, Any
+
+from annotated_types import Ge
+from pydantic import ConfigDict, TypeAdapter
+
+from cellcolor.data.files import dump_lines, read_document, take_body, validate
+from cellcolor.errors import InputError
+
+FORMAT = "cellcolor/instance"
+OUTSIDE = -1
+"""The index of everything that no configuration reaches, and of what lies beyond the mesh."""
+
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+Measure = Annotated[float, Ge(0)]
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A connected part of the surface whose points have the same available colors.
+
+    Attributes:
+        id: position in ``Instance.cells``.
+        colors: ids of the available colors, ascending, at least one.
+        loops: border loops as cyclic lists of darts, the cell on the left.
+        area: square metres, if known.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    id: int
+    colors: tuple[int, ...]
+    loops: tuple[tuple[int, ...], ...]
+    area: Measure | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Edge:
+    """A topological edge: a maximal border curve between the same two areas.
+
+    Attributes:
+        id: positive; ``+id`` is its dart in the cell on the left, ``-id`` on the right.
+        left: cell on the left, or ``OUTSIDE``.
+        right: cell on the right, or ``OUTSIDE``.
+        colors: the joinable colors where they are fewer than the two cells share; None else.
+        length: metres, if known.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    id: int
+    left: int
+    right: int
+    colors: tuple[int, ...] | None = None
+    length: Measure | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceReference:
+    """The labelled surface an instance was built from.
+
+    Attributes:
+        path: relative to the instance's file.
+        vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    path: str
+    vertex_cell: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class KnownResult:
+    """A result known from elsewhere: the minimum, and how many optimal schemes there are."""
+
+    __pydantic_config__ = _STRICT
+
+    segments: int
+    schemes: int | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Known:
+    """Known results per search space."""
+
+    __pydantic_config__ = _STRICT
+
+    paper: KnownResult | None = None
+    surface: KnownResult | None = None
+
+
+@dataclass(frozen=True)
+class Instance:
+    """A validated topological graph, all that is needed to solve.
+
+    Raises:
+        InputError: anything that ``docs/formats.md`` forbids, with field and element.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    name: str
+    colors: tuple[str, ...]
+    cells: tuple[Cell, ...]
+    edges: tuple[Edge, ...]
+    meta: dict[str, Any] | None = None
+    surface: SurfaceReference | None = None
+    known: Known | None = field(default=None)
+
+    def __post_init__(self) -> None:
+        self._check_cells()
+        self._check_edges()
+        self._check_darts()
+        if self.surface is not None:
+            for vertex, cell in enumerate(self.surface.vertex_cell):
+                if not OUTSIDE <= cell < len(self.cells):
+                    raise InputError(
+                        None, f"surface.vertex_cell[{vertex}]", f"no cell {cell} in this instance"
+                    )
+
+    def _check_cells(self) -> None:
+        for position, cell in enumerate(self.cells):
+            where = f"cells[{position}]"
+            if cell.id != position:
+                raise InputError(
+                    None, f"{where}.id", f"cell ids are 0, 1, 2, … in this order; is {cell.id}"
+                )
+            if not cell.colors:
+                raise InputError(None, f"{where}.colors", f"cell {cell.id} has no color")
+            _check_colors(cell.colors, len(self.colors), f"{where}.colors")
+            for number, loop in enumerate(cell.loops):
+                if not loop:
+                    raise InputError(None, f"{where}.loops[{number}]", "a loop without darts")
+
+    def _check_edges(self) -> None:
+        seen: set[int] = set()
+        for position, edge in enumerate(self.edges):
+            where = f"edges[{position}]"
+            if edge.id < 1:
+                raise InputError(None, f"{where}.id", f"must be positive, is {edge.id}")
+            if edge.id in seen:
+                raise InputError(None, f"{where}.id", f"edge {edge.id} stands twice")
+            seen.add(edge.id)
+            for side, cell in (("left", edge.left), ("right", edge.right)):
+                if not OUTSIDE <= cell < len(self.cells):
+                    raise InputError(None, f"{where}.{side}", f"no cell {cell} in this instance")
+            if edge.left == OUTSIDE and edge.right == OUTSIDE:
+                raise InputError(None, where, f"edge {edge.id} has -1 on both sides")
+            if edge.colors is not None:
+                _check_colors(edge.colors, len(self.colors), f"{where}.colors")
+                surplus = set(edge.colors) - self._shared(edge)
+                if surplus:
+                    raise InputError(
+                        None,
+                        f"{where}.colors",
+                        f"color {min(surplus)} is not shared by cells {edge.left} and {edge.right}",
+                    )
+
+    def _check_darts(self) -> None:
+        owner = {edge.id: edge.left for edge in self.edges}
+        owner |= {-edge.id: edge.right for edge in self.edges}
+        seen: set[int] = set()
+        for cell in self.cells:
+            for number, loop in enumerate(cell.loops):
+                for place, dart in enumerate(loop):
+                    where = f"cells[{cell.id}].loops[{number}][{place}]"
+                    if dart not in owner:
+                        raise InputError(None, where, f"dart {dart} belongs to no edge")
+                    if owner[dart] != cell.id:
+                        side = "left" if dart > 0 else "right"
+                        raise InputError(
+                            None,
+                            where,
+                            f"dart {dart} is not cell {cell.id}'s: edge {abs(dart)} has "
+                            f"{owner[dart]} on its {side}, so this loop does not close",
+                        )
+                    if dart in seen:
+                        raise InputError(None, where, f"dart {dart} stands twice")
+                    seen.add(dart)
+        for position, edge in enumerate(self.edges):
+            for dart in (edge.id, -edge.id):
+                if owner[dart] != OUTSIDE and dart not in seen:
+                    raise InputError(
+                        None,
+                        f"edges[{position}]",
+                        f"dart {dart} is missing from the loops of cell {owner[dart]}, "
+                        "so they do not close",
+                    )
+
+    def _shared(self, edge: Edge) -> set[int]:
+        if OUTSIDE in (edge.left, edge.right):
+            return set()
+        return set(self.cells[edge.left].colors) & set(self.cells[edge.right].colors)
+
+    @cached_property
+    def _edge_by_id(self) -> dict[int, Edge]:
+        return {edge.id: edge for edge in self.edges}
+
+    @cached_property
+    def _joinable(self) -> dict[int, tuple[int, ...]]:
+        return {
+            edge.id: tuple(sorted(self._shared(edge) if edge.colors is None else edge.colors))
+            for edge in self.edges
+        }
+
+    def edge(self, dart: int) -> Edge:
+        """The edge that a dart is a side of."""
+        return self._edge_by_id[abs(dart)]
+
+    def joinable(self, dart: int) -> tuple[int, ...]:
+        """The colors that may continue across a dart's edge, ascending; empty on a dead edge."""
+        return self._joinable[abs(dart)]
+
+    def across(self, dart: int) -> int:
+        """The cell on the other side of a dart, or ``OUTSIDE``."""
+        edge = self.edge(dart)
+        return edge.right if dart > 0 else edge.left
+
+    def to_json(self) -> str:
+        """The file's text, as ``build`` writes it."""
+        document: dict[str, Any] = {"format": FORMAT, "version": 1, "name": self.name}
+        document["colors"] = list(self.colors)
+        document["cells"] = [
+            _given(
+                {"id": c.id, "colors": c.colors, "loops": c.loops},
+                area=c.area,
+            )
+            for c in self.cells
+        ]
+        document["edges"] = [
+            _given(
+                {"id": e.id, "left": e.left, "right": e.right}, colors=e.colors, length=e.length
+            )
+            for e in self.edges
+        ]
+        if self.meta is not None:
+            document["meta"] = self.meta
+        if self.surface is not None:
+            document["surface"] = {
+                "path": self.surface.path,
+                "vertex_cell": self.surface.vertex_cell,
+            }
+        if self.known is not None:
+            results = {
+                space: _given({"segments": result.segments}, schemes=result.schemes)
+                for space, result in (("paper", self.known.paper), ("surface", self.known.surface))
+                if result is not None
+            }
+            document["known"] = results
+        return dump_lines(document, frozenset({"cells", "edges"}))
+
+    @cached_property
+    def sha256(self) -> str:
+        """Fingerprint of the file's text as ``build`` writes it."""
+        return hashlib.sha256(self.to_json().encode()).hexdigest()
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> Instance:
+        """An instance from a parsed JSON object."""
+        return validate(_ADAPTER, take_body(document, FORMAT))
+
+    @classmethod
+    def read(cls, path: Path) -> Instance:
+        """An instance from a file.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        try:
+            return cls.from_document(read_document(path))
+        except InputError as error:
+            raise error.in_file(str(path)) from error
+
+
+_ADAPTER = TypeAdapter(Instance)
+
+
+def _given(document: dict[str, Any], **optional: object) -> dict[str, Any]:
+    return document | {name: value for name, value in optional.items() if value is not None}
+
+
+def _check_colors(colors: Sequence[int], count: int, where: str) -> None:
+    for position, color in enumerate(colors):
+        if not 0 <= color < count:
+            raise InputError(None, f"{where}[{position}]", f"unknown color {color}")
+        if color in colors[:position]:
+            raise InputError(None, f"{where}[{position}]", f"color {color} stands twice")

@@ -1,0 +1,54 @@
+"""A plan: what another planner hands to the oracle, one color per vertex."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from pydantic import ConfigDict, TypeAdapter
+
+from cellcolor.data.files import read_document, take_body, validate
+from cellcolor.errors import InputError
+
+FORMAT = "cellcolor/plan"
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """One color per vertex of a labelled surface.
+
+    Attributes:
+        vertex_colors: the painted color of each vertex; None exactly where it has none.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
+
+    vertex_colors: tuple[int | None, ...]
+
+    def to_json(self) -> str:
+        """The file's text."""
+        return json.dumps(
+            {"format": FORMAT, "version": 1, "vertex_colors": list(self.vertex_colors)}
+        )
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> Plan:
+        """A plan from a parsed JSON object."""
+        return validate(_ADAPTER, take_body(document, FORMAT))
+
+    @classmethod
+    def read(cls, path: Path) -> Plan:
+        """A plan from a file.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        try:
+            return cls.from_document(read_document(path))
+        except InputError as error:
+            raise error.in_file(str(path)) from error
+
+
+_ADAPTER = TypeAdapter(Plan)

@@ -1,0 +1,259 @@
+"""What a solver hands back: a division of every cell into colored sub-cells, and its proof."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from annotated_types import Ge
+from pydantic import ConfigDict, Field, TypeAdapter
+
+from cellcolor.data.files import dump_lines, read_document, take_body, validate
+from cellcolor.errors import InputError
+
+FORMAT = "cellcolor/solution"
+SCHEME_FORMAT = "cellcolor/scheme"
+
+_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+Count = Annotated[int, Ge(0)]
+Positive = Annotated[int, Ge(1)]
+
+SearchSpace = Literal["paper", "surface"]
+Status = Literal["optimal", "feasible", "unknown"]
+DartName = int | tuple[int, int]
+"""A dart ``±e``, or ``(±e, strand)`` with strands numbered from 1 along ``+e``."""
+
+
+@dataclass(frozen=True, slots=True)
+class SubCell:
+    """One part of a divided cell (or the whole of an undivided one).
+
+    Attributes:
+        color: the color it is painted in.
+        darts: its darts in state 1, in no particular order.
+        segment: the segment it belongs to, counted from 0.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    color: int
+    darts: tuple[DartName, ...]
+    segment: int
+
+
+@dataclass(frozen=True, slots=True)
+class CellDivision:
+    """How one cell is divided and painted."""
+
+    __pydantic_config__ = _STRICT
+
+    id: int
+    subcells: tuple[SubCell, ...]
+
+
+Division = tuple[CellDivision, ...]
+"""How every cell is divided and painted, in the order of the cells."""
+
+SchemeKey = tuple[frozenset[tuple[int, frozenset[DartName]]], ...]
+
+
+def scheme_key(division: Division) -> SchemeKey:
+    """What two schemes have in common exactly when they are the same (states, blocks, colors)."""
+    return tuple(
+        frozenset((sub.color, frozenset(sub.darts)) for sub in cell.subcells) for cell in division
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class Seam:
+    """A virtual edge that makes one cyclic list of two loops of a cell.
+
+    Attributes:
+        id: above every edge id; ``+id`` is walked after ``from_``, ``-id`` after ``to``.
+        cell: the cell on both of its sides.
+        from_: the dart of one loop after which the seam leaves (``from`` in the file).
+        to: the dart of another loop after which the seam arrives.
+        strands: how many corridors may pass between the loops across the seam.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    id: Positive
+    cell: int
+    from_: Annotated[int, Field(alias="from")]
+    to: int
+    strands: Count
+
+
+@dataclass(frozen=True, slots=True)
+class InstanceReference:
+    """The instance that was solved: its name and the fingerprint of its file."""
+
+    __pydantic_config__ = _STRICT
+
+    name: str
+    sha256: str
+
+
+@dataclass(frozen=True, slots=True)
+class Solution:
+    """A solver's answer, never stronger than its proof.
+
+    Attributes:
+        instance: what was solved.
+        search_space: ``paper`` or ``surface``.
+        strands: strands per topological edge; 1 in ``paper``.
+        solver: the solver's name.
+        status: ``optimal`` (proved in the search space), ``feasible`` or ``unknown``.
+        segments: number of segments, None when no division was found.
+        lift_offs: ``max(0, segments - 1)``, None when no division was found.
+        lower_bound: no division in the search space has fewer segments.
+        surface_lower_bound: no division of the physical surface has fewer segments.
+        proved_for_surface: ``segments`` equals ``surface_lower_bound``.
+        seams: the seams of cells with several loops.
+        cells: the division, None when none was found.
+        seconds: wall-clock time spent solving.
+        schemes: with "all optimal schemes" asked for, how many were found.
+        complete: with "all optimal schemes" asked for, whether that is all of them.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    instance: InstanceReference
+    search_space: SearchSpace
+    strands: Positive
+    solver: str
+    status: Status
+    segments: Count | None
+    lift_offs: Count | None
+    lower_bound: Count
+    surface_lower_bound: Count
+    proved_for_surface: bool
+    seams: tuple[Seam, ...]
+    cells: Division | None
+    seconds: Annotated[float, Ge(0)]
+    schemes: Count | None = None
+    complete: bool | None = None
+
+    def __post_init__(self) -> None:
+        missing = [
+            name
+            for name, value in (
+                ("segments", self.segments),
+                ("lift_offs", self.lift_offs),
+                ("cells", self.cells),
+            )
+            if value is None
+        ]
+        if self.status == "unknown" and len(missing) < 3:
+            raise InputError(
+                None, "status", "an unknown result has null segments, lift_offs and cells"
+            )
+        if self.status != "unknown" and missing:
+            raise InputError(None, missing[0], f"must not be null in a result {self.status!r}")
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        document: dict[str, Any] = {
+            "format": FORMAT,
+            "version": 1,
+            "instance": {"name": self.instance.name, "sha256": self.instance.sha256},
+            "search_space": self.search_space,
+            "strands": self.strands,
+            "solver": self.solver,
+            "status": self.status,
+            "segments": self.segments,
+            "lift_offs": self.lift_offs,
+            "lower_bound": self.lower_bound,
+            "surface_lower_bound": self.surface_lower_bound,
+            "proved_for_surface": self.proved_for_surface,
+            "seams": [
+                {"id": s.id, "cell": s.cell, "from": s.from_, "to": s.to, "strands": s.strands}
+                for s in self.seams
+            ],
+            "cells": None if self.cells is None else division_document(self.cells),
+            "seconds": round(self.seconds, 4),
+        }
+        if self.schemes is not None:
+            document["schemes"] = self.schemes
+            document["complete"] = self.complete
+        return document
+
+    def to_json(self) -> str:
+        """The file's text."""
+        return dump_lines(self.to_document(), frozenset({"cells"}))
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> Solution:
+        """A solution from a parsed JSON object."""
+        return validate(_ADAPTER, take_body(document, FORMAT))
+
+    @classmethod
+    def read(cls, path: Path) -> Solution:
+        """A solution from a file; of a file with schemes, its first line.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        try:
+            return cls.from_document(read_document(path))
+        except InputError as error:
+            raise error.in_file(str(path)) from error
+
+
+_ADAPTER = TypeAdapter(Solution)
+
+
+def division_document(division: Division) -> list[dict[str, Any]]:
+    """The ``cells`` member of a solution or scheme."""
+    return [
+        {
+            "id": cell.id,
+            "subcells": [
+                {"color": sub.color, "darts": list(sub.darts), "segment": sub.segment}
+                for sub in cell.subcells
+            ],
+        }
+        for cell in division
+    ]
+
+
+def scheme_line(division: Division) -> str:
+    """One line of JSON Lines for one optimal scheme."""
+    document = {"format": SCHEME_FORMAT, "cells": division_document(division)}
+    return json.dumps(document, ensure_ascii=False)
+
+
+def number_segments(
+    blocks: Sequence[Iterable[tuple[int, Sequence[DartName]]]],
+) -> Division:
+    """A division from each cell's (color, darts in state 1) pairs, its segments numbered.
+
+    Darts ``+e`` and ``-e`` (of the same strand) join the sub-cells that hold them. Segments are
+    numbered in the order in which the cells meet them.
+    """
+    flat = [(cell, color, tuple(darts)) for cell, subs in enumerate(blocks) for color, darts in subs]
+    parent = list(range(len(flat)))
+
+    def root(node: int) -> int:
+        while parent[node] != node:
+            parent[node] = parent[parent[node]]
+            node = parent[node]
+        return node
+
+    holder: dict[DartName, int] = {}
+    for node, (_, _, darts) in enumerate(flat):
+        for dart in darts:
+            twin = -dart if isinstance(dart, int) else (-dart[0], dart[1])
+            if twin in holder:
+                parent[root(node)] = root(holder[twin])
+            holder[dart] = node
+    numbers: dict[int, int] = {}
+    division: list[list[SubCell]] = [[] for _ in blocks]
+    for node, (cell, color, darts) in enumerate(flat):
+        segment = numbers.setdefault(root(node), len(numbers))
+        division[cell].append(SubCell(color, darts, segment))
+    return tuple(CellDivision(cell, tuple(subs)) for cell, subs in enumerate(division))

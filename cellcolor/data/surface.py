@@ -1,0 +1,173 @@
+"""The labelled surface: a triangle mesh with the available colors of every vertex."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, TypeAdapter
+
+from cellcolor.data.files import dump_lines, read_document, take_body, validate
+from cellcolor.data.mesh import directed_edges
+from cellcolor.errors import InputError
+
+FORMAT = "cellcolor/labelled-surface"
+
+
+@dataclass(frozen=True, slots=True)
+class Crack:
+    """A mesh edge across which colors that both ends have are not continuous.
+
+    Attributes:
+        i: one end, the smaller vertex index.
+        j: the other end.
+        colors: the colors that are not continuous along the edge, ascending.
+    """
+
+    i: int
+    j: int
+    colors: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class LabelledSurface:
+    """What a front end produces: where the surface is, and which colors reach each point.
+
+    Attributes:
+        name: what to call it.
+        colors: the names of the colors.
+        vertices: (n, 3) float64, metres.
+        faces: (m, 3) int64, counter-clockwise seen from outside.
+        vertex_colors: color ids of each vertex, ascending; empty where unreachable.
+        cracks: see :class:`Crack`.
+        meta: free, JSON-able.
+
+    Raises:
+        InputError: anything that ``docs/formats.md`` forbids, with field and element.
+    """
+
+    name: str
+    colors: tuple[str, ...]
+    vertices: NDArray[np.float64]
+    faces: NDArray[np.int64]
+    vertex_colors: tuple[tuple[int, ...], ...]
+    cracks: tuple[Crack, ...] = ()
+    meta: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
+            raise InputError(None, "vertices", "each vertex needs three coordinates")
+        if self.faces.ndim != 2 or self.faces.shape[1] != 3:
+            raise InputError(None, "faces", "each face needs three vertices")
+        bad = np.argwhere(~np.isfinite(self.vertices))
+        if len(bad):
+            raise InputError(None, f"vertices[{bad[0][0]}][{bad[0][1]}]", "is not a finite number")
+        if len(self.vertex_colors) != len(self.vertices):
+            raise InputError(
+                None,
+                "vertex_colors",
+                f"has {len(self.vertex_colors)} entries for {len(self.vertices)} vertices",
+            )
+        self._check_colors()
+        _ = self.left_of  # refuses what is not an oriented 2-manifold
+        self._check_cracks()
+
+    def _check_colors(self) -> None:
+        for vertex, colors in enumerate(self.vertex_colors):
+            for color in colors:
+                if not 0 <= color < len(self.colors):
+                    raise InputError(None, f"vertex_colors[{vertex}]", f"unknown color {color}")
+            if len(set(colors)) != len(colors):
+                raise InputError(None, f"vertex_colors[{vertex}]", "a color stands twice")
+
+    def _check_cracks(self) -> None:
+        seen: set[tuple[int, int]] = set()
+        for number, crack in enumerate(self.cracks):
+            where = f"cracks[{number}]"
+            pair = (min(crack.i, crack.j), max(crack.i, crack.j))
+            if pair not in self.left_of and pair[::-1] not in self.left_of:
+                raise InputError(None, where, f"{crack.i}-{crack.j} is no edge of the mesh")
+            if pair in seen:
+                raise InputError(None, where, f"edge {crack.i}-{crack.j} has a crack already")
+            seen.add(pair)
+            if not crack.colors or len(set(crack.colors)) != len(crack.colors):
+                raise InputError(None, where, "needs one color or more, each once")
+            shared = set(self.vertex_colors[crack.i]) & set(self.vertex_colors[crack.j])
+            for color in crack.colors:
+                if not 0 <= color < len(self.colors):
+                    raise InputError(None, where, f"unknown color {color}")
+                if color not in shared:
+                    raise InputError(
+                        None,
+                        where,
+                        f"color {color} is not shared by vertices {crack.i} and {crack.j}",
+                    )
+
+    @cached_property
+    def left_of(self) -> dict[tuple[int, int], int]:
+        """``{(i, j): k}`` for every triangle (i, j, k): see :func:`directed_edges`."""
+        return directed_edges(self.faces, len(self.vertices))
+
+    def to_json(self) -> str:
+        """The file's text."""
+        document: dict[str, Any] = {
+            "format": FORMAT,
+            "version": 1,
+            "name": self.name,
+            "colors": self.colors,
+            "vertices": self.vertices.tolist(),
+            "faces": self.faces.tolist(),
+            "vertex_colors": self.vertex_colors,
+            "cracks": [[c.i, c.j, c.colors] for c in self.cracks],
+        }
+        if self.meta:
+            document["meta"] = self.meta
+        return dump_lines(document, frozenset())
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> LabelledSurface:
+        """A surface from a parsed JSON object."""
+        raw = validate(_ADAPTER, take_body(document, FORMAT))
+        return cls(
+            raw.name,
+            raw.colors,
+            np.array(raw.vertices, dtype=np.float64).reshape(-1, 3),
+            np.array(raw.faces, dtype=np.int64).reshape(-1, 3),
+            tuple(tuple(sorted(colors)) for colors in raw.vertex_colors),
+            tuple(Crack(min(i, j), max(i, j), tuple(sorted(c))) for i, j, c in raw.cracks),
+            raw.meta,
+        )
+
+    @classmethod
+    def read(cls, path: Path) -> LabelledSurface:
+        """A surface from a file.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        try:
+            return cls.from_document(read_document(path))
+        except InputError as error:
+            raise error.in_file(str(path)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class _SurfaceFile:
+    """The file's members, before they become arrays."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+    name: str
+    colors: tuple[str, ...]
+    vertices: list[tuple[float, float, float]]
+    faces: list[tuple[int, int, int]]
+    vertex_colors: list[tuple[int, ...]]
+    cracks: list[tuple[int, int, tuple[int, ...]]] = field(default_factory=list)
+    meta: dict[str, Any] = field(default_factory=dict)
+
+
+_ADAPTER = TypeAdapter(_SurfaceFile)

@@ -1,0 +1,5 @@
+"""From a labelled surface to its topological graph (paper, section III-C)."""
+
+from cellcolor.decomposition.build import decompose
+
+__all__ = ["decompose"]

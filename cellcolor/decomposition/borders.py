@@ -1,0 +1,121 @@
+"""Borders between the areas of a labelled surface, walked with the area on the left.
+
+The curves live on the dual of the mesh: a border crosses every mesh edge whose two ends belong
+to different areas, and every crack, and runs from triangle to triangle. Each border loop of the
+mesh itself is closed with a virtual vertex outside, so that every mesh edge has two triangles.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.surface import LabelledSurface
+
+Step = tuple[int, int]
+"""A border where it crosses one mesh edge: the vertex on its left and the one on its right."""
+
+
+class ClosedMesh:
+    """A labelled surface's mesh with its holes closed by virtual vertices.
+
+    Attributes:
+        third: ``{(i, j): k}`` for every triangle (i, j, k), virtual ones included.
+        real_count: vertices with an index from here on are virtual.
+    """
+
+    def __init__(self, surface: LabelledSurface) -> None:
+        self.real_count = len(surface.vertices)
+        self.third = dict(surface.left_of)
+        virtual = self.real_count
+        # Along a border of the mesh a is followed by successor[a] with the outside on the left.
+        successor = {b: a for a, b in surface.left_of if (b, a) not in surface.left_of}
+        while successor:
+            first = vertex = min(successor)
+            while True:
+                following = successor.pop(vertex)
+                self.third[vertex, following] = virtual
+                self.third[following, virtual] = vertex
+                self.third[virtual, vertex] = following
+                vertex = following
+                if vertex == first:
+                    break
+            virtual += 1
+        self.vertex_count = virtual
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """A topological edge as it lies on the mesh.
+
+    Attributes:
+        steps: the mesh edges it crosses, in order, each with the vertices left and right of it.
+    """
+
+    steps: tuple[Step, ...]
+
+
+class Borders:
+    """All borders of a division of the mesh into areas.
+
+    Args:
+        mesh: the mesh, its holes closed.
+        area: the area of each vertex, virtual ones included; ``OUTSIDE`` where unreachable.
+        joinable: the colors that may continue across a mesh edge, given either way round.
+        cracked: whether any color is cracked along a mesh edge, given either way round.
+    """
+
+    def __init__(
+        self,
+        mesh: ClosedMesh,
+        area: list[int],
+        joinable: Callable[[int, int], frozenset[int]],
+        cracked: Callable[[int, int], bool],
+    ) -> None:
+        self._mesh = mesh
+        self._area = area
+        self._joinable = joinable
+        self.steps: set[Step] = {
+            (a, b) for a, b in mesh.third if area[a] != area[b] or cracked(a, b)
+        }
+
+    def following(self, step: Step) -> Step:
+        """The next step of a walk along the border with the same area on the left."""
+        u, v = step
+        w = self._mesh.third[u, v]
+        if (u, w) in self.steps:
+            return u, w
+        if (w, v) in self.steps:
+            return w, v
+        return v, u  # the free end of a crack: turn and walk back along its other side
+
+    def ends_in_corner(self, step: Step) -> bool:
+        """Whether a step leads into a triangle that holds a corner of the border."""
+        u, v = step
+        w = self._mesh.third[u, v]
+        crossed = 1 + ((u, w) in self.steps) + ((w, v) in self.steps)
+        return crossed != 2 or self._kind(step) != self._kind(self.following(step))
+
+    def _kind(self, step: Step) -> tuple[int, int, frozenset[int]]:
+        u, v = step
+        return self._area[u], self._area[v], self._joinable(u, v)
+
+    def curves(self) -> list[Curve]:
+        """The topological edges, each with an area other than ``OUTSIDE`` on its left."""
+        curves: list[Curve] = []
+        done: set[Step] = set()
+        # Curves between corners first; what is left over then are closed curves without any.
+        starts = sorted(self.steps)
+        for first in [s for s in starts if self.ends_in_corner(s[::-1])] + starts:
+            if first in done or self._area[first[0]] == OUTSIDE:
+                continue
+            steps = [first]
+            while not self.ends_in_corner(steps[-1]):
+                following = self.following(steps[-1])
+                if following == first:
+                    break
+                steps.append(following)
+            curves.append(Curve(tuple(steps)))
+            done.update(steps, (step[::-1] for step in steps))
+        return curves

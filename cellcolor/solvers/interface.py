@@ -1,0 +1,72 @@
+"""What every solver takes and hands back."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Protocol
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Seam, SearchSpace
+from cellcolor.errors import CellcolorError
+
+Progress = Callable[[int | None, int], None]
+"""Called with the segments of the best division so far (None: none yet) and the lower bound."""
+
+
+@dataclass(frozen=True, slots=True)
+class Options:
+    """How to solve.
+
+    Attributes:
+        search_space: ``paper``, or ``surface`` for any division of the physical surface.
+        strands: strands per topological edge; 1 in ``paper``.
+        time_limit: seconds of wall-clock time, None for as long as it takes.
+        workers: CP-SAT's search workers, None for its portfolio of 8.
+        seed: of everything random.
+    """
+
+    search_space: SearchSpace = "paper"
+    strands: int = 1
+    time_limit: float | None = None
+    workers: int | None = None
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """A solver's own claim, before the checker has seen it.
+
+    Attributes:
+        division: the best division found, None when none was found.
+        seams: the seams that its darts refer to.
+        lower_bound: no division in the search space has fewer segments.
+    """
+
+    division: Division | None
+    seams: tuple[Seam, ...]
+    lower_bound: int
+
+
+class OutOfTime(CellcolorError):
+    """The time limit ended an enumeration before it was complete."""
+
+
+class Solver(Protocol):
+    """One way to solve an instance."""
+
+    name: str
+
+    def minimize(
+        self, instance: Instance, options: Options, progress: Progress | None = None
+    ) -> Answer:
+        """A division with the fewest segments, or the best that the time limit allowed."""
+
+    def optimal_schemes(
+        self, instance: Instance, options: Options, segments: int
+    ) -> Iterator[Division]:
+        """Every scheme (semantics: docs/semantics.md, section 3) with the given minimum, once.
+
+        Raises:
+            OutOfTime: the time limit came first.
+        """
