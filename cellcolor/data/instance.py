@@ -237,9 +237,7 @@ class Instance:
             for c in self.cells
         ]
         document["edges"] = [
-            _given(
-                {"id": e.id, "left": e.left, "right": e.right}, colors=e.colors, length=e.length
-            )
+            _given({"id": e.id, "left": e.left, "right": e.right}, colors=e.colors, length=e.length)
             for e in self.edges
         ]
         if self.meta is not None:

@@ -235,7 +235,9 @@ def number_segments(
     Darts ``+e`` and ``-e`` (of the same strand) join the sub-cells that hold them. Segments are
     numbered in the order in which the cells meet them.
     """
-    flat = [(cell, color, tuple(darts)) for cell, subs in enumerate(blocks) for color, darts in subs]
+    flat = [
+        (cell, color, tuple(darts)) for cell, subs in enumerate(blocks) for color, darts in subs
+    ]
     parent = list(range(len(flat)))
 
     def root(node: int) -> int:

@@ -47,7 +47,9 @@ def decompose(surface: LabelledSurface, path: PurePath | str | None = None) -> I
     measure = _DualMeasure(surface, mesh)
     areas = measure.areas(area)
     cells = tuple(
-        Cell(number, surface.vertex_colors[area.index(number)], loops.get(number, ()), areas[number])
+        Cell(
+            number, surface.vertex_colors[area.index(number)], loops.get(number, ()), areas[number]
+        )
         for number in range(max(area, default=OUTSIDE) + 1)
     )
     edges = []

@@ -1,0 +1,76 @@
+"""The cyclic lists of live darts that a division is written in, strands and seams put in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import DartName, Seam
+
+Strand = tuple[int, int]
+"""A dart and its strand, strands counted from 1 along the positive dart."""
+
+
+class BadSeams(Exception):
+    """The seams do not make one cyclic list of a cell's loops."""
+
+
+def strand_of(name: DartName) -> Strand:
+    """A dart as a solution writes it; without strands it is its edge's only one."""
+    return (name, 1) if isinstance(name, int) else name
+
+
+def twin(strand: Strand) -> Strand:
+    """The other side of the same strand."""
+    return -strand[0], strand[1]
+
+
+def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[list[Strand]]:
+    """Each cell's live darts as one cyclic list.
+
+    Args:
+        instance: the topological graph.
+        seams: how the loops of cells with several of them are connected, in order.
+        strands: strands per live edge; a seam has its own number.
+
+    Raises:
+        BadSeams: a seam is not where it can be, or loops with live darts stay unconnected.
+    """
+    counts = {edge.id: strands if instance.joinable(edge.id) else 0 for edge in instance.edges}
+    loops = {cell.id: [list(loop) for loop in cell.loops] for cell in instance.cells}
+    highest = max((edge.id for edge in instance.edges), default=0)
+    for seam in seams:
+        if seam.id <= highest:
+            raise BadSeams(f"seam {seam.id}: its id must be above {highest}")
+        highest = seam.id
+        if seam.cell not in loops:
+            raise BadSeams(f"seam {seam.id}: there is no cell {seam.cell}")
+        _connect(loops[seam.cell], seam)
+        counts[seam.id] = seam.strands
+    lists = []
+    for cell, found in loops.items():
+        live = [loop for loop in found if any(counts[abs(dart)] for dart in loop)]
+        if len(live) > 1:
+            raise BadSeams(f"cell {cell}: {len(live)} loops with live darts are not connected")
+        lists.append([s for dart in (live[0] if live else []) for s in _strands(dart, counts)])
+    return lists
+
+
+def _strands(dart: int, counts: dict[int, int]) -> list[Strand]:
+    numbers = range(1, counts[abs(dart)] + 1)
+    return [(dart, number) for number in (numbers if dart > 0 else reversed(numbers))]
+
+
+def _connect(loops: list[list[int]], seam: Seam) -> None:
+    near = next((loop for loop in loops if seam.from_ in loop), None)
+    far = next((loop for loop in loops if seam.to in loop), None)
+    if near is None or far is None:
+        missing = seam.from_ if near is None else seam.to
+        raise BadSeams(f"seam {seam.id}: dart {missing} is not in the loops of cell {seam.cell}")
+    if near is far:
+        raise BadSeams(f"seam {seam.id}: darts {seam.from_} and {seam.to} are in one loop already")
+    start = far.index(seam.to) + 1
+    detour = [seam.id, *far[start:], *far[:start], -seam.id]
+    place = near.index(seam.from_) + 1
+    near[place:place] = detour
+    loops.remove(far)

@@ -1,0 +1,61 @@
+"""Is a plan legal on its labelled surface, and how many segments does it have?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import networkx as nx
+
+from cellcolor.data.plan import Plan
+from cellcolor.data.surface import LabelledSurface
+
+
+@dataclass(frozen=True, slots=True)
+class PlanReport:
+    """The verdict on a plan.
+
+    Attributes:
+        problems: what is wrong, each naming its vertex; none when the plan is valid.
+        segments: the number of segments counted, None when the plan is not valid.
+    """
+
+    problems: tuple[str, ...]
+    segments: int | None
+
+    @property
+    def valid(self) -> bool:
+        """Every reachable vertex has one of its colors, and no other vertex has one."""
+        return not self.problems
+
+
+def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
+    """Hold a plan against its surface and count its segments.
+
+    Segments are the connected components of equal color over the mesh edges without a crack for
+    that color (docs/formats.md). This looks at the mesh alone, never at the topological graph.
+    """
+    count = len(surface.vertices)
+    if len(plan.vertex_colors) != count:
+        given = len(plan.vertex_colors)
+        return PlanReport((f"vertex_colors: {given} entries for {count} vertices",), None)
+    problems = []
+    for vertex, (color, available) in enumerate(
+        zip(plan.vertex_colors, surface.vertex_colors, strict=True)
+    ):
+        where = f"vertex_colors[{vertex}]"
+        if color is None and available:
+            problems.append(f"{where}: null, but colors {list(available)} reach this vertex")
+        elif color is not None and color not in available:
+            problems.append(f"{where}: color {color} does not reach this vertex")
+    if problems:
+        return PlanReport(tuple(problems), None)
+    cracked = {(crack.i, crack.j): crack.colors for crack in surface.cracks}
+    graph: nx.Graph[int] = nx.Graph()
+    graph.add_nodes_from(v for v, color in enumerate(plan.vertex_colors) if color is not None)
+    for a, b in surface.left_of:
+        color = plan.vertex_colors[a]
+        if color is None or color != plan.vertex_colors[b]:
+            continue
+        if color not in cracked.get((min(a, b), max(a, b)), ()):
+            graph.add_edge(a, b)
+    return PlanReport((), nx.number_connected_components(graph))

@@ -1,0 +1,236 @@
+"""Is a solution what it says: a legal division of the instance, with that many segments?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import networkx as nx
+
+from cellcolor.check.lists import BadSeams, Strand, live_lists, strand_of, twin
+from cellcolor.check.scheme import (
+    Joinable,
+    Painted,
+    crossing,
+    idle_cut,
+    superfluous,
+    unavoidable_join,
+)
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import CellDivision, Division, Seam, Solution
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The verdict on a solution or a scheme.
+
+    Attributes:
+        problems: what is wrong, each naming its element; none when it is valid.
+        not_canonical: why a legal division is not a scheme (semantics, rules 2 and 4).
+        segments: the number of segments counted, None when the division is not legal.
+    """
+
+    problems: tuple[str, ...]
+    not_canonical: tuple[str, ...]
+    segments: int | None
+
+    @property
+    def valid(self) -> bool:
+        """Nothing is wrong; superfluous sub-cells are not wrong."""
+        return not self.problems
+
+    @property
+    def is_scheme(self) -> bool:
+        """A valid division in canonical form."""
+        return not self.problems and not self.not_canonical
+
+
+def check_division(
+    instance: Instance, division: Division, seams: Sequence[Seam] = (), strands: int = 1
+) -> Report:
+    """Hold a division against the instance (docs/semantics.md, sections 2, 3 and 5).
+
+    Args:
+        instance: the topological graph.
+        division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
+        seams: the seams that the darts refer to.
+        strands: strands per live edge.
+    """
+    if [cell.id for cell in division] != [cell.id for cell in instance.cells]:
+        return Report(
+            (f"cells: must be cells 0 to {len(instance.cells) - 1}, each once",), (), None
+        )
+    try:
+        lists = live_lists(instance, seams, strands)
+    except BadSeams as error:
+        return Report((f"seams: {error}",), (), None)
+    own_colors = {seam.id: frozenset(instance.cells[seam.cell].colors) for seam in seams}
+
+    def joinable(strand: Strand) -> frozenset[int]:
+        edge = abs(strand[0])
+        return own_colors[edge] if edge in own_colors else frozenset(instance.joinable(edge))
+
+    problems: list[str] = []
+    painted: list[Painted] = []
+    for cell, darts in zip(division, lists, strict=True):
+        found = _cell_problems(instance, cell, darts)
+        problems += found
+        if not found:
+            painted.append(_painted(cell, darts))
+    if problems:
+        return Report(tuple(problems), (), None)
+
+    problems += _edge_problems(division, joinable)
+    if problems:
+        return Report(tuple(problems), (), None)
+    stuck = unavoidable_join(painted, joinable)
+    if stuck is not None:
+        problems.append(f"edge {_text(stuck)}: shows one joinable color on both sides in state 0")
+    labels, segments = _segments(division)
+    problems += labels
+    return Report(tuple(problems), tuple(_not_canonical(painted)), segments)
+
+
+def check_solution(instance: Instance, solution: Solution) -> Report:
+    """Hold a solution against its instance: its division, and every number in it.
+
+    The lower bounds themselves are taken on trust; that nothing is claimed beyond them is not.
+    """
+    problems: list[str] = []
+    if solution.instance.sha256 != instance.sha256:
+        problems.append(f"instance.sha256: the solution is not for {instance.name!r} as it is here")
+    if solution.search_space == "paper" and solution.strands != 1:
+        problems.append("strands: must be 1 in search space 'paper'")
+    if solution.cells is None:
+        return Report(tuple(problems), (), None)
+    report = check_division(instance, solution.cells, solution.seams, solution.strands)
+    problems += report.problems
+    if report.segments is not None:
+        problems += _number_problems(solution, report.segments)
+    return Report(tuple(problems), report.not_canonical, report.segments)
+
+
+def _number_problems(solution: Solution, segments: int) -> list[str]:
+    problems = []
+    if solution.segments != segments:
+        problems.append(f"segments: says {solution.segments}, the division has {segments}")
+    if solution.lift_offs != max(0, segments - 1):
+        problems.append(f"lift_offs: says {solution.lift_offs}, must be {max(0, segments - 1)}")
+    for name, bound in (
+        ("lower_bound", solution.lower_bound),
+        ("surface_lower_bound", solution.surface_lower_bound),
+    ):
+        if bound > segments:
+            problems.append(f"{name}: {bound} cannot be above the {segments} segments found")
+    proved = segments == solution.surface_lower_bound
+    if solution.proved_for_surface != proved:
+        problems.append(
+            f"proved_for_surface: must be {str(proved).lower()}, since surface_lower_bound is "
+            f"{solution.surface_lower_bound} and the division has {segments} segments"
+        )
+    bound = (
+        solution.lower_bound if solution.search_space == "paper" else solution.surface_lower_bound
+    )
+    if solution.status == "optimal" and bound != segments:
+        problems.append(
+            f"status: {segments} segments are not proved optimal by a lower bound of {bound}"
+        )
+    return problems
+
+
+def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Strand]) -> list[str]:
+    """What is wrong with one cell's division, taken alone."""
+    problems = []
+    if not cell.subcells:
+        problems.append(f"cells[{cell.id}].subcells: needs one sub-cell at least")
+    own, seen = set(darts), set[Strand]()
+    for number, sub in enumerate(cell.subcells):
+        where = f"cells[{cell.id}].subcells[{number}]"
+        if sub.color not in instance.cells[cell.id].colors:
+            problems.append(f"{where}.color: cell {cell.id} cannot be painted in color {sub.color}")
+        for name in sub.darts:
+            dart = strand_of(name)
+            if dart not in own:
+                problems.append(f"{where}.darts: {_text(dart)} is no live dart of cell {cell.id}")
+            if dart in seen:
+                problems.append(f"{where}.darts: {_text(dart)} stands twice")
+            seen.add(dart)
+    if not problems:
+        crossed = crossing(_painted(cell, darts))
+        if crossed is not None:
+            problems.append(f"cells[{cell.id}].subcells: {crossed[0]} and {crossed[1]} cross")
+    return problems
+
+
+def _painted(cell: CellDivision, darts: Sequence[Strand]) -> Painted:
+    block_of = {
+        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
+    }
+    return Painted(darts, block_of, [sub.color for sub in cell.subcells])
+
+
+def _edge_problems(division: Division, joinable: Joinable) -> list[str]:
+    """Edges in state 1 need both sides, in one and the same joinable color."""
+    color = {strand_of(name): s.color for c in division for s in c.subcells for name in s.darts}
+    problems = []
+    for dart, own in color.items():
+        if twin(dart) not in color:
+            problems.append(f"edge {_text(dart)}: in state 1 on one side only")
+        elif color[twin(dart)] != own:
+            problems.append(f"edge {_text(dart)}: joins two different colors")
+        elif own not in joinable(dart):
+            problems.append(f"edge {_text(dart)}: color {own} cannot continue across it")
+    return problems
+
+
+def _segments(division: Division) -> tuple[list[str], int]:
+    """Faults of the segment numbers, and how many segments there are."""
+    graph: nx.Graph[tuple[int, int]] = nx.Graph()
+    holder: dict[Strand, tuple[int, int]] = {}
+    label: dict[tuple[int, int], int] = {}
+    for cell in division:
+        for number, sub in enumerate(cell.subcells):
+            node = (cell.id, number)
+            graph.add_node(node)
+            label[node] = sub.segment
+            holder |= dict.fromkeys(map(strand_of, sub.darts), node)
+    graph.add_edges_from((holder[dart], holder[twin(dart)]) for dart in holder)
+    problems = []
+    pieces: dict[int, int] = defaultdict(int)
+    components = list(nx.connected_components(graph))
+    for component in components:
+        labels = {label[node] for node in component}
+        cell, number = min(component)
+        if len(labels) > 1:
+            where = f"cells[{cell}].subcells[{number}].segment"
+            problems.append(f"{where}: one segment has numbers {sorted(labels)}")
+        for value in labels:
+            pieces[value] += 1
+    problems += [
+        f"segment {value}: stands for {count} separate segments"
+        for value, count in sorted(pieces.items())
+        if count > 1
+    ]
+    if not problems and set(pieces) != set(range(len(components))):
+        problems.append(f"segment numbers must be 0 to {len(components) - 1}")
+    return problems, len(components)
+
+
+def _not_canonical(cells: Sequence[Painted]) -> list[str]:
+    reasons = []
+    for number, cell in enumerate(cells):
+        block = superfluous(cell)
+        if block is not None:
+            reasons.append(f"cells[{number}].subcells[{block}]: fewer than two darts in state 1")
+        cut = idle_cut(cell)
+        if cut is not None:
+            reasons.append(
+                f"cells[{number}]: a cut between {_text(cut[0])} and {_text(cut[1])} "
+                "separates equal colors"
+            )
+    return reasons
+
+
+def _text(dart: Strand) -> str:
+    return str(dart[0]) if dart[1] == 1 else f"{dart[0]} strand {dart[1]}"
