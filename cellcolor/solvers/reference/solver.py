@@ -1,0 +1,197 @@
+"""The reference solver as a :class:`cellcolor.solvers.interface.Solver`."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import product
+from math import inf
+
+from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.solution import DartName, Division, Seam, number_segments
+from cellcolor.errors import InputError
+from cellcolor.solvers.interface import Answer, Options, OutOfTime, Progress
+from cellcolor.solvers.reference.cells import CellScheme
+from cellcolor.solvers.reference.graph import GraphCell, Graphs
+from cellcolor.solvers.reference.search import Search
+
+__all__ = ["ReferenceSolver"]
+
+_Blocks = list[tuple[int, list[DartName]]]
+
+
+class ReferenceSolver:
+    """The paper's depth-first enumerative solver (sections IV and V), counting segments.
+
+    It is meant to be read beside the paper and to judge faster solvers on small instances.
+    """
+
+    name = "dfs"
+
+    def minimize(
+        self, instance: Instance, options: Options, progress: Progress | None = None
+    ) -> Answer:
+        """A division with the fewest segments, or the best that the time limit allowed.
+
+        In the search space ``surface`` it has the fewest segments that ``options.strands``
+        corridors across each edge allow, and the lower bound is one that any division obeys.
+        """
+        deadline = _deadline(options)
+        graphs = Graphs(instance, options.strands)
+        parts = [_Part(graphs, cells, deadline) for cells in graphs.parts()]
+
+        def report() -> None:
+            if progress is not None:
+                best = [part.segments for part in parts if part.segments is not None]
+                total = sum(best) if len(best) == len(parts) else None
+                progress(total, sum(part.bound for part in parts))
+
+        report()
+        try:
+            for part in parts:
+                for _ in part.improve():
+                    report()
+                if options.search_space == "paper":
+                    part.close()
+                    report()
+        except OutOfTime:
+            pass
+        bound = sum(part.bound for part in parts)
+        if any(part.segments is None for part in parts):
+            return Answer(None, (), bound)
+        blocks = {cell: found for part in parts for cell, found in part.blocks.items()}
+        seams = sorted((s for part in parts for s in part.seams), key=lambda seam: seam.id)
+        return Answer(_division(instance, blocks), tuple(seams), bound)
+
+    def optimal_schemes(
+        self, instance: Instance, options: Options, segments: int
+    ) -> Iterator[Division]:
+        """Every scheme with the given minimum, once.
+
+        Raises:
+            InputError: a cell has several live loops, or edges have strands: schemes are defined
+                for neither.
+            ValueError: ``segments`` is not the minimum.
+            OutOfTime: the time limit came first.
+        """
+        if options.search_space != "paper" or options.strands != 1:
+            raise InputError(
+                None, "search_space", "optimal schemes are defined in the search space 'paper' only"
+            )
+        graphs = Graphs(instance, 1)
+        for cell in graphs.cells_with_several_loops():
+            raise InputError(
+                None,
+                f"cells[{cell}].loops",
+                f"cell {cell} has several loops with live darts: optimal schemes are defined "
+                "for cells with one",
+            )
+        return self._schemes(instance, graphs, _deadline(options), segments)
+
+    def _schemes(
+        self, instance: Instance, graphs: Graphs, deadline: float, segments: int
+    ) -> Iterator[Division]:
+        minima = []
+        parts = graphs.parts()
+        for cells in parts:
+            part = _Part(graphs, cells, deadline)
+            for _ in part.improve():
+                pass
+            minima.append(part.segments or 0)
+        if sum(minima) != segments:
+            raise ValueError(f"the minimum is {sum(minima)} segments, not {segments}")
+
+        def of_part(cells: list[Cell], budget: int) -> Iterator[dict[int, _Blocks]]:
+            graph = [graphs.cell(cell, 0)[0] for cell in cells]
+            search = Search(graph, graphs.region, deadline)
+            search.budget = budget
+            for _, schemes in search.paintings():
+                yield _named(graph, schemes)
+
+        # Parts of the graph that no live edge connects are painted independently.
+        first = of_part(parts[0], minima[0]) if parts else iter(({},))
+        others = [list(of_part(*part)) for part in zip(parts[1:], minima[1:], strict=True)]
+        for one in first:
+            for combined in product(*others):
+                blocks = dict(one)
+                for more in combined:
+                    blocks |= more
+                yield _division(instance, blocks)
+
+
+class _Part:
+    """The minimum of one connected part of the graph.
+
+    Attributes:
+        segments: of the best division so far, None when there is none.
+        bound: no division has fewer.
+        blocks: the best division: color and darts of the sub-cells of each cell.
+        seams: what its darts refer to.
+    """
+
+    def __init__(self, graphs: Graphs, cells: list[Cell], deadline: float) -> None:
+        self._graphs = graphs
+        self._cells = cells
+        self._deadline = deadline
+        self.segments: int | None = None
+        self.blocks: dict[int, _Blocks] = {}
+        self.seams: list[Seam] = []
+        several = set(graphs.cells_with_several_loops())
+        self._enough = max(
+            (
+                strands
+                for cell in cells
+                if cell.id in several
+                for strands in graphs.sufficient_seam_strands(cell.id)
+            ),
+            default=0,
+        )
+        self.bound = self._search(0)[1].bound
+
+    def improve(self) -> Iterator[None]:
+        """Search until the minimum is found; yields whenever there is a better division.
+
+        Seams get one strand more each time until they have enough of them or the bound is met.
+
+        Raises:
+            OutOfTime: the deadline has passed.
+        """
+        for seam_strands in range(self._enough + 1):
+            graph, search, seams = self._search(seam_strands)
+            search.budget = sum(len(cell.colors) + len(cell.darts) for cell in graph)
+            if self.segments is not None:
+                search.budget = self.segments - 1
+            for segments, schemes in search.paintings():
+                search.budget = segments - 1
+                self.segments = segments
+                self.blocks = _named(graph, schemes)
+                self.seams = seams
+                yield
+            if self.segments == self.bound:
+                return
+
+    def close(self) -> None:
+        """The search was complete: its minimum is a bound too."""
+        if self.segments is not None:
+            self.bound = self.segments
+
+    def _search(self, seam_strands: int) -> tuple[list[GraphCell], Search, list[Seam]]:
+        built = [self._graphs.cell(cell, seam_strands) for cell in self._cells]
+        graph = [cell for cell, _ in built]
+        search = Search(graph, self._graphs.region, self._deadline)
+        return graph, search, [seam for _, seams in built for seam in seams]
+
+
+def _deadline(options: Options) -> float:
+    return inf if options.time_limit is None else time.monotonic() + options.time_limit
+
+
+def _named(graph: Sequence[GraphCell], schemes: Iterable[CellScheme]) -> dict[int, _Blocks]:
+    return {
+        cell.id: [(color, [cell.darts[i] for i in darts]) for color, darts in scheme.subcells]
+        for cell, scheme in zip(graph, schemes, strict=True)
+    }
+
+
+def _division(instance: Instance, blocks: dict[int, _Blocks]) -> Division:
+    return number_segments([blocks[cell.id] for cell in instance.cells])
