@@ -1,0 +1,11 @@
+"""The kinematic front end: from a robot scene to a labelled surface.
+
+Needs the extra ``frontend`` (Pinocchio, trimesh, python-fcl). Nothing outside this package
+imports those.
+"""
+
+from cellcolor.frontend.build import BuildResult, build_surface
+from cellcolor.frontend.report import BuildReport, ColorReport
+from cellcolor.frontend.validity import Reason
+
+__all__ = ["BuildReport", "BuildResult", "ColorReport", "Reason", "build_surface"]

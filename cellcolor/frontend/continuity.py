@@ -1,0 +1,185 @@
+"""From valid configurations to colors and cracks (``docs/frontend.md``, "Continuity").
+
+A node is a valid configuration: a vertex and a branch. Two nodes on the ends of a mesh edge are
+linked when a continuous motion leads from one to the other: same branch, no joint moves farther
+than the edge's length allows, and, where that is in doubt, neither does it between points in
+between. Colors are the connected components of linked nodes; a mesh edge whose ends have a color
+in common but are not linked in it is a crack of that color.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from cellcolor.data.surface import Crack
+from cellcolor.errors import InputError
+from cellcolor.frontend.collision import Mask
+from cellcolor.frontend.robot import Array
+from cellcolor.frontend.scene import Continuity
+from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.validity import Candidates
+
+__all__ = ["Coloring", "color", "find_cracks", "joint_step", "link", "node_links"]
+
+Index = NDArray[np.int64]
+Probe = Callable[[Array, Array], tuple[Array, Mask]]
+"""Points (k, 3) and unit tool directions (k, 3) to configurations (k, 8, 6), rad, NaN where there
+is none, and whether they are well conditioned (k, 8)."""
+
+
+@dataclass(frozen=True)
+class Coloring:
+    """Colors of all nodes.
+
+    Attributes:
+        names: of the colors: the branch, with a number where it has several components.
+        branch: of each color.
+        node_color: (n, branches) the color of each valid configuration, -1 for others.
+    """
+
+    names: tuple[str, ...]
+    branch: tuple[int, ...]
+    node_color: Index
+
+
+def joint_step(first: Array, second: Array) -> Array:
+    """The largest movement of a joint between configurations (..., 6), modulo 2 pi, in rad."""
+    difference = np.abs(np.remainder(second - first + np.pi, 2 * np.pi) - np.pi)
+    return np.asarray(difference.max(axis=-1))
+
+
+def link(
+    surface: Surface, edges: Index, candidates: Candidates, policy: Continuity, probe: Probe
+) -> Mask:
+    """Whether the two configurations of a branch on an edge's ends are continuous, (k, 8).
+
+    False where one of the ends has no valid configuration of that branch. An edge is probed in
+    between when a joint moves more than half of what is allowed or an end is near a singularity;
+    then every point on the way needs a well-conditioned configuration of the branch, and every
+    step has to keep to the bound for its own length.
+
+    Args:
+        edges: (k, 2) vertex indices.
+        probe: see :data:`Probe`; called with points in between.
+    """
+    i, j = edges.T
+    both = candidates.valid[i] & candidates.valid[j]
+    length = np.linalg.norm(surface.vertices[i] - surface.vertices[j], axis=1)
+    rate = policy.step_per_length_rad_per_m
+    allowed = (policy.base_step_rad + rate * length)[:, None]
+    with np.errstate(invalid="ignore"):
+        step = joint_step(candidates.configurations[i], candidates.configurations[j])
+        linked: Mask = both & (step <= allowed)
+        nearest = np.fmin(candidates.determinants[i], candidates.determinants[j])
+        doubtful = (step > allowed / 2) | (nearest < policy.near_singular_determinant_m3)
+    rows, branches = np.nonzero(linked & doubtful)
+    if len(rows):
+        linked[rows, branches] = _probed(
+            surface, edges, rows, branches, length, candidates, policy, probe
+        )
+    return linked
+
+
+def _probed(
+    surface: Surface,
+    edges: Index,
+    rows: NDArray[np.intp],
+    branches: NDArray[np.intp],
+    length: Array,
+    candidates: Candidates,
+    policy: Continuity,
+    probe: Probe,
+) -> Mask:
+    """Follow a branch along edges: straight between the points, the normal turning evenly."""
+    asked, back = np.unique(rows, return_inverse=True)
+    i, j = edges[asked].T
+    pieces = max(2, int(np.ceil(length[asked].max() / policy.probe_spacing_m)))
+    way = np.linspace(0.0, 1.0, pieces + 1)[None, 1:-1, None]
+    points = (1 - way) * surface.vertices[i][:, None] + way * surface.vertices[j][:, None]
+    normals = (1 - way) * surface.normals[i][:, None] + way * surface.normals[j][:, None]
+    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    between, conditioned = probe(points.reshape(-1, 3), -normals.reshape(-1, 3))
+    shape = (len(asked), pieces - 1, -1)
+    between = between.reshape(*shape, between.shape[2])[back, :, branches]
+    conditioned = conditioned.reshape(shape)[back, :, branches]
+    start, end = (candidates.configurations[edges[rows, side], branches] for side in (0, 1))
+    path = np.concatenate([start[:, None], between, end[:, None]], axis=1)
+    allowed = policy.base_step_rad + policy.step_per_length_rad_per_m * length[rows] / pieces
+    # A missing configuration is NaN, and a comparison with NaN is false.
+    smooth = np.all(joint_step(path[:, :-1], path[:, 1:]) <= allowed[:, None], axis=1)
+    followed: Mask = smooth & np.all(conditioned, axis=1)
+    return followed
+
+
+def color(candidates: Candidates, links: Index, branch_names: tuple[str, ...]) -> Coloring:
+    """Connected components of linked nodes.
+
+    Numbering is deterministic: colors follow their branches; within a branch the components
+    with more vertices come first, and of equal ones that with the smallest vertex.
+
+    Args:
+        links: (l, 2) nodes that a continuous motion joins, numbered vertex * branches + branch.
+
+    Raises:
+        InputError: a color has two configurations on one vertex; names vertex and
+            configurations.
+    """
+    valid = candidates.valid
+    branches = valid.shape[1]
+    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(valid.size,) * 2)
+    component = connected_components(graph, directed=False)[1]
+    nodes = np.flatnonzero(valid)
+    _, first, inverse, count = np.unique(
+        component[nodes], return_index=True, return_inverse=True, return_counts=True
+    )
+    branch_of = nodes[first] % branches
+    order = np.lexsort((first, -count, branch_of))
+    node_color = np.full(valid.size, -1, dtype=np.int64)
+    node_color[nodes] = np.argsort(order)[inverse]
+    of_branch = branch_of[order]
+    names = []
+    for branch, size in enumerate(np.bincount(of_branch, minlength=branches)):
+        name = branch_names[branch]
+        names += [name] if size == 1 else [f"{name} {k}" for k in range(1, size + 1)]
+    table = node_color.reshape(valid.shape)
+    _check_injective(table, candidates.configurations, names)
+    return Coloring(tuple(names), tuple(of_branch.tolist()), table)
+
+
+def _check_injective(node_color: Index, configurations: Array, names: list[str]) -> None:
+    ordered = np.sort(node_color, axis=1)
+    twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] >= 0)
+    if not twice.any():
+        return
+    vertex = int(np.argmax(twice.any(axis=1)))
+    shared = ordered[vertex, 1:][twice[vertex]][0]
+    joints = configurations[vertex][node_color[vertex] == shared].round(4).tolist()
+    raise InputError(
+        None,
+        f"vertices[{vertex}]",
+        f"color {names[shared]!r} covers it with {len(joints)} configurations: "
+        + " and ".join(map(str, joints)),
+    )
+
+
+def node_links(edges: Index, linked: Mask) -> Index:
+    """The pairs of nodes (l, 2) that :func:`link` found continuous."""
+    rows, branch = np.nonzero(linked)
+    links: Index = edges[rows] * linked.shape[1] + branch[:, None]
+    return links
+
+
+def find_cracks(edges: Index, linked: Mask, coloring: Coloring) -> tuple[Crack, ...]:
+    """The mesh edges whose ends share a color that is not continuous along the edge itself."""
+    start, end = coloring.node_color[edges[:, 0]], coloring.node_color[edges[:, 1]]
+    torn = (start == end) & (start >= 0) & ~linked
+    return tuple(
+        Crack(int(edges[row, 0]), int(edges[row, 1]), tuple(sorted(start[row, torn[row]].tolist())))
+        for row in np.flatnonzero(torn.any(axis=1))
+    )

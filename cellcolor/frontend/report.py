@@ -1,0 +1,104 @@
+"""What a build found, for people: reachability by reason, colors, cracks, time."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.frontend.continuity import Coloring
+from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.validity import Candidates, Reason
+
+__all__ = ["BuildReport", "ColorReport", "make_report"]
+
+
+@dataclass(frozen=True)
+class ColorReport:
+    """One color: its branch, how many vertices it reaches, and their area in m^2."""
+
+    name: str
+    branch: str
+    vertices: int
+    area_m2: float
+
+
+@dataclass(frozen=True)
+class BuildReport:
+    """What a build found.
+
+    Attributes:
+        vertices: of the surface.
+        reachable: vertices with one valid configuration or more.
+        area_m2: of the whole surface.
+        reachable_area_m2: of the reachable vertices.
+        candidates: how many of the vertex-branch candidates ended with each reason.
+        unreachable: how many unreachable vertices have each reason; counted for the branch that
+            came farthest through the tests.
+        colors: see :class:`ColorReport`.
+        cracks: number of mesh edges with a crack.
+        seconds: wall time of each stage.
+    """
+
+    vertices: int
+    reachable: int
+    area_m2: float
+    reachable_area_m2: float
+    candidates: dict[str, int]
+    unreachable: dict[str, int]
+    colors: tuple[ColorReport, ...]
+    cracks: int
+    seconds: dict[str, float]
+
+    def __str__(self) -> str:
+        share = 100 * self.reachable_area_m2 / self.area_m2
+        lines = [
+            f"reachable  {self.reachable} of {self.vertices} vertices, {share:.1f} % of the area"
+        ]
+        lines += _table("unreachable vertices, by the branch that came farthest", self.unreachable)
+        lines += _table("candidates (vertex and branch)", self.candidates)
+        lines += ["colors"]
+        width = max((len(color.name) for color in self.colors), default=0)
+        lines += [
+            f"  {color.name:<{width}}  {color.vertices:>7} vertices"
+            f"  {100 * color.area_m2 / self.area_m2:5.1f} %"
+            for color in self.colors
+        ]
+        lines += [f"cracks  {self.cracks}"]
+        spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in self.seconds.items())
+        return "\n".join([*lines, f"seconds  {sum(self.seconds.values()):.2f}: {spent}"])
+
+
+def _table(title: str, counts: dict[str, int]) -> list[str]:
+    return [title] + [f"  {reason:<18} {count:>7}" for reason, count in counts.items()]
+
+
+def make_report(
+    surface: Surface,
+    candidates: Candidates,
+    coloring: Coloring,
+    branch_names: tuple[str, ...],
+    cracks: int,
+    seconds: dict[str, float],
+) -> BuildReport:
+    """Count what a build found."""
+    areas = surface.vertex_areas()
+    reached = candidates.valid.any(axis=1)
+    # The reasons are numbered in the order of the tests.
+    farthest = candidates.reasons.max(axis=1)[~reached]
+    colors = []
+    for number, (name, branch) in enumerate(zip(coloring.names, coloring.branch, strict=True)):
+        domain = coloring.node_color[:, branch] == number
+        size, area = int(domain.sum()), float(areas[domain].sum())
+        colors.append(ColorReport(name, branch_names[branch], size, area))
+    return BuildReport(
+        vertices=len(areas),
+        reachable=int(reached.sum()),
+        area_m2=float(areas.sum()),
+        reachable_area_m2=float(areas[reached].sum()),
+        candidates={reason.text: int((candidates.reasons == reason).sum()) for reason in Reason},
+        unreachable={reason.text: int(np.sum(farthest == reason)) for reason in Reason if reason},
+        colors=tuple(colors),
+        cracks=cracks,
+        seconds=seconds,
+    )

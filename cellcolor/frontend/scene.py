@@ -1,0 +1,175 @@
+"""Scene and setup files: TOML, every key known, units in the names.
+
+A scene says where an object stands; robot, tool, thresholds and continuity come from a setup
+file that scenes share. File names are relative to the file that has them.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+
+from cellcolor.errors import InputError
+
+__all__ = [
+    "CapObject",
+    "Continuity",
+    "Ground",
+    "MeshObject",
+    "Placement",
+    "RobotFiles",
+    "Scene",
+    "Setup",
+    "Task",
+    "Thresholds",
+    "load_scene",
+    "load_setup",
+]
+
+Positive = Annotated[FiniteFloat, Field(gt=0)]
+NotNegative = Annotated[FiniteFloat, Field(ge=0)]
+Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+
+class CapObject(_Table):
+    """A spherical cap about +z, the sphere's center at the object's origin."""
+
+    kind: Literal["spherical-cap"]
+    radius_m: Positive
+    half_angle_rad: Annotated[FiniteFloat, Field(gt=0, lt=3.1)]
+    target_vertices: Annotated[int, Field(ge=7, le=1_000_000)]
+    jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
+class MeshObject(_Table):
+    """A triangle mesh from a file (STL, OBJ, PLY)."""
+
+    kind: Literal["mesh"]
+    file: str
+    meters_per_unit: Positive
+
+
+class Placement(_Table):
+    """Pose of the object in the world; angles extrinsic x, y, z."""
+
+    position_m: Vector
+    rpy_rad: Vector = (0.0, 0.0, 0.0)
+
+
+class Ground(_Table):
+    """The half space below a height."""
+
+    height_m: FiniteFloat
+
+
+class Scene(_Table):
+    """An object, where it stands, and the ground if there is one."""
+
+    name: Annotated[str, Field(min_length=1)]
+    setup: str
+    object: Annotated[CapObject | MeshObject, Field(discriminator="kind")]
+    placement: Placement
+    ground: Ground | None = None
+
+
+class RobotFiles(_Table):
+    """Arm and tool, and the joint that the task leaves free."""
+
+    arm_urdf: str
+    flange_link: str
+    tool_urdf: str
+    tip_link: str
+    locked_joint_6_rad: FiniteFloat
+    may_touch_ground: tuple[str, ...] = ()
+
+
+class Task(_Table):
+    """What the tool has to do on each point."""
+
+    normal_force_n: NotNegative
+    gravity_m_per_s2: Vector
+
+
+class Thresholds(_Table):
+    """What counts as well conditioned."""
+
+    min_manipulability_m3: NotNegative
+    min_task_determinant_m3: NotNegative
+
+
+class Continuity(_Table):
+    """When two configurations on neighboring vertices are joined by a continuous motion."""
+
+    base_step_rad: Positive
+    step_per_length_rad_per_m: NotNegative
+    near_singular_determinant_m3: NotNegative
+    probe_spacing_m: Positive
+
+
+class Setup(_Table):
+    """Robot, task, thresholds and continuity, shared by scenes."""
+
+    robot: RobotFiles
+    task: Task
+    thresholds: Thresholds
+    continuity: Continuity
+
+
+_Model = TypeVar("_Model", bound=BaseModel)
+
+
+def load_scene(file: Path) -> Scene:
+    """Read a scene file.
+
+    Raises:
+        InputError: unreadable, not TOML, an unknown or missing key, a value of the wrong type
+            or out of range; names the file and the key.
+    """
+    return _load(file, Scene)
+
+
+def load_setup(file: Path) -> Setup:
+    """Read a setup file; raises like :func:`load_scene`."""
+    return _load(file, Setup)
+
+
+def _load(file: Path, model: type[_Model]) -> _Model:
+    try:
+        document = tomllib.loads(file.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        reason = getattr(error, "strerror", None) or "not UTF-8 text"
+        raise InputError(str(file), None, reason) from error
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(str(file), None, f"not TOML: {error}") from error
+    try:
+        # Strict validation takes a TOML array for a tuple only when told that it is no Python.
+        return model.model_validate(_tuples(document))
+    except ValidationError as error:
+        first = error.errors()[0]
+        raise InputError(str(file), _key(first["loc"]), first["msg"]) from error
+
+
+def _tuples(value: object) -> object:
+    if isinstance(value, dict):
+        return {key: _tuples(item) for key, item in value.items()}
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def _key(location: tuple[int | str, ...]) -> str:
+    """``("object", "spherical-cap", "radius_m")`` as ``object.radius_m``: no variant tags."""
+    tags = {"spherical-cap", "mesh"}
+    text = ""
+    for part in location:
+        if isinstance(part, int):
+            text += f"[{part}]"
+        elif part not in tags:
+            text += f".{part}" if text else part
+    return text
