@@ -110,8 +110,9 @@ def _build(
     candidates = judge(robot, setup, scene.ground, surface, solutions)
     seconds |= candidates.seconds
 
-    def probe(points: Array, directions: Array) -> tuple[Array, Mask]:
-        between = solve_inverse(geometry, points, directions, locked)
+    def probe(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Array, Mask]:
+        solutions = solve_inverse(geometry, points, directions, locked)
+        between = solutions[np.arange(len(branch)), branch]
         return between, _well_conditioned(robot, setup, between)
 
     started = time.perf_counter()
@@ -142,8 +143,8 @@ def _build(
 
 
 def _well_conditioned(robot: Robot, setup: Setup, configurations: Array) -> Mask:
-    """Whether configurations (k, 8, 6) exist and keep both conditioning thresholds, (k, 8)."""
-    good = ~np.isnan(configurations[:, :, 0])
+    """Whether configurations (k, 6) exist and keep both conditioning thresholds, (k,)."""
+    good = ~np.isnan(configurations[:, 0])
     poses = forward(robot, configurations[good])
     linear, angular = tip_jacobian(poses)
     determinant = task_determinant(linear, angular, poses.tool_axis)

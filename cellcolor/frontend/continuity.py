@@ -1,10 +1,10 @@
 """From valid configurations to colors and cracks (``docs/frontend.md``, "Continuity").
 
 A node is a valid configuration: a vertex and a branch. Two nodes on the ends of a mesh edge are
-linked when a continuous motion leads from one to the other: same branch, no joint moves farther
-than the edge's length allows, and, where that is in doubt, neither does it between points in
-between. Colors are the connected components of linked nodes; a mesh edge whose ends have a color
-in common but are not linked in it is a crack of that color.
+linked when a continuous motion leads from one to the other: same branch, and no joint moves
+farther than the length allows, which is checked between the ends and, where that leaves a doubt,
+between points on the way. Colors are the connected components of linked nodes; a mesh edge whose
+ends have a color in common but are not linked in it is a crack of that color.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ from cellcolor.frontend.validity import Candidates
 __all__ = ["Coloring", "color", "find_cracks", "joint_step", "link", "node_links"]
 
 Index = NDArray[np.int64]
-Probe = Callable[[Array, Array], tuple[Array, Mask]]
-"""Points (k, 3) and unit tool directions (k, 3) to configurations (k, 8, 6), rad, NaN where there
-is none, and whether they are well conditioned (k, 8)."""
+Probe = Callable[[Array, Array, NDArray[np.intp]], tuple[Array, Mask]]
+"""Points (k, 3), unit tool directions (k, 3) and branches (k,) to configurations (k, 6) in rad,
+NaN where there is none, and whether they are well conditioned (k,)."""
 
 
 @dataclass(frozen=True)
@@ -59,10 +59,12 @@ def link(
 ) -> Mask:
     """Whether the two configurations of a branch on an edge's ends are continuous, (k, 8).
 
-    False where one of the ends has no valid configuration of that branch. An edge is probed in
-    between when a joint moves more than half of what is allowed or an end is near a singularity;
-    then every point on the way needs a well-conditioned configuration of the branch, and every
-    step has to keep to the bound for its own length.
+    False where one of the ends has no valid configuration of that branch. Where no joint moves
+    farther than half the bound for the edge's length, and neither end is near a singularity, that
+    settles it. All other edges are probed: every point on the way needs a well-conditioned
+    configuration of the branch, and each step between them has to keep to the bound for its own
+    length. So fast motions beside a singularity count, and jumps through one do not, whatever
+    the size of the mesh's triangles.
 
     Args:
         edges: (k, 2) vertex indices.
@@ -71,19 +73,23 @@ def link(
     i, j = edges.T
     both = candidates.valid[i] & candidates.valid[j]
     length = np.linalg.norm(surface.vertices[i] - surface.vertices[j], axis=1)
-    rate = policy.step_per_length_rad_per_m
-    allowed = (policy.base_step_rad + rate * length)[:, None]
+    bound = _bound(policy, length)[:, None]
     with np.errstate(invalid="ignore"):
         step = joint_step(candidates.configurations[i], candidates.configurations[j])
-        linked: Mask = both & (step <= allowed)
         nearest = np.fmin(candidates.determinants[i], candidates.determinants[j])
-        doubtful = (step > allowed / 2) | (nearest < policy.near_singular_determinant_m3)
-    rows, branches = np.nonzero(linked & doubtful)
+        clear = (step <= bound / 2) & (nearest >= policy.near_singular_determinant_m3)
+    linked: Mask = both & clear
+    rows, branches = np.nonzero(both & ~clear)
     if len(rows):
         linked[rows, branches] = _probed(
             surface, edges, rows, branches, length, candidates, policy, probe
         )
     return linked
+
+
+def _bound(policy: Continuity, length: Array) -> Array:
+    """How far a joint may move along lengths in m, in rad."""
+    return policy.base_step_rad + policy.step_per_length_rad_per_m * length
 
 
 def _probed(
@@ -97,22 +103,22 @@ def _probed(
     probe: Probe,
 ) -> Mask:
     """Follow a branch along edges: straight between the points, the normal turning evenly."""
-    asked, back = np.unique(rows, return_inverse=True)
-    i, j = edges[asked].T
-    pieces = max(2, int(np.ceil(length[asked].max() / policy.probe_spacing_m)))
+    i, j = edges[rows].T
+    pieces = max(2, int(np.ceil(length[rows].max() / policy.probe_spacing_m)))
     way = np.linspace(0.0, 1.0, pieces + 1)[None, 1:-1, None]
     points = (1 - way) * surface.vertices[i][:, None] + way * surface.vertices[j][:, None]
     normals = (1 - way) * surface.normals[i][:, None] + way * surface.normals[j][:, None]
     normals /= np.linalg.norm(normals, axis=2, keepdims=True)
-    between, conditioned = probe(points.reshape(-1, 3), -normals.reshape(-1, 3))
-    shape = (len(asked), pieces - 1, -1)
-    between = between.reshape(*shape, between.shape[2])[back, :, branches]
-    conditioned = conditioned.reshape(shape)[back, :, branches]
+    between, conditioned = probe(
+        points.reshape(-1, 3), -normals.reshape(-1, 3), np.repeat(branches, pieces - 1)
+    )
+    between = between.reshape(len(rows), pieces - 1, -1)
+    conditioned = conditioned.reshape(len(rows), pieces - 1)
     start, end = (candidates.configurations[edges[rows, side], branches] for side in (0, 1))
     path = np.concatenate([start[:, None], between, end[:, None]], axis=1)
-    allowed = policy.base_step_rad + policy.step_per_length_rad_per_m * length[rows] / pieces
+    bound = _bound(policy, length[rows] / pieces)
     # A missing configuration is NaN, and a comparison with NaN is false.
-    smooth = np.all(joint_step(path[:, :-1], path[:, 1:]) <= allowed[:, None], axis=1)
+    smooth = np.all(joint_step(path[:, :-1], path[:, 1:]) <= bound[:, None], axis=1)
     followed: Mask = smooth & np.all(conditioned, axis=1)
     return followed
 

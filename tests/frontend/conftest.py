@@ -1,0 +1,62 @@
+"""The shipped robot, and scenes made from the shipped wok with some keys changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from shipped import ROBOTS, WOK, edited
+
+from cellcolor.frontend.robot import Robot, load_robot
+from cellcolor.frontend.scene import Setup, load_setup
+from cellcolor.frontend.ur import UrGeometry, ur_geometry
+
+Rewrite = Callable[..., Path]
+
+
+@pytest.fixture(scope="session")
+def robot() -> Robot:
+    """The UR5 with its polishing tool."""
+    return load_robot(
+        ROBOTS / "ur5.urdf", "wrist_3_link", ROBOTS / "polishing_tool.urdf", "tool_tip"
+    )
+
+
+@pytest.fixture(scope="session")
+def geometry(robot: Robot) -> UrGeometry:
+    """Its Denavit-Hartenberg constants."""
+    return ur_geometry(robot)
+
+
+@pytest.fixture(scope="session")
+def setup() -> Setup:
+    """The shared setup."""
+    return load_setup(ROBOTS / "ur5_polishing.toml")
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Rewrite:
+    """``scene(setup={...}, arm=function, radius_m=.3, ...)`` writes a variant of the wok.
+
+    ``setup`` replaces keys of the setup file, ``arm`` rewrites the arm's URDF text, and the
+    other names replace keys of the scene.
+    """
+
+    def write(
+        setup: dict[str, object] | None = None,
+        arm: Callable[[str], str] = lambda text: text,
+        **keys: object,
+    ) -> Path:
+        for name in ("ur5.urdf", "polishing_tool.urdf", "ur5_polishing.toml"):
+            text = (ROBOTS / name).read_text()
+            if name == "ur5.urdf":
+                text = arm(text)
+            if name == "ur5_polishing.toml":
+                text = edited(text, **(setup or {}))
+            (tmp_path / name).write_text(text)
+        file = tmp_path / "scene.toml"
+        file.write_text(edited(WOK.read_text(), **({"setup": '"ur5_polishing.toml"'} | keys)))
+        return file
+
+    return write

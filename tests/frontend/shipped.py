@@ -1,0 +1,18 @@
+"""Where the shipped robot and the wok are, and how to change keys of a TOML text."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+TOP = Path(__file__).parents[2]
+ROBOTS = TOP / "models" / "robots"
+WOK = TOP / "instances" / "scenes" / "wok.toml"
+
+
+def edited(text: str, **values: object) -> str:
+    """TOML text with the values of some keys replaced; every key has to be there."""
+    for key, value in values.items():
+        text, found = re.subn(rf"^{key} = [^#\n]*", f"{key} = {value} ", text, flags=re.MULTILINE)
+        assert found == 1, key
+    return text

@@ -1,0 +1,178 @@
+"""Closed-form inverse kinematics against EAIK and against forward kinematics."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from eaik.IK_HP import HPRobot
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shipped import ROBOTS
+
+from cellcolor.frontend.kinematics import forward
+from cellcolor.frontend.robot import Array, Robot, load_robot
+from cellcolor.frontend.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
+
+LOCKED = 0.4
+
+
+def wrapped(angle: Array) -> Array:
+    return np.abs(np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
+
+
+@pytest.fixture(scope="module")
+def oracle(robot: Robot) -> tuple[HPRobot, Array]:
+    """EAIK's robot from Pinocchio's joint axes at zero, and the last frame's attitude there."""
+    data = robot.model.createData()
+    jacobian = pin.computeJointJacobians(robot.model, data, np.zeros(6))
+    origins = np.array([data.oMi[i].translation for i in range(1, 7)])
+    steps = np.diff(origins, axis=0, prepend=np.zeros((1, 3)))
+    return HPRobot(jacobian[3:].T, np.vstack([steps, np.zeros((1, 3))])), data.oMi[6].rotation
+
+
+def solutions_of_eaik(
+    oracle: tuple[HPRobot, Array], robot: Robot, point: Array, direction: Array, roll: float
+) -> Array:
+    """Joints 1 to 5 of EAIK's solutions; any roll about the tool must give the same."""
+    z = direction
+    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
+    x /= np.linalg.norm(x)
+    x = np.cos(roll) * x + np.sin(roll) * np.cross(z, x)
+    eaik, at_zero = oracle
+    pose = np.eye(4)
+    pose[:3, :3] = np.column_stack([x, np.cross(z, x), z]) @ at_zero.T
+    pose[:3, 3] = point - robot.tip[2, 3] * z
+    answer = eaik.IK(pose)
+    exact = ~np.array(answer.is_LS, dtype=bool)
+    return np.array(answer.Q).reshape(-1, 6)[exact][:, :5]
+
+
+@pytest.mark.parametrize("reachable", [True, False])
+def test_same_solution_sets_as_eaik(
+    oracle: tuple[HPRobot, Array], robot: Robot, geometry: UrGeometry, reachable: bool
+) -> None:
+    random = np.random.default_rng(11)
+    if reachable:
+        poses = forward(robot, random.uniform(-np.pi, np.pi, (400, 6)))
+        points, directions = poses.tip, poses.tool_axis
+    else:
+        points = random.uniform(-1.1, 1.1, (400, 3))
+        directions = random.normal(size=(400, 3))
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    found = solve_inverse(geometry, points, directions, LOCKED)
+    counts = []
+    for row in range(len(points)):
+        ours = found[row][~np.isnan(found[row, :, 0])][:, :5]
+        theirs = solutions_of_eaik(
+            oracle, robot, points[row], directions[row], random.uniform(0, 6)
+        )
+        counts.append(len(ours))
+        assert len(ours) == len(theirs)
+        if len(ours):
+            gap = wrapped(ours[:, None] - theirs[None]).max(axis=2)
+            assert gap.min(axis=0).max() < 1e-6
+            assert gap.min(axis=1).max() < 1e-6
+    # The sample has to hold full, partial and (where it may) empty sets.
+    assert {2, 4, 8} <= set(counts) and (reachable or 0 in counts)
+
+
+@given(
+    st.lists(st.floats(-3.1, 3.1), min_size=5, max_size=5).filter(
+        lambda q: abs(np.sin(q[4])) > 1e-3 and abs(np.sin(q[2])) > 1e-3
+    )
+)
+@settings(deadline=None)
+def test_every_configuration_is_among_the_solutions_of_its_pose(
+    robot: Robot, geometry: UrGeometry, five: list[float]
+) -> None:
+    q = np.array([*five, LOCKED])
+    poses = forward(robot, q[None])
+    found = solve_inverse(geometry, poses.tip, poses.tool_axis, LOCKED)[0]
+    # At a straight shoulder both branches meet, and half of the digits are lost.
+    assert np.nanmin(np.where(np.isnan(found), np.inf, wrapped(found - q)).max(axis=1)) < 1e-5
+
+
+def test_all_solutions_reach_the_pose(robot: Robot, geometry: UrGeometry) -> None:
+    poses = forward(robot, np.random.default_rng(3).uniform(-np.pi, np.pi, (500, 6)))
+    found = solve_inverse(geometry, poses.tip, poses.tool_axis, LOCKED)
+    rows, branches = np.nonzero(~np.isnan(found[:, :, 0]))
+    assert len(rows) > 3000
+    reached = forward(robot, found[rows, branches])
+    assert np.allclose(reached.tip, poses.tip[rows], atol=1e-9)
+    assert np.allclose(reached.tool_axis, poses.tool_axis[rows], atol=1e-9)
+    assert (found[rows, branches, 5] == LOCKED).all()
+
+
+def test_branch_names_mean_what_they_say(robot: Robot, geometry: UrGeometry) -> None:
+    # Tool down on points in front of the robot, where all eight branches exist.
+    random = np.random.default_rng(8)
+    turn, out = random.uniform(-np.pi, np.pi, 50), random.uniform(0.35, 0.5, 50)
+    points = np.column_stack([out * np.cos(turn), out * np.sin(turn), random.uniform(0, 0.2, 50)])
+    found = solve_inverse(geometry, points, np.tile([0.0, 0.0, -1.0], (50, 1)), LOCKED)
+    assert not np.isnan(found).any()
+    for branch, name in enumerate(BRANCHES):
+        poses = forward(robot, found[:, branch])
+        shoulder, elbow, wrist = (poses.origin[:, frame] for frame in (2, 3, 5))
+        # The upper arm's middle line runs beside the base axis: seen from above, left of the
+        # way out to the wrist or right of it.
+        beside = poses.rotation[:, 2, :, 2] * 0.13585
+        left = wrist[:, 0] * beside[:, 1] - wrist[:, 1] * beside[:, 0] > 0
+        assert (left == ("shoulder-left" in name)).all()
+        # Above the straight line from shoulder to wrist 1, or below it.
+        chord = poses.origin[:, 4] - shoulder
+        share = ((elbow - shoulder) * chord).sum(1) / (chord * chord).sum(1)
+        above = elbow[:, 2] > (shoulder + share[:, None] * chord)[:, 2]
+        assert (above == ("elbow-up" in name)).all()
+        assert ((found[:, branch, 4] < 0) == ("wrist-flipped" in name)).all()
+
+
+def test_out_of_reach_is_nan(geometry: UrGeometry) -> None:
+    down = np.array([[0.0, 0.0, -1.0]])
+    assert np.isnan(solve_inverse(geometry, np.array([[2.0, 0, 0]]), down, LOCKED)).all()
+    # On the base axis the wrist cannot keep its distance from it.
+    assert np.isnan(solve_inverse(geometry, np.array([[0.0, 0, 0.5]]), down, LOCKED)).all()
+
+
+@given(
+    signs=st.lists(st.sampled_from([1, -1]), min_size=6, max_size=6),
+    turns=st.lists(st.floats(-3, 3), min_size=6, max_size=6),
+    seed=st.integers(0, 2**32 - 1),
+)
+@settings(deadline=None, max_examples=25)
+def test_frames_of_another_urdf_do_not_matter(
+    tmp_path_factory: pytest.TempPathFactory, signs: list[int], turns: list[float], seed: int
+) -> None:
+    # The same arm with reversed axes, shifted zeros and other link lengths.
+    random = np.random.default_rng(seed)
+    d1, a2, a3, d4, d5, d6 = random.uniform(0.05, 0.5, 6) * [1, -1, -1, 1, 1, 1]
+    half = np.pi / 2
+    origins = [
+        (0, 0, d1, 0, 0),
+        (0, 0, 0, half, 0),
+        (a2, 0, 0, 0, 0),
+        (a3, 0, d4, 0, 0),
+        (0, -d5, 0, half, 0),
+        (0, d6, 0, -half, 0),
+    ]
+    joints = [
+        f'<link name="l{i}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1"'
+        f' iyz="0" izz="1"/></inertial></link><joint name="j{i}" type="revolute">'
+        f'<parent link="l{i - 1}"/><child link="l{i}"/>'
+        f'<origin xyz="{x} {y} {z}" rpy="{roll} {pitch} {turn}"/><axis xyz="0 0 {sign}"/>'
+        f'<limit lower="-4" upper="4" velocity="1" effort="1"/></joint>'
+        for i, ((x, y, z, roll, pitch), sign, turn) in enumerate(
+            zip(origins, signs, [turns[0], 0, turns[2], turns[3], 0, 0], strict=True), 1
+        )
+    ]
+    file = tmp_path_factory.mktemp("arm") / "arm.urdf"
+    file.write_text(f'<robot name="arm"><link name="l0"/>{"".join(joints)}</robot>')
+    arm = load_robot(file, "l6", ROBOTS / "polishing_tool.urdf", "tool_tip")
+    q = random.uniform(-np.pi, np.pi, (40, 6))
+    poses = forward(arm, q)
+    found = solve_inverse(ur_geometry(arm), poses.tip, poses.tool_axis, LOCKED)
+    q[:, 5] = LOCKED
+    near = np.where(np.isnan(found), np.inf, wrapped(found - q[:, None])).max(axis=2).min(axis=1)
+    assert near.max() < 1e-4
+    solved = ~np.isnan(found[:, :, 0])
+    assert np.allclose(forward(arm, found[solved]).tip, poses.tip[np.nonzero(solved)[0]], atol=1e-8)

@@ -1,0 +1,174 @@
+"""The URDF files, their reading, and the faults that other readers swallow."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shipped import ROBOTS
+
+from cellcolor.errors import InputError
+from cellcolor.frontend.robot import Robot, load_robot
+from cellcolor.frontend.ur import UrGeometry, ur_geometry
+from cellcolor.frontend.urdf import load_urdf
+
+ARM, TOOL = "ur5.urdf", "polishing_tool.urdf"
+
+
+def load(folder: Path) -> Robot:
+    return load_robot(folder / ARM, "wrist_3_link", folder / TOOL, "tool_tip")
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[..., Path]:
+    """Both files copied, one with a pattern replaced."""
+
+    def write(name: str, pattern: str, replacement: str, count: int = 1) -> Path:
+        for file in (ARM, TOOL):
+            text = (ROBOTS / file).read_text()
+            if file == name:
+                text, found = re.subn(pattern, replacement, text, count=count, flags=re.DOTALL)
+                assert found
+            (tmp_path / file).write_text(text)
+        return tmp_path
+
+    return write
+
+
+def test_constants_are_the_published_ones(geometry: UrGeometry) -> None:
+    # Universal Robots, "DH parameters for calculations of kinematics and dynamics", UR5.
+    found = (geometry.a2, geometry.a3, geometry.d4, geometry.d5, geometry.shoulder[2])
+    assert np.allclose(found, (-0.425, -0.39225, 0.10915, 0.09465, 0.089159), atol=1e-12)
+    assert geometry.reach == pytest.approx(0.0823 + 0.10, abs=1e-12)
+
+
+def test_masses_and_limits_are_the_published_ones(robot: Robot) -> None:
+    tool = 0.5
+    published = [3.7, 8.393, 2.33, 1.219, 1.219, 0.1879 + tool]
+    assert np.allclose(robot.mass, published, atol=1e-12)
+    assert robot.effort.tolist() == [150, 150, 150, 28, 28, 28]
+    assert np.allclose(robot.upper, 2 * np.pi) and np.allclose(robot.lower, -2 * np.pi)
+
+
+def test_zero_pose_is_the_denavit_hartenberg_one_turned_by_pi(robot: Robot) -> None:
+    # Product of the six textbook transforms at zero, base turned by pi about z, tool along z6.
+    def transform(d: float, a: float, alpha: float) -> np.ndarray:
+        c, s = np.cos(alpha), np.sin(alpha)
+        return np.array([[1, 0, 0, a], [0, c, -s, 0], [0, s, c, d], [0, 0, 0, 1.0]])
+
+    table = [
+        (0.089159, 0, np.pi / 2),
+        (0, -0.425, 0),
+        (0, -0.39225, 0),
+        (0.10915, 0, np.pi / 2),
+        (0.09465, 0, -np.pi / 2),
+        (0.0823 + 0.1, 0, 0),
+    ]
+    expected = np.diag([-1.0, -1.0, 1.0, 1.0])
+    for row in table:
+        expected = expected @ transform(*row)
+    chain = np.eye(4)
+    for placement in robot.placement:
+        chain = chain @ placement
+    assert np.allclose(chain @ robot.tip, expected, atol=1e-12)
+
+
+def test_every_shape_collides(robot: Robot) -> None:
+    shapes = sum(load_urdf(ROBOTS / file).shapes[link] for file, link in _solid_links())
+    assert robot.geometry.ngeoms == shapes == 6 * 3 + 1 + 1
+    kinds = [(body.link, body.flat) for body in robot.bodies]
+    assert len(kinds) == 8
+    assert [link for link, flat in kinds if flat] == ["wrist_3_link", "tool_body"]
+
+
+def _solid_links() -> list[tuple[str, str]]:
+    return [(file, link) for file in (ARM, TOOL) for link in load_urdf(ROBOTS / file).shapes]
+
+
+def test_neighbors_are_not_tested_against_each_other(robot: Robot) -> None:
+    names = [{robot.bodies[i].link, robot.bodies[j].link} for i, j in robot.tested_pairs]
+    assert len(names) == 8 * 7 / 2 - 7
+    assert {"forearm_link", "upper_arm_link"} not in names
+    assert {"wrist_3_link", "tool_body"} not in names
+    assert {"wrist_2_link", "tool_body"} in names
+
+
+@pytest.mark.parametrize(
+    ("file", "pattern", "replacement", "field", "message"),
+    [
+        (ARM, r"<limit [^>]*/>", "", "joint[shoulder_pan_joint].limit", "'lower' is missing"),
+        (ARM, r'lower="[^"]*" ', "", "joint[shoulder_pan_joint].limit", "'lower' is missing"),
+        (ARM, r'effort="150"', 'effort="0"', "joint[shoulder_pan_joint].limit.effort", "positive"),
+        (ARM, r'upper="[^"]*"', 'upper="-7"', "joint[shoulder_pan_joint].limit", "not below"),
+        (ARM, r'upper="[^"]*"', 'upper="nan"', "joint[shoulder_pan_joint].limit.upper", "finite"),
+        (ARM, r"<inertial>.*?</inertial>", "", "link[base_link].inertial", "weigh nothing"),
+        (ARM, r'<mass value="4.0"/>', "", "link[base_link].inertial.mass", "missing"),
+        (ARM, r'<mass value="4.0"/>', '<mass value="-1"/>', "link[base_link].inertial.mass", "pos"),
+        (ARM, r"<cylinder ", "<capsule ", "link[base_link].collision[0]", "<capsule>"),
+        (ARM, r'radius="0.065"', 'radius="0"', "link[base_link].collision[0].radius", "positive"),
+        (ARM, r'radius="0.065"', 'radius="x"', "link[base_link].collision[0].radius", "a number"),
+        (ARM, r'type="revolute"', 'type="continuous"', "joint[shoulder_pan_joint].type", "contin"),
+        (ARM, r'type="revolute"', 'type="prismatic"', "joint[shoulder_pan_joint].type", "prism"),
+        (ARM, r'<axis xyz="0 0 1"', '<axis xyz="0 0 2"', "joint[shoulder_pan_joint].axis", "len"),
+        (ARM, r'<parent link="base_link"', '<parent link="bass"',
+         "joint[shoulder_pan_joint].parent", "'bass'"),
+        (ARM, r'xyz="0 0 0.089159"', 'xyz="0 0"', "joint[shoulder_pan_joint].origin.xyz", "three"),
+        (ARM, r"</robot>", "<link name='base_link'/></robot>", "link[base_link]", "twice"),
+        (ARM, r"</robot>", "<link name='alone'/></robot>", "robot", "one root link"),
+        (ARM, r"</robot>", "", "", "not XML"),
+        (ARM, r'"wrist_3_link"', '"hand"', "link[wrist_3_link]", "flange"),
+        (ARM, r'(name="wrist_3_joint" type=)"revolute"', r'\1"fixed"', "robot", "six|6 revolute"),
+        (TOOL, r'"tool_tip"', '"point"', "link[tool_tip]", "tip link"),
+        (TOOL, r'"tool_body"', '"forearm_link"', "link[forearm_link]", "that name too"),
+    ],
+)  # fmt: skip
+def test_faults_are_named(
+    written: Callable[..., Path],
+    file: str,
+    pattern: str,
+    replacement: str,
+    field: str,
+    message: str,
+) -> None:
+    everywhere = replacement in ('"hand"', '"point"', '"forearm_link"')
+    folder = written(file, pattern, replacement, count=0 if everywhere else 1)
+    with pytest.raises(InputError, match=message) as caught:
+        load(folder)
+    assert caught.value.file == str(folder / file)
+    assert (caught.value.field or "") == field
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No such file") as caught:
+        load_urdf(tmp_path / "none.urdf")
+    assert caught.value.file == str(tmp_path / "none.urdf")
+
+
+@pytest.mark.parametrize(
+    ("joint", "pattern", "replacement", "message"),
+    [
+        ("elbow_joint", '"-0.425 0 0" rpy="0 0 0"', '"-0.425 0 0" rpy="0.1 0 0"', "parallel"),
+        ("wrist_2_joint", 'xyz="0 -0.09465 0"', 'xyz="0.01 -0.09465 0"', "meet"),
+        ("wrist_2_joint", '0 -0.09465 0" rpy="1.5', '0 -0.09465 0" rpy="1.4', "right angles"),
+        ("shoulder_lift_joint", 'xyz="0 0 0" rpy="1.5', 'xyz="0.02 0 0" rpy="1.5', "meet"),
+        ("elbow_joint", 'xyz="-0.425 0 0"', 'xyz="0 0 0.1"', "a2 is zero"),
+    ],
+)  # fmt: skip
+def test_other_arms_are_refused(
+    written: Callable[..., Path], joint: str, pattern: str, replacement: str, message: str
+) -> None:
+    folder = written(ARM, re.escape(pattern), replacement)
+    with pytest.raises(InputError, match=message) as caught:
+        ur_geometry(load(folder))
+    assert caught.value.field == f"joint[{joint}]"
+    assert "not a UR-type arm" in caught.value.message
+
+
+def test_tool_off_the_axis_is_refused(written: Callable[..., Path]) -> None:
+    folder = written(TOOL, r'<origin xyz="0 0 0.1"/>', '<origin xyz="0.01 0 0.1"/>')
+    with pytest.raises(InputError, match="must lie on this joint's axis"):
+        ur_geometry(load(folder))
