@@ -5,8 +5,10 @@ from __future__ import annotations
 import json
 import os
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TextIO, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -47,18 +49,27 @@ def parse_json(text: str) -> dict[str, Any]:
     return document
 
 
+def read_text(path: Path) -> str:
+    """A file's text.
+
+    Raises:
+        InputError: the file is missing, unreadable or not UTF-8.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(str(path), None, "not UTF-8 text") from error
+    except OSError as error:
+        raise InputError(str(path), None, error.strerror or "cannot be read") from error
+
+
 def read_document(path: Path) -> dict[str, Any]:
     """The JSON object in a file.
 
     Raises:
         InputError: the file is missing, unreadable, not UTF-8 or not a JSON object.
     """
-    try:
-        text = path.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise InputError(str(path), None, "not UTF-8 text") from error
-    except OSError as error:
-        raise InputError(str(path), None, error.strerror or "cannot be read") from error
+    text = read_text(path)
     try:
         return parse_json(text)
     except InputError as error:
@@ -98,7 +109,8 @@ def field_name(location: tuple[int | str, ...]) -> str:
     return text
 
 
-def write_text(path: Path, text: str) -> None:
+@contextmanager
+def replacing(path: Path) -> Iterator[TextIO]:
     """Write a whole file or nothing: to a temporary name beside it, then rename.
 
     Raises:
@@ -110,7 +122,7 @@ def write_text(path: Path, text: str) -> None:
         raise InputError(str(path), None, error.strerror or "cannot be written") from error
     try:
         with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            stream.write(text)
+            yield stream
         # mkstemp makes private files; what is written here is meant to be read by others.
         umask = os.umask(0)
         os.umask(umask)
@@ -122,6 +134,12 @@ def write_text(path: Path, text: str) -> None:
     except BaseException:
         Path(temporary).unlink(missing_ok=True)
         raise
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a whole file or nothing; see :func:`replacing`."""
+    with replacing(path) as stream:
+        stream.write(text)
 
 
 def dump_lines(document: dict[str, Any], one_per_line: frozenset[str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import Ge
 from pydantic import ConfigDict, Field, TypeAdapter
 
-from cellcolor.data.files import dump_lines, read_document, take_body, validate
+from cellcolor.data.files import dump_lines, parse_json, read_text, take_body, validate
 from cellcolor.errors import InputError
 
 FORMAT = "cellcolor/solution"
@@ -198,13 +198,55 @@ class Solution:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
+        text = read_text(path)
+        head = text.partition("\n")[0]
         try:
-            return cls.from_document(read_document(path))
+            return cls.from_document(parse_json(head if _is_json(head) else text))
         except InputError as error:
             raise error.in_file(str(path)) from error
 
 
 _ADAPTER = TypeAdapter(Solution)
+
+
+def read_schemes(path: Path) -> Iterator[Division]:
+    """The schemes that follow the solution in a file of JSON Lines; none in any other file.
+
+    Raises:
+        InputError: a line is not a scheme; the field names the line.
+    """
+    head, _, rest = read_text(path).partition("\n")
+    if not _is_json(head):
+        return
+    for number, line in enumerate(rest.splitlines(), start=2):
+        try:
+            body = parse_json(line)
+            if body.pop("format", None) != SCHEME_FORMAT:
+                raise InputError(None, "format", f"must be {SCHEME_FORMAT!r}")
+            yield validate(_SCHEME_ADAPTER, body).cells
+        except InputError as error:
+            field = f"line {number}" + (f", {error.field}" if error.field else "")
+            raise InputError(str(path), field, error.message) from error
+
+
+@dataclass(frozen=True, slots=True)
+class _SchemeLine:
+    """One line of JSON Lines after the solution."""
+
+    __pydantic_config__ = _STRICT
+
+    cells: Division
+
+
+_SCHEME_ADAPTER = TypeAdapter(_SchemeLine)
+
+
+def _is_json(line: str) -> bool:
+    try:
+        json.loads(line)
+    except (json.JSONDecodeError, RecursionError):
+        return False
+    return True
 
 
 def division_document(division: Division) -> list[dict[str, Any]]:
