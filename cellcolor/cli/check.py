@@ -1,0 +1,104 @@
+"""``cellcolor check``: a solution against its instance, a plan against its labelled surface."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from cellcolor.check.solution import check_division, check_solution
+from cellcolor.cli.exits import Exit
+from cellcolor.cli.inputs import read_graph
+from cellcolor.data.instance import Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.errors import InputError
+
+
+def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) -> Exit:
+    """Say whether a claim is valid, and what its numbers are."""
+    graph = read_graph(subject)
+    if isinstance(graph, Instance):
+        verdict = _check_solution(graph, claim)
+    else:
+        verdict = _check_plan(graph, subject, claim, time_limit)
+    if as_json:
+        print(json.dumps({"file": str(claim)} | verdict, ensure_ascii=False))
+    else:
+        _print(claim, verdict)
+    return Exit.DONE if verdict["valid"] else Exit.INVALID
+
+
+def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
+    solution = Solution.read(claim)
+    report = check_solution(instance, solution)
+    problems = list(report.problems)
+    keys: set[SchemeKey] = set()
+    count = 0
+    for count, division in enumerate(read_schemes(claim), start=1):
+        scheme = check_division(instance, division)
+        faults = [*scheme.problems, *scheme.not_canonical]
+        if not faults and scheme.segments != solution.segments:
+            faults.append(f"has {scheme.segments} segments, the solution {solution.segments}")
+        key = scheme_key(division)
+        if key in keys:
+            faults.append("the same scheme stands in an earlier line")
+        keys.add(key)
+        problems += [f"scheme {count}: {fault}" for fault in faults]
+    # A solution alone may count schemes that it does not list; a list has to be whole.
+    if count and count != solution.schemes:
+        problems.append(f"schemes: says {solution.schemes}, {count} follow")
+    verdict: dict[str, Any] = {
+        "valid": not problems,
+        "problems": problems,
+        "segments": report.segments,
+        "lift_offs": None if report.segments is None else max(0, report.segments - 1),
+        "status": solution.status,
+    }
+    return verdict | ({"schemes": count} if count else {})
+
+
+def _check_plan(
+    surface: LabelledSurface, subject: Path, claim: Path, time_limit: float
+) -> dict[str, Any]:
+    from cellcolor.oracle import judge
+
+    plan = Plan.read(claim)
+    try:
+        verdict = judge(surface, plan, time_limit=time_limit)
+    except InputError as error:
+        raise error.in_file(str(subject)) from error
+    bounds = verdict.bounds
+    return {
+        "valid": verdict.valid,
+        "problems": list(verdict.problems),
+        "segments": verdict.segments,
+        "lift_offs": verdict.lift_offs,
+        "lower_bound": None if bounds is None else bounds.lower,
+        "upper_bound": None if bounds is None else bounds.upper,
+        "optimal": verdict.optimal,
+        "beatable_by": verdict.beatable_by,
+    }
+
+
+def _print(claim: Path, verdict: dict[str, Any]) -> None:
+    print(f"{claim}: {'valid' if verdict['valid'] else 'not valid'}")
+    for problem in verdict["problems"]:
+        print(f"  {problem}")
+    if verdict["segments"] is not None:
+        print(f"  {verdict['segments']} segments, {verdict['lift_offs']} lift-offs")
+    if "status" in verdict:
+        print(f"  status {verdict['status']}")
+    if "schemes" in verdict:
+        print(f"  {verdict['schemes']} schemes")
+    if verdict.get("lower_bound") is not None:
+        lower, upper = verdict["lower_bound"], verdict["upper_bound"]
+        least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"
+        print(f"  fewest segments on this surface: {least}")
+        if verdict["optimal"]:
+            print("  optimal")
+        elif verdict["beatable_by"]:
+            print(f"  {verdict['beatable_by']} fewer are enough")
+        else:
+            print("  not known to be optimal, not known to be beatable")

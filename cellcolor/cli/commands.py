@@ -1,0 +1,147 @@
+"""The commands and their options. What they do is imported only when one of them runs."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import click
+
+import cellcolor as package
+
+
+class _Seconds(click.FloatRange):
+    """A positive, finite number of seconds."""
+
+    def __init__(self) -> None:
+        super().__init__(min=0, min_open=True)
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        seconds = float(super().convert(value, param, ctx))
+        if not math.isfinite(seconds):
+            self.fail(f"{value} is not a number of seconds.", param, ctx)
+        return seconds
+
+
+_PATH = click.Path(path_type=Path)
+_SECONDS = _Seconds()
+
+
+@click.group(name="cellcolor", invoke_without_command=True)
+@click.version_option(package.__version__, message="%(prog)s %(version)s")
+@click.pass_context
+def cellcolor(context: click.Context) -> None:
+    """The fewest lift-offs of a robot arm over a surface, with a proof."""
+    if context.invoked_subcommand is None:
+        raise click.UsageError("no command given; see cellcolor --help", context)
+
+
+@cellcolor.command()
+@click.argument("source", metavar="SCENE.toml|SURFACE.json", type=_PATH)
+@click.option("-o", "--output", metavar="INSTANCE.json", required=True, type=_PATH)
+def build(source: Path, output: Path) -> int:
+    """Make the topological graph of a robot scene or of a labelled surface.
+
+    For a scene the labelled surface is written as well, beside the instance.
+    """
+    from cellcolor.cli.build import build_instance
+
+    return build_instance(source, output)
+
+
+@cellcolor.command()
+@click.argument("files", metavar="FILE…", nargs=-1, required=True, type=_PATH)
+@click.option(
+    "-o", "--output", metavar="OUT", type=_PATH, help="A file for one input, a folder for several."
+)
+@click.option("--solver", type=click.Choice(["cp-sat", "dfs"]), default="cp-sat", show_default=True)
+@click.option(
+    "--search-space",
+    type=click.Choice(["paper", "surface"]),
+    default="paper",
+    show_default=True,
+    help="surface: any division of the physical surface.",
+)
+@click.option(
+    "--strands",
+    metavar="K",
+    type=click.IntRange(min=1),
+    help="Corridors that may cross an edge, in search space surface.  [default: 2]",
+)
+@click.option("--all", "every", is_flag=True, help="All optimal schemes.")
+@click.option("--limit", metavar="N", type=click.IntRange(min=1), help="No more schemes than that.")
+@click.option("--time-limit", metavar="S", type=_SECONDS, help="Seconds for each file.")
+@click.option("--workers", metavar="N", type=click.IntRange(min=1), help="CP-SAT's search workers.")
+@click.option("--seed", metavar="N", type=click.IntRange(0, 2**31 - 1), default=0)
+@click.option("--json", "as_json", is_flag=True, help="JSON Lines, one solution a file.")
+def solve(
+    files: tuple[Path, ...],
+    output: Path | None,
+    solver: str,
+    search_space: str,
+    strands: int | None,
+    every: bool,
+    limit: int | None,
+    time_limit: float | None,
+    workers: int | None,
+    seed: int,
+    as_json: bool,
+) -> int:
+    """Find the fewest segments of instances, labelled surfaces and scenes."""
+    if strands is not None and search_space == "paper":
+        raise click.UsageError("--strands goes with --search-space surface")
+    if limit is not None and not every:
+        raise click.UsageError("--limit goes with --all")
+    if every and search_space == "surface":
+        raise click.UsageError("--all goes with --search-space paper: schemes are defined there")
+
+    from cellcolor.cli.solve import Request, solve_files
+    from cellcolor.solvers.interface import Options
+
+    options = Options(
+        "surface" if search_space == "surface" else "paper",
+        (2 if strands is None else strands) if search_space == "surface" else 1,
+        time_limit,
+        workers,
+        seed,
+    )
+    return solve_files(Request(files, output, solver, options, every, limit, as_json))
+
+
+@cellcolor.command()
+@click.argument("subject", metavar="INSTANCE.json|SURFACE.json", type=_PATH)
+@click.argument("claim", metavar="SOLUTION.json|PLAN.json", type=_PATH)
+@click.option(
+    "--time-limit",
+    metavar="S",
+    type=_SECONDS,
+    default=60.0,
+    show_default=True,
+    help="Seconds for the proven range that a plan is compared with.",
+)
+@click.option("--json", "as_json", is_flag=True, help="One JSON object.")
+def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
+    """Check a solution against its instance, or a plan against its labelled surface."""
+    from cellcolor.cli.check import check_files
+
+    return check_files(subject, claim, time_limit, as_json)
+
+
+@cellcolor.command()
+@click.argument("files", metavar="FILE…", nargs=-1, required=True, type=_PATH)
+@click.option(
+    "--time-limit",
+    metavar="S",
+    type=_SECONDS,
+    default=60.0,
+    show_default=True,
+    help="Seconds for each solve.",
+)
+def bench(files: tuple[Path, ...], time_limit: float) -> int:
+    """Compare the reference solver with CP-SAT, one after the other, each on its own."""
+    from cellcolor.cli.bench import bench_files
+
+    return bench_files(files, time_limit)

@@ -1,0 +1,187 @@
+"""``cellcolor solve``: the fewest segments of each file."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO
+
+import click
+
+from cellcolor.cli.exits import Exit, worst
+from cellcolor.cli.inputs import read_instance
+from cellcolor.cli.progress import progress_of
+from cellcolor.cli.tables import print_overview, print_solution
+from cellcolor.data.files import replacing, write_text
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Solution, scheme_line
+from cellcolor.errors import CellcolorError, InputError
+from cellcolor.solvers.interface import Options, OutOfTime
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What the command line asked for.
+
+    Attributes:
+        files: what to solve.
+        output: a file, or a folder for several inputs; None writes nothing.
+        solver: the solver's name.
+        options: how to solve.
+        every: all optimal schemes.
+        limit: no more schemes than that.
+        as_json: JSON Lines instead of tables.
+    """
+
+    files: tuple[Path, ...]
+    output: Path | None
+    solver: str
+    options: Options
+    every: bool
+    limit: int | None
+    as_json: bool
+
+
+def solve_files(request: Request) -> Exit:
+    """Solve every file; a bad one does not stop the others."""
+    targets = _targets(request)
+    codes: list[Exit] = []
+    solved: list[tuple[Path, Instance, Solution]] = []
+    for file, target in zip(request.files, targets, strict=True):
+        try:
+            instance = read_instance(file)
+            solution = _solve(instance, file, target, request)
+        except CellcolorError as error:
+            named = error if isinstance(error, InputError) and error.file else f"{file}: {error}"
+            print(f"cellcolor: {named}", file=sys.stderr)
+            if request.as_json:
+                _print_json({"file": str(file), "error": str(named)})
+            codes.append(Exit.BAD_INPUT)
+            continue
+        if request.as_json:
+            _print_json({"file": str(file)} | solution.to_document())
+        else:
+            print_solution(instance, solution)
+        solved.append((file, instance, solution))
+        done = solution.status == "optimal" and solution.complete is not False
+        codes.append(Exit.DONE if done else Exit.STOPPED)
+    if len(request.files) > 1 and not request.as_json:
+        print_overview(solved)
+    return worst(codes)
+
+
+def _print_json(document: dict[str, object]) -> None:
+    print(json.dumps(document, ensure_ascii=False), flush=True)
+
+
+def _targets(request: Request) -> list[Path | None]:
+    """Where each input's solution goes; refuses what could lose a file."""
+    output = request.output
+    if output is None:
+        return [None] * len(request.files)
+    if len(request.files) == 1 and not output.is_dir():
+        if not output.parent.is_dir():
+            raise InputError(str(output), None, "its folder does not exist")
+        targets = [output]
+    else:
+        if output.exists() and not output.is_dir():
+            raise InputError(str(output), None, "must be a folder for several inputs")
+        suffix = ".solution.jsonl" if request.every else ".solution.json"
+        targets = [output / (file.stem + suffix) for file in request.files]
+    inputs = {file.resolve() for file in request.files}
+    for number, target in enumerate(targets):
+        if target.resolve() in inputs:
+            raise InputError(str(target), None, "is an input; -o would overwrite it")
+        if target in targets[:number]:
+            other = request.files[targets.index(target)]
+            raise click.UsageError(f"{other} and {request.files[number]} would both go to {target}")
+    return list(targets)
+
+
+def _solve(instance: Instance, file: Path, target: Path | None, request: Request) -> Solution:
+    """Solve one instance and write what was found."""
+    from cellcolor.solvers.run import solve
+
+    if request.every:
+        _refuse_schemes(instance)
+    started = time.monotonic()
+    with progress_of(file) as report:
+        solution = solve(instance, request.options, request.solver, report)
+    if not request.every:
+        if target is not None:
+            target.parent.mkdir(parents=True, exist_ok=True)
+            write_text(target, solution.to_json())
+        return solution
+    spent = time.monotonic() - started
+    with _spool(target) as spool:
+        solution = _with_schemes(instance, solution, spent, request, spool)
+        if target is not None and spool is not None:
+            spool.seek(0)
+            with replacing(target) as stream:
+                stream.write(json.dumps(solution.to_document(), ensure_ascii=False) + "\n")
+                shutil.copyfileobj(spool, stream)
+    return solution
+
+
+def _refuse_schemes(instance: Instance) -> None:
+    for cell in instance.cells:
+        live = sum(any(map(instance.joinable, loop)) for loop in cell.loops)
+        if live > 1:
+            raise InputError(
+                None,
+                f"cells[{cell.id}].loops",
+                f"--all needs cells with one live loop, this one has {live}",
+            )
+
+
+@contextmanager
+def _spool(target: Path | None) -> Iterator[IO[str] | None]:
+    """A file beside the target, where schemes wait for the solution that goes before them."""
+    if target is None:
+        yield None
+        return
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        spool = tempfile.NamedTemporaryFile(  # noqa: SIM115
+            "w+", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.schemes."
+        )
+    except OSError as error:
+        raise InputError(str(target), None, error.strerror or "cannot be written") from error
+    with spool as stream:
+        yield stream.file
+
+
+def _with_schemes(
+    instance: Instance, solution: Solution, spent: float, request: Request, spool: IO[str] | None
+) -> Solution:
+    """The solution with all optimal schemes counted, each written as soon as it is found."""
+    from cellcolor.solvers.run import enumerate_schemes
+
+    if solution.status != "optimal" or solution.segments is None:
+        return replace(solution, schemes=0, complete=False)
+    options = request.options
+    if options.time_limit is not None:
+        # A limit of 0 is not one that solvers know: leave them a moment to notice.
+        options = replace(options, time_limit=max(options.time_limit - spent, 0.001))
+    started = time.monotonic()
+    count, complete = 0, True
+    try:
+        for division in enumerate_schemes(instance, options, request.solver, solution.segments):
+            if count == request.limit:
+                complete = False
+                break
+            count += 1
+            if spool is not None:
+                spool.write(scheme_line(division) + "\n")
+                spool.flush()
+    except (OutOfTime, KeyboardInterrupt):
+        complete = False
+    seconds = solution.seconds + time.monotonic() - started
+    return replace(solution, schemes=count, complete=complete, seconds=seconds)

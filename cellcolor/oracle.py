@@ -1,0 +1,177 @@
+"""An oracle for the test suites of other coverage planners.
+
+A planner that paints every vertex of a labelled surface in one of its colors cannot have fewer
+segments than the surface allows. :func:`proven_range` says how few that is, and :func:`judge`
+holds a plan against it::
+
+    surface = LabelledSurface.read(Path("part.surface.json"))
+    verdict = judge(surface, Plan(tuple(my_planner(surface))))
+    assert verdict.valid, verdict.problems
+    assert verdict.segments <= verdict.bounds.upper
+
+Everything here is in the search space ``surface`` (any division of the physical surface,
+docs/semantics.md, section 4): a bound of the search space ``paper`` may be beaten by a plan.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from cellcolor.check.plan import check_plan
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import SearchSpace
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.errors import CellcolorError
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.run import solve
+
+__all__ = ["Contradiction", "ProvenRange", "Verdict", "judge", "proven_range"]
+
+
+class Contradiction(CellcolorError):
+    """A valid plan has fewer segments than the proven lower bound: cellcolor itself is wrong.
+
+    Attributes:
+        segments: of the plan.
+        lower: the bound it beats.
+    """
+
+    def __init__(self, name: str, segments: int, lower: int) -> None:
+        self.segments = segments
+        self.lower = lower
+        super().__init__(
+            f"internal contradiction: a valid plan on {name!r} has {segments} segments, fewer "
+            f"than the proven lower bound of {lower}; please report this surface and plan"
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ProvenRange:
+    """Between what the fewest segments of a surface lie, both ends included.
+
+    Attributes:
+        lower: no division of the surface has fewer segments.
+        upper: a division with that many segments exists, and the checker has passed it.
+    """
+
+    lower: int
+    upper: int
+
+    @property
+    def exact(self) -> bool:
+        """The minimum is known."""
+        return self.lower == self.upper
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What is to be said about a plan.
+
+    Attributes:
+        problems: why the plan is not valid, each naming its vertex; none when it is.
+        segments: of the plan; None when it is not valid.
+        bounds: the proven range; None when the plan is not valid and nothing was proved.
+    """
+
+    problems: tuple[str, ...]
+    segments: int | None
+    bounds: ProvenRange | None
+
+    @property
+    def valid(self) -> bool:
+        """Every reachable vertex has one of its colors, and no other vertex has one."""
+        return not self.problems
+
+    @property
+    def lift_offs(self) -> int | None:
+        """``max(0, segments - 1)``; None when the plan is not valid."""
+        return None if self.segments is None else max(0, self.segments - 1)
+
+    @property
+    def optimal(self) -> bool | None:
+        """True: proved to be. False: proved not to be. None: neither, or the plan is not valid."""
+        if self.segments is None or self.bounds is None:
+            return None
+        if self.segments == self.bounds.lower:
+            return True
+        return False if self.segments > self.bounds.upper else None
+
+    @property
+    def beatable_by(self) -> int | None:
+        """How many segments fewer are proved to be enough; None when the plan is not valid.
+
+        The division that proves it cuts the surface itself. On a coarse mesh it may not be
+        possible to paint it in vertices.
+        """
+        if self.segments is None or self.bounds is None:
+            return None
+        return max(0, self.segments - self.bounds.upper)
+
+
+def proven_range(
+    surface: LabelledSurface,
+    *,
+    strands: int = 2,
+    time_limit: float | None = 60.0,
+    workers: int | None = None,
+    seed: int = 0,
+) -> ProvenRange:
+    """The range that the fewest segments of a labelled surface are proved to lie in.
+
+    Args:
+        surface: the labelled surface.
+        strands: corridors that may cross one topological edge; more may lower ``upper``.
+        time_limit: seconds, None for as long as it takes; both ends hold however early it ends.
+        workers: CP-SAT's search workers, None for its portfolio.
+        seed: of everything random.
+
+    Raises:
+        InputError: a cell of the surface is not planar.
+    """
+    instance = decompose(surface)
+    # One sub-cell a cell is a division of its own, whatever the solver finds.
+    upper, lower = len(instance.cells), 0
+    deadline = None if time_limit is None else time.monotonic() + time_limit
+    # The paper's search space is the smaller one: where its optimum meets a bound for any
+    # division, there is nothing left to search.
+    spaces: tuple[tuple[SearchSpace, int], ...] = (("paper", 1), ("surface", strands))
+    for space, corridors in spaces:
+        remaining = None if deadline is None else deadline - time.monotonic()
+        if lower == upper or (remaining is not None and remaining <= 0):
+            break
+        solution = solve(instance, Options(space, corridors, remaining, workers, seed))
+        lower = max(lower, solution.surface_lower_bound)
+        if solution.segments is not None:
+            upper = min(upper, solution.segments)
+    return ProvenRange(lower, upper)
+
+
+def judge(
+    surface: LabelledSurface,
+    plan: Plan,
+    *,
+    bounds: ProvenRange | None = None,
+    time_limit: float | None = 60.0,
+) -> Verdict:
+    """The verdict on a plan: is it valid, how many segments has it, can it be beaten?
+
+    Args:
+        surface: the labelled surface that was planned on.
+        plan: one color per vertex, None exactly where the vertex has none.
+        bounds: this surface's :func:`proven_range`, if known already.
+        time_limit: seconds for finding the range otherwise.
+
+    Raises:
+        Contradiction: the plan is valid and beats the lower bound.
+        InputError: a cell of the surface is not planar.
+    """
+    report = check_plan(surface, plan)
+    if report.segments is None:
+        return Verdict(report.problems, None, bounds)
+    if bounds is None:
+        bounds = proven_range(surface, time_limit=time_limit)
+    if report.segments < bounds.lower:
+        raise Contradiction(surface.name, report.segments, bounds.lower)
+    return Verdict((), report.segments, bounds)
