@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from conftest import INSTANCES
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from isomorphism import isomorphic
+from library import INSTANCES, PAPER
 from meshes import drawn, finer, grid_faces, grid_points, octahedron, surface, surfaces, torus
 
 from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
@@ -19,7 +19,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 
-BUILT_CASES = sorted((INSTANCES / "paper").glob("*.surface.json"))
+BUILT_CASES = sorted(PAPER.glob("*.surface.json"))
 
 
 def mirrored(instance: Instance) -> Instance:
@@ -63,25 +63,25 @@ def test_counts_of_surfaces_from_elsewhere(path: Path) -> None:
 class TestIsomorphism:
     """The judge of the tests above has to notice differences."""
 
-    def test_swapped_cyclic_order(self, paper: Path) -> None:
-        hub = Instance.read(paper / "crossing-zeros.json")
+    def test_swapped_cyclic_order(self) -> None:
+        hub = Instance.read(PAPER / "crossing-zeros.json")
         (loop,) = hub.cells[0].loops
         assert isomorphic(hub, with_loops(hub, 0, loop[2:] + loop[:2]))
         swapped = (loop[2], loop[1], loop[0], *loop[3:])
         assert not isomorphic(hub, with_loops(hub, 0, swapped))
 
-    def test_flipped_loop(self, paper: Path) -> None:
-        case = Instance.read(paper / "annulus.json")
+    def test_flipped_loop(self) -> None:
+        case = Instance.read(PAPER / "annulus.json")
         outer, inner = case.cells[1].loops
         assert isomorphic(case, with_loops(case, 1, inner, outer))
         # Red, blue, green round a cell whose neighbours meet in the order red, green, blue.
-        case = Instance.read(paper / "figeasycell3.json")
+        case = Instance.read(PAPER / "figeasycell3.json")
         (loop,) = case.cells[0].loops
         assert not isomorphic(case, with_loops(case, 0, loop[::-1]))
 
-    def test_mirror_image(self, paper: Path) -> None:
+    def test_mirror_image(self) -> None:
         # Blue, green, red in counter-clockwise order is not red, green, blue.
-        case = Instance.read(paper / "figeasycell3.json")
+        case = Instance.read(PAPER / "figeasycell3.json")
         assert not isomorphic(case, mirrored(case))
 
     def test_sides_of_an_edge(self) -> None:
@@ -95,23 +95,23 @@ class TestIsomorphism:
         assert isomorphic(case, loop(3, -2, 2, 1, -1, -4, 4))
         assert not isomorphic(case, loop(3, 1, 2, -1, -2, 4, -4))
 
-    def test_colors_of_a_cell(self, paper: Path) -> None:
-        case = Instance.read(paper / "figcost-left.json")
+    def test_colors_of_a_cell(self) -> None:
+        case = Instance.read(PAPER / "figcost-left.json")
         cells = (case.cells[0], case.cells[1], replace(case.cells[2], colors=(0, 1)))
         assert not isomorphic(case, replace(case, cells=cells))
 
-    def test_joinable_colors(self, paper: Path) -> None:
-        case = Instance.read(paper / "figforcolor.json")
+    def test_joinable_colors(self) -> None:
+        case = Instance.read(PAPER / "figforcolor.json")
         edges = (replace(case.edges[0], colors=(0,)), *case.edges[1:])
         assert not isomorphic(case, replace(case, edges=edges))
 
-    def test_names_of_colors(self, paper: Path) -> None:
-        case = Instance.read(paper / "crack-partial.json")
+    def test_names_of_colors(self) -> None:
+        case = Instance.read(PAPER / "crack-partial.json")
         assert not isomorphic(case, replace(case, colors=("blue", "red")))
 
-    def test_outside(self, paper: Path) -> None:
+    def test_outside(self) -> None:
         """Two holes beside each other are not two holes apart."""
-        case = Instance.read(paper / "split-cell.json")
+        case = Instance.read(PAPER / "split-cell.json")
         (loop,) = case.cells[2].loops
         moved = tuple(dart for dart in loop if dart != -7)
         place = moved.index(-5) + 1

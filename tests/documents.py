@@ -1,0 +1,101 @@
+"""Small valid documents of every format, to be broken by tests."""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Callable
+from typing import Any
+
+Document = dict[str, Any]
+
+SURFACE: Document = {
+    "format": "cellcolor/labelled-surface",
+    "version": 1,
+    "name": "square",
+    "colors": ["red", "blue"],
+    "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
+    "faces": [[0, 1, 2], [0, 2, 3]],
+    "vertex_colors": [[0, 1], [0, 1], [0, 1], []],
+    "cracks": [[0, 2, [0]]],
+    "meta": {"made": "by hand"},
+}
+
+INSTANCE: Document = {
+    "format": "cellcolor/instance",
+    "version": 1,
+    "name": "pair",
+    "colors": ["red", "blue"],
+    "cells": [
+        {"id": 0, "colors": [0], "loops": [[1, 2]], "area": 0.5},
+        {"id": 1, "colors": [0, 1], "loops": [[-1, 3], [4, -4]]},
+    ],
+    "edges": [
+        {"id": 1, "left": 0, "right": 1, "length": 1.5},
+        {"id": 2, "left": 0, "right": -1},
+        {"id": 3, "left": 1, "right": -1},
+        {"id": 4, "left": 1, "right": 1, "colors": [0]},
+    ],
+    "meta": {"source": "by hand"},
+    "surface": {"path": "pair.surface.json", "vertex_cell": [0, 1, -1]},
+    "known": {"paper": {"segments": 1, "schemes": 1}, "surface": {"segments": 1}},
+}
+
+SOLUTION: Document = {
+    "format": "cellcolor/solution",
+    "version": 1,
+    "instance": {"name": "pair", "sha256": "0" * 64},
+    "search_space": "surface",
+    "strands": 2,
+    "solver": "cp-sat",
+    "status": "optimal",
+    "segments": 1,
+    "lift_offs": 0,
+    "lower_bound": 1,
+    "surface_lower_bound": 1,
+    "proved_for_surface": True,
+    "seams": [{"id": 5, "cell": 1, "from": 3, "to": -4, "strands": 2}],
+    "cells": [
+        {"id": 0, "subcells": [{"color": 0, "darts": [[1, 1], [1, 2]], "segment": 0}]},
+        {"id": 1, "subcells": [{"color": 0, "darts": [[-1, 2], [-1, 1]], "segment": 0}]},
+    ],
+    "seconds": 0.25,
+}
+
+PLAN: Document = {
+    "format": "cellcolor/plan",
+    "version": 1,
+    "vertex_colors": [0, 0, 1, None],
+}
+
+Change = Callable[[Document], None]
+
+
+def broken(document: Document, change: Change) -> Document:
+    """A copy with one change made to it."""
+    changed = copy.deepcopy(document)
+    change(changed)
+    return changed
+
+
+def put(*path: str | int, to: Any) -> Change:
+    """Set one element, or add it."""
+
+    def change(document: Document) -> None:
+        place: Any = document
+        for step in path[:-1]:
+            place = place[step]
+        place[path[-1]] = to
+
+    return change
+
+
+def drop(*path: str | int) -> Change:
+    """Remove one element."""
+
+    def change(document: Document) -> None:
+        place: Any = document
+        for step in path[:-1]:
+            place = place[step]
+        del place[path[-1]]
+
+    return change
