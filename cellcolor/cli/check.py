@@ -62,9 +62,10 @@ def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
 def _check_plan(
     surface: LabelledSurface, subject: Path, claim: Path, time_limit: float
 ) -> dict[str, Any]:
+    plan = Plan.read(claim)
+
     from cellcolor.oracle import judge
 
-    plan = Plan.read(claim)
     try:
         verdict = judge(surface, plan, time_limit=time_limit)
     except InputError as error:
