@@ -123,8 +123,8 @@ def segment_distance(p0: Array, p1: Array, q0: Array, q1: Array) -> Array:
     s = np.where(parallel, 0.0, (b * f - c * e) / np.where(parallel, 1.0, denominator))
     s = np.clip(s, 0.0, 1.0)
     t = (b * s + f) / e_safe
-    # Where t leaves the second segment, clamp it and take the best s for that.
-    s = np.where(t < 0, np.clip(-c / a_safe, 0, 1), s)
+    # Where t leaves the second segment, or that is a point, take the best s for the end.
+    s = np.where((t < 0) | (e == 0), np.clip(-c / a_safe, 0, 1), s)
     s = np.where(t > 1, np.clip((b - c) / a_safe, 0, 1), s)
     t = np.clip(t, 0.0, 1.0)
     gap = r + s[:, None] * d1 - t[:, None] * d2

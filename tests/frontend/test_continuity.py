@@ -1,0 +1,239 @@
+"""Colors and cracks: by hand, and by following the surface with Pinocchio's Jacobian."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from shipped import ROBOTS, WOK, edited
+
+from cellcolor.data.surface import Crack
+from cellcolor.errors import InputError
+from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend.continuity import color, find_cracks, joint_step, link, node_links
+from cellcolor.frontend.robot import Array, Robot
+from cellcolor.frontend.scene import Continuity
+from cellcolor.frontend.surfaces import Surface, disc_mesh
+from cellcolor.frontend.validity import Candidates, Reason
+
+POLICY = Continuity(
+    base_step_rad=0.1,
+    step_per_length_rad_per_m=1.0,
+    near_singular_determinant_m3=0.01,
+    probe_spacing_m=0.05,
+)
+angles = st.lists(st.floats(-20, 20), min_size=6, max_size=6)
+
+
+@given(angles, angles, st.lists(st.integers(-2, 2), min_size=6, max_size=6))
+def test_joint_step_is_modulo_full_circles(
+    first: list[float], second: list[float], circles: list[int]
+) -> None:
+    a, b = np.array(first), np.array(second)
+    step = joint_step(a, b)
+    assert 0 <= step <= np.pi + 1e-9
+    assert joint_step(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
+    # On the unit circle the chord tells the same angle.
+    chord = np.abs(np.exp(1j * a) - np.exp(1j * b)).max()
+    assert 2 * np.sin(step / 2) == pytest.approx(chord, abs=1e-6)
+
+
+class Plane:
+    """A flat disc of seven vertices whose configurations are given as functions of the place."""
+
+    def __init__(self, *branches: Callable[[Array], Array], determinant: float = 1.0) -> None:
+        flat, faces = disc_mesh(7, 0.0, 0)
+        vertices = np.column_stack([flat, np.zeros(7)])
+        self.surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
+        self.edges = self.surface.edges()
+        self.branches = branches
+        every = np.arange(len(branches))
+        configurations = np.stack([self.joints(vertices, np.full(7, b)) for b in every], axis=1)
+        self.candidates = Candidates(
+            configurations,
+            np.where(np.isnan(configurations[:, :, 0]), Reason.NO_SOLUTION, Reason.VALID).astype(
+                np.uint8
+            ),
+            np.full((7, len(branches)), determinant),
+            {},
+        )
+        self.asked = 0
+
+    def joints(self, points: Array, branch: Array) -> Array:
+        first = np.array([self.branches[b](p) for p, b in zip(points, branch, strict=True)])
+        return np.column_stack([first] + [np.where(np.isnan(first), np.nan, 0.0)] * 5)
+
+    def probe(self, points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
+        self.asked += len(points)
+        q = self.joints(points, branch)
+        return q, ~np.isnan(q[:, 0])
+
+    def linked(self, policy: Continuity = POLICY) -> Array:
+        return link(self.surface, self.edges, self.candidates, policy, self.probe)
+
+
+def test_slow_motion_is_linked_without_probing() -> None:
+    plane = Plane(lambda p: 0.3 * p[0])
+    assert plane.linked().all() and plane.asked == 0
+
+
+def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
+    plane = Plane(lambda p: 1.9 * p[0])
+    assert joint_step(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
+    assert plane.linked().all() and plane.asked > 0
+
+
+def test_jump_between_the_ends_is_not_linked() -> None:
+    plane = Plane(lambda p: 0.0 if p[0] < 0.3 else 1.5)
+    across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.3).sum(axis=1) == 1
+    assert (plane.linked()[:, 0] == ~across).all() and across.any()
+
+
+def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> None:
+    def gap(p: Array) -> float:
+        return np.nan if 0.4 < p[0] < 0.45 else 0.0
+
+    assert Plane(gap).linked().all()
+    near = Plane(gap, determinant=0.001)
+    across = (near.surface.vertices[near.edges][:, :, 0] < 0.42).sum(axis=1) == 1
+    assert (near.linked()[:, 0] == ~across).all()
+
+
+def test_no_link_without_two_configurations() -> None:
+    plane = Plane(lambda p: np.nan if p[0] > 0.9 else 0.0)
+    assert plane.linked()[:, 0].tolist() == [1 not in edge for edge in plane.edges.tolist()]
+
+
+def spiral(p: Array) -> float:
+    """Once around the center the joint comes back a quarter of a circle off."""
+    return float(np.arctan2(p[1], p[0])) / 4 if p @ p > 0.01 else np.nan
+
+
+def test_holonomy_makes_a_crack_and_no_second_color() -> None:
+    plane = Plane(spiral)
+    linked = plane.linked()
+    coloring = color(plane.candidates, node_links(plane.edges, linked), ("turning",))
+    assert coloring.names == ("turning",)
+    assert coloring.node_color[:, 0].tolist() == [-1, 0, 0, 0, 0, 0, 0]
+    # arctan2 jumps between the vertices at 180 and at 240 degrees.
+    assert find_cracks(plane.edges, linked, coloring) == (Crack(4, 5, (0,)),)
+
+
+def test_names_and_numbers() -> None:
+    plane = Plane(
+        # Three vertices on the left, two apart from one another on the right.
+        lambda p: np.nan if abs(p[0]) < 0.3 or p[0] > 0.9 else float(p[0] > 0),
+        lambda _: np.nan,
+        lambda p: 0.0 if abs(p[1]) < 0.1 else np.nan,
+    )
+    links = node_links(plane.edges, plane.linked())
+    coloring = color(plane.candidates, links, ("a", "b", "c"))
+    left = np.flatnonzero(plane.surface.vertices[:, 0] < -0.3)
+    assert coloring.names == ("a 1", "a 2", "a 3", "c")
+    assert coloring.branch == (0, 0, 0, 2)
+    assert (coloring.node_color[left, 0] == 0).all()
+    assert coloring.node_color[2, 0] == 1 and coloring.node_color[6, 0] == 2
+    assert (coloring.node_color[:, 1] == -1).all()
+
+
+def test_two_configurations_of_one_color_are_reported() -> None:
+    plane = Plane(lambda p: 0.1 * p[0], lambda p: 0.1 * p[0] + 0.05)
+    links = node_links(plane.edges, plane.linked())
+    # What joint distance alone would do: the branches grow together at vertex 3.
+    merged = np.vstack([links, [[3 * 2, 3 * 2 + 1]]])
+    with pytest.raises(InputError, match=r"2 configurations: \[.*\] and \[") as caught:
+        color(plane.candidates, merged, ("a", "b"))
+    assert caught.value.field == "vertices[0]"
+
+
+@pytest.fixture(scope="module")
+def around_wrist_singularities(tmp_path_factory: pytest.TempPathFactory) -> BuildResult:
+    """A small hemisphere beside the robot, with wrist singularities on it."""
+
+    file = tmp_path_factory.mktemp("tilted") / "scene.toml"
+    text = edited(
+        WOK.read_text(),
+        setup=f'"{ROBOTS / "ur5_polishing.toml"}"',
+        radius_m=0.115,
+        half_angle_rad=np.pi / 2,
+        position_m="[0.411, 0.156, 0.332]",
+        rpy_rad="[0.0, -1.342, -0.458]",
+        height_m=-0.3,
+        target_vertices=500,
+    )
+    file.write_text(text)
+    return build_surface(file)
+
+
+def follow(robot: Robot, start: Array, points: Array, axes: Array) -> Array | None:
+    """Newton's method along a path of tip positions and tool axes; None when it loses the path."""
+    model, data = robot.model, robot.model.createData()
+    tip, q = model.getFrameId("tool_tip"), start.copy()
+    for point, axis in zip(points, axes, strict=True):
+        for _ in range(8):
+            jacobian = pin.computeFrameJacobian(model, data, q, tip, pin.ReferenceFrame.LOCAL)
+            pose = pin.framesForwardKinematics(model, data, q) or data.oMf[tip]
+            gap = pose.rotation.T @ (point - pose.translation)
+            turn = np.cross([0.0, 0.0, 1.0], pose.rotation.T @ axis)
+            error = np.concatenate([gap, turn[:2]])
+            if np.linalg.norm(error) < 1e-10:
+                break
+            q[:5] += np.linalg.solve(jacobian[:5, :5], error)
+        else:
+            return None
+    return q
+
+
+def test_what_is_linked_can_be_followed(
+    robot: Robot, around_wrist_singularities: BuildResult
+) -> None:
+    """Differential kinematics knows no branches: it must end where the color says."""
+    result = around_wrist_singularities
+    surface, q = result.surface, result.configurations
+    center = np.array([0.411, 0.156, 0.332])
+    cracked = {(crack.i, crack.j, c) for crack in surface.cracks for c in crack.colors}
+    pairs = np.sort(np.concatenate([surface.faces[:, [0, 1]], surface.faces[:, [1, 2]]]), axis=1)
+    joined = [
+        (i, j, branch)
+        for i, j in np.unique(pairs, axis=0).tolist()
+        for branch in range(8)
+        if (shared := result.node_color[i, branch]) >= 0
+        and shared == result.node_color[j, branch]
+        and (i, j, shared) not in cracked
+    ]
+    steps = [joint_step(q[i, b], q[j, b]) for i, j, b in joined]
+    # The fastest ones, and some from everywhere.
+    fastest = np.argsort(steps)[-40:].tolist()
+    others = np.random.default_rng(2).choice(len(joined), 80, replace=False).tolist()
+    for i, j, branch in (joined[row] for row in fastest + others):
+        way = np.linspace(0, 1, 400)[1:, None]
+        points = (1 - way) * surface.vertices[i] + way * surface.vertices[j]
+        normals = (1 - way) * (surface.vertices[i] - center) + way * (surface.vertices[j] - center)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        reached = follow(robot, q[i, branch], points, -normals)
+        assert reached is not None
+        assert joint_step(reached, q[j, branch]) < 1e-6
+
+
+def test_cracks_are_on_shared_colors_and_colors_are_injective(
+    around_wrist_singularities: BuildResult,
+) -> None:
+    surface = around_wrist_singularities.surface
+    assert surface.cracks
+    for crack in surface.cracks:
+        shared = set(surface.vertex_colors[crack.i]) & set(surface.vertex_colors[crack.j])
+        assert set(crack.colors) <= shared
+    per_vertex = np.sort(around_wrist_singularities.node_color, axis=1)
+    assert not ((per_vertex[:, 1:] == per_vertex[:, :-1]) & (per_vertex[:, 1:] >= 0)).any()
+
+
+def test_the_bound_on_speed_is_kept_between_probes() -> None:
+    # The same motion, held to a lower bound: no edge along which the joint moves is linked.
+    plane = Plane(lambda p: 1.9 * p[0])
+    strict = POLICY.model_copy(update={"base_step_rad": 1e-3, "step_per_length_rad_per_m": 0.1})
+    moving = np.abs(np.diff(plane.surface.vertices[plane.edges][:, :, 0], axis=1))[:, 0] > 0.1
+    assert (plane.linked(strict)[:, 0] == ~moving).all()

@@ -1,0 +1,166 @@
+"""Generated and read surfaces: shape, orientation, and what is refused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from cellcolor.errors import InputError
+from cellcolor.frontend import build_surface
+from cellcolor.frontend.robot import Array
+from cellcolor.frontend.scene import Placement
+from cellcolor.frontend.surfaces import Surface, disc_mesh, load_mesh, spherical_cap
+
+
+def double_areas(points: Array, faces: Array) -> Array:
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    return (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+
+
+@given(st.integers(7, 3000), st.floats(0, 0.25), st.integers(0, 10**6))
+@settings(deadline=None, max_examples=50)
+def test_disc_is_a_counter_clockwise_disc(target: int, jitter: float, seed: int) -> None:
+    points, faces = disc_mesh(target, jitter, seed)
+    assert (double_areas(points, faces) > 0).all()
+    ends = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges, uses = np.unique(ends, axis=0, return_counts=True)
+    rim = np.unique(edges[uses == 1])
+    assert len(points) - len(edges) + len(faces) == 1
+    assert np.allclose(np.linalg.norm(points[rim], axis=1), 1)
+    assert len(rim) == (uses == 1).sum()
+    # No other possible size is nearer to the target.
+    k = np.arange(1, 60)
+    assert abs(len(points) - target) == np.abs(1 + 3 * k * (k + 1) - target).min()
+
+
+@pytest.mark.parametrize("half_angle", [0.3, 1.134, np.pi / 2, 2.5])
+def test_cap(half_angle: float) -> None:
+    cap = spherical_cap(0.2, half_angle, 2000, 0.15, 3)
+    assert np.allclose(np.linalg.norm(cap.vertices, axis=1), 0.2)
+    assert np.allclose(cap.normals, cap.vertices / 0.2)
+    assert np.arccos(cap.normals[:, 2]).max() == pytest.approx(half_angle)
+    # Seen from outside the faces run counter-clockwise, and the area is the cap's.
+    mesh = trimesh.Trimesh(cap.vertices, cap.faces, process=False)
+    assert ((mesh.face_normals * mesh.triangles_center).sum(axis=1) > 0).all()
+    assert mesh.area == pytest.approx(2 * np.pi * 0.2**2 * (1 - np.cos(half_angle)), rel=0.01)
+    assert cap.vertex_areas().sum() == pytest.approx(mesh.area)
+    assert np.array_equal(cap.edges(), np.unique(np.sort(mesh.edges_unique, axis=1), axis=0))
+
+
+def test_cap_vertices_share_the_area_evenly() -> None:
+    cap = spherical_cap(0.2, np.pi / 2, 2000, 0.0, 0)
+    inner = cap.vertex_areas()[:1000]
+    assert inner.max() / inner.min() < 1.5
+
+
+def test_jitter_is_seeded() -> None:
+    same = [spherical_cap(0.2, 1.0, 500, 0.2, seed).vertices for seed in (4, 4, 5)]
+    assert np.array_equal(same[0], same[1]) and not np.allclose(same[0], same[2])
+
+
+def test_placement_is_extrinsic_xyz() -> None:
+    cap = spherical_cap(0.2, 1.0, 100, 0.1, 0)
+    place = Placement(position_m=(1.0, 2.0, 3.0), rpy_rad=(0.3, -0.5, 0.8))
+    turn = Rotation.from_euler("xyz", [0.3, -0.5, 0.8])
+    placed = cap.placed(place)
+    assert np.allclose(placed.vertices, turn.apply(cap.vertices) + np.array([1, 2, 3]))
+    assert np.allclose(placed.normals, turn.apply(cap.normals))
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
+def test_mesh_files(tmp_path: Path, suffix: str) -> None:
+    cap = spherical_cap(200.0, 1.2, 500, 0.1, 0)
+    file = tmp_path / f"cap.{suffix}"
+    trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
+    read = load_mesh(file, 0.001)
+    assert (len(read.vertices), len(read.faces)) == (len(cap.vertices), len(cap.faces))
+    assert np.allclose(np.linalg.norm(read.vertices, axis=1), 0.2, atol=1e-6)
+    # Normals from the faces point outward, near the sphere's own.
+    assert ((read.normals * read.vertices).sum(axis=1) / 0.2 > 0.98).all()
+
+
+def test_mesh_scene_gives_what_the_generator_gives(
+    scene: Callable[..., Path], tmp_path: Path
+) -> None:
+    generated = build_surface(scene(target_vertices=500))
+    cap = spherical_cap(200.0, 1.1344640137963142, 500, 0.15, 1)
+    trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(tmp_path / "wok.ply")
+    text = (tmp_path / "scene.toml").read_text()
+    start, end = text.index("[object]"), text.index("[placement]")
+    table = '[object]\nkind = "mesh"\nfile = "wok.ply"\nmeters_per_unit = 0.001\n\n'
+    (tmp_path / "scene.toml").write_text(text[:start] + table + text[end:])
+    read = build_surface(tmp_path / "scene.toml")
+    assert read.surface.colors == generated.surface.colors
+    # Only normals differ, by the mesh's coarseness.
+    assert np.mean(read.reasons == generated.reasons) > 0.98
+
+
+TETRA = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+OUTWARD = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+
+
+def write_obj(file: Path, vertices: Array, faces: list[list[int]]) -> Path:
+    lines = ["v " + " ".join(map(str, v)) for v in np.asarray(vertices).tolist()]
+    lines += ["f " + " ".join(str(k + 1) for k in face) for face in faces]
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+def test_closed_mesh_is_accepted(tmp_path: Path) -> None:
+    mesh = load_mesh(write_obj(tmp_path / "t.obj", TETRA, OUTWARD), 1.0)
+    assert np.allclose(mesh.normals[0], -np.ones(3) / np.sqrt(3))
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "element", "message"),
+    [
+        (TETRA, [face[::-1] for face in OUTWARD], "faces", "inside out"),
+        (TETRA, [OUTWARD[0], OUTWARD[1][::-1]], r"faces\[", "winds the other way"),
+        (TETRA, [*OUTWARD, [0, 1, 2]], r"faces\[", "not manifold"),
+        (np.vstack([TETRA, [[0, 0, -1]]]), [[0, 1, 2], [0, 3, 4]], "vert", "fan|pinch"),
+        (np.vstack([TETRA, [[5, 5, 5]]]), OUTWARD, r"vertices\[4\]", "belongs to no face"),
+        (np.vstack([TETRA, TETRA[:1]]), [*OUTWARD[1:], [4, 2, 1]], r"vertices\[4\]", "vertex 0"),
+        (np.vstack([TETRA[:3], [[2, 0, 0]]]), [[0, 1, 2], [1, 0, 3]], r"faces\[1\]", "no area"),
+        (np.where(TETRA == 1, np.nan, TETRA), OUTWARD, "vertices", "finite"),
+        (TETRA[:3], [], "faces", "there are none"),
+    ],
+)  # fmt: skip
+def test_bad_meshes_are_refused(
+    tmp_path: Path, vertices: Array, faces: list[list[int]], element: str, message: str
+) -> None:
+    file = write_obj(tmp_path / "bad.obj", vertices, faces)
+    with pytest.raises(InputError, match=message) as caught:
+        load_mesh(file, 1.0)
+    assert caught.value.file == str(file)
+    assert re.match(element, caught.value.field or "")
+
+
+def test_unreadable_files(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such mesh file"):
+        load_mesh(tmp_path / "none.stl", 1.0)
+    other = tmp_path / "mesh.step"
+    other.write_text("x")
+    with pytest.raises(InputError, match="not a mesh format"):
+        load_mesh(other, 1.0)
+    broken = tmp_path / "broken.ply"
+    broken.write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
+    with pytest.raises(InputError) as caught:
+        load_mesh(broken, 1.0)
+    assert caught.value.file == str(broken)
+
+
+def test_vertex_areas_of_a_square() -> None:
+    flat = Surface(
+        np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]], dtype=float),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        np.tile([0.0, 0.0, 1.0], (4, 1)),
+    )
+    assert flat.vertex_areas().tolist() == pytest.approx([2 / 3, 1 / 3, 2 / 3, 1 / 3])
