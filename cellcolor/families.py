@@ -25,8 +25,10 @@ def blobs(
     colors: int = 6,
     *,
     waves: float = 0.7,
+    coverage: tuple[float, float] = (0.35, 0.65),
     thin: bool = False,
     cracks: int = 0,
+    rim: int = 0,
     islands: int = 0,
     holes: int = 0,
 ) -> LabelledSurface:
@@ -41,9 +43,12 @@ def blobs(
         size: points along each side of the grid, two or more.
         colors: how many, one or more.
         waves: how many waves of a field fit across the grid, or nearly; more waves, more cells.
+        coverage: the least and the largest share of the grid that a color reaches.
         thin: narrow bands instead of round blobs.
         cracks: random paths over the mesh that the colors common to both sides do not cross.
-        islands: discs that only one color reaches.
+        rim: discs on the border of the grid that only one color reaches. With a large coverage
+            they make the cell in their middle one that has to be cut.
+        islands: such discs anywhere.
         holes: discs that no color reaches.
 
     Raises:
@@ -58,13 +63,15 @@ def blobs(
         field = _waves(rng, x / size, y / size, waves)
         if thin:
             field = -np.abs(field - np.median(field))
-        reached[color] = field > np.quantile(field, 1.0 - rng.uniform(0.35, 0.65))
-    for number in range(islands + holes):
+        reached[color] = field >= np.quantile(field, 1.0 - rng.uniform(*coverage))
+    for number in range(rim + islands + holes):
         center = rng.uniform(0.2, 0.8, 2) * (size - 1)
+        if number < rim:
+            center[rng.integers(2)] = rng.integers(2) * (size - 1)
         radius = rng.uniform(0.09, 0.2) * size
         disc = np.hypot(x - center[0], y - center[1]) <= radius
         reached[:, disc] = False
-        if number < islands:
+        if number < rim + islands:
             reached[rng.integers(colors), disc] = True
     vertex_colors = tuple(
         tuple(np.flatnonzero(available).tolist()) for available in reached.reshape(colors, -1).T

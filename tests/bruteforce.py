@@ -346,8 +346,9 @@ def vertex_minimum(surface: LabelledSurface) -> int:
     cracks = {(c.i, c.j): c.colors for c in surface.cracks}
     neighbors: dict[int, set[int]] = defaultdict(set)
     for i, j in surface.left_of:
-        neighbors[i].add(j)
-        neighbors[j].add(i)
+        if surface.vertex_colors[i] and surface.vertex_colors[j]:
+            neighbors[i].add(j)
+            neighbors[j].add(i)
     reached = [v for v, colors in enumerate(surface.vertex_colors) if colors]
     frontier: list[int] = []
     layer: dict[tuple[tuple[int, int], ...], int] = {(): 0}
