@@ -1,0 +1,399 @@
+"""The commands: exit codes, what goes to standard output, and what is written."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from documents import INSTANCE, SURFACE, Document
+from library import INSTANCES, PAPER
+
+import cellcolor.solvers.run
+from cellcolor.cli import main
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.solvers.interface import OutOfTime
+
+RING = PAPER / "ring.json"
+CORRIDORS = PAPER / "parallel-corridors.json"
+ZEROS = PAPER / "crossing-zeros.json"
+Capture = pytest.CaptureFixture[str]
+
+
+def run(*arguments: object) -> int:
+    return main([str(argument) for argument in arguments])
+
+
+def json_lines(text: str) -> list[Document]:
+    return [json.loads(line) for line in text.splitlines()]
+
+
+@pytest.fixture
+def not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A solver that is stopped with a division and a bound below it."""
+    solve = cellcolor.solvers.run.solve
+
+    def stopped(*arguments: Any, **options: Any) -> Solution:
+        solution = solve(*arguments, **options)
+        return replace(solution, status="feasible", lower_bound=0)
+
+    monkeypatch.setattr(cellcolor.solvers.run, "solve", stopped)
+
+
+class TestSolve:
+    def test_table(self, capsys: Capture) -> None:
+        assert run("solve", ZEROS) == 0
+        out, err = capsys.readouterr()
+        assert err == ""
+        rows = [line.split() for line in out.splitlines()]
+        assert ["segments", "2"] in rows
+        assert ["lift-offs", "1"] in rows
+        assert any(row[:2] == ["status", "optimal"] for row in rows)
+        assert "\x1b" not in out
+        assert "part of 0" in out
+
+    def test_share_of_area(self, tmp_path: Path, capsys: Capture) -> None:
+        """Four neighbours of 1 m² and a divided cell of 4 m²: nobody knows whose its area is."""
+        instance = Instance.read(PAPER / "figsimpleexample.json")
+        cells = [replace(cell, area=1.0 if cell.id else 4.0) for cell in instance.cells]
+        path = tmp_path / "areas.json"
+        path.write_text(replace(instance, cells=tuple(cells)).to_json(), encoding="utf-8")
+        assert run("solve", path) == 0
+        out = capsys.readouterr().out
+        assert "share of area" in out
+        assert out.count("25.0–75.0 %") == 2
+
+    def test_json_is_all_there_is(self, capsys: Capture) -> None:
+        assert run("solve", RING, CORRIDORS, "--json") == 0
+        out, err = capsys.readouterr()
+        assert err == ""
+        first, second = json_lines(out)
+        assert (first["file"], second["file"]) == (str(RING), str(CORRIDORS))
+        assert (first["segments"], second["segments"]) == (2, 3)
+        first.pop("file")
+        assert Solution.from_document(first).status == "optimal"
+
+    def test_search_space_surface(self, capsys: Capture) -> None:
+        assert run("solve", CORRIDORS, "--search-space", "surface", "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["search_space"], line["strands"], line["segments"]) == ("surface", 2, 2)
+        assert line["proved_for_surface"] is True
+
+    def test_one_strand_is_the_paper(self, capsys: Capture) -> None:
+        """Not proved for the surface, though nothing better exists with one strand: exit code 3."""
+        code = run("solve", CORRIDORS, "--search-space", "surface", "--strands", 1, "--json")
+        assert code == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["segments"], line["status"], line["surface_lower_bound"]) == (3, "feasible", 2)
+
+    @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
+    def test_solvers(self, solver: str, capsys: Capture) -> None:
+        assert run("solve", ZEROS, "--solver", solver, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["solver"], line["segments"]) == (solver, 2)
+
+    def test_surface_like_its_instance(self, tmp_path: Path, capsys: Capture) -> None:
+        """What build writes beside a surface is what solve makes of that surface."""
+        surface = tmp_path / "s.surface.json"
+        surface.write_text((PAPER / "ring.surface.json").read_text("utf-8"), encoding="utf-8")
+        assert run("build", surface, "-o", tmp_path / "s.json") == 0
+        capsys.readouterr()
+        assert run("solve", surface, tmp_path / "s.json", "--json") == 0
+        lines = json_lines(capsys.readouterr().out)
+        assert [line["segments"] for line in lines] == [2, 2]
+        assert lines[0]["instance"] == lines[1]["instance"]
+
+    def test_output_file(self, tmp_path: Path) -> None:
+        out = tmp_path / "solution.json"
+        assert run("solve", RING, "-o", out) == 0
+        assert Solution.read(out).segments == 2
+        assert list(tmp_path.iterdir()) == [out]
+        assert run("check", RING, out) == 0
+
+    def test_output_folder(self, tmp_path: Path) -> None:
+        folder = tmp_path / "new"
+        assert run("solve", RING, CORRIDORS, "-o", folder) == 0
+        assert sorted(path.name for path in folder.iterdir()) == [
+            "parallel-corridors.solution.json",
+            "ring.solution.json",
+        ]
+        assert Solution.read(folder / "ring.solution.json").segments == 2
+        assert run("solve", ZEROS, "-o", folder) == 0  # an existing folder, for one input too
+        assert Solution.read(folder / "crossing-zeros.solution.json").segments == 2
+
+    def test_a_bad_file_does_not_stop_the_others(self, tmp_path: Path, capsys: Capture) -> None:
+        bad = tmp_path / "bad.json"
+        bad.write_text("{", encoding="utf-8")
+        folder = tmp_path / "out"
+        assert run("solve", RING, bad, ZEROS, "--json", "-o", folder) == 2
+        out, err = capsys.readouterr()
+        first, second, third = json_lines(out)
+        assert (first["segments"], third["segments"]) == (2, 2)
+        assert set(second) == {"file", "error"}
+        assert second["file"] == str(bad)
+        (line,) = err.splitlines()
+        assert str(bad) in line
+        assert len(list(folder.iterdir())) == 2
+
+    def test_overview_of_several(self, capsys: Capture) -> None:
+        assert run("solve", RING, CORRIDORS) == 0
+        rows = [line.split()[:4] for line in capsys.readouterr().out.splitlines()]
+        assert [str(RING), "3", "2", "1"] in rows
+        assert [str(CORRIDORS), "6", "3", "2"] in rows
+
+    @pytest.mark.usefixtures("not_proved")
+    def test_not_proved(self, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "best.json"
+        assert run("solve", RING, "-o", out, "--json") == 3
+        assert Solution.read(out).status == "feasible"
+        assert json_lines(capsys.readouterr().out)[0]["segments"] == 2
+        assert run("solve", RING, tmp_path / "none.json") == 2  # 2 wins over 3
+
+    def test_time_limit(self, tmp_path: Path) -> None:
+        out = tmp_path / "best.json"
+        hub = INSTANCES / "random" / "hub_44.json"
+        assert run("solve", hub, "--solver", "dfs", "--time-limit", 0.05, "-o", out) == 3
+        solution = Solution.read(out)
+        assert solution.status in ("feasible", "unknown")
+        assert run("check", hub, out) == 0
+
+    def test_empty_instance(self, tmp_path: Path, capsys: Capture) -> None:
+        empty = INSTANCE | {"cells": [], "edges": [], "known": {}}
+        empty.pop("surface")
+        path = tmp_path / "empty.json"
+        path.write_text(json.dumps(empty), encoding="utf-8")
+        for solver in ("cp-sat", "dfs"):
+            assert run("solve", path, "--json", "--solver", solver) == 0
+            (line,) = json_lines(capsys.readouterr().out)
+            assert (line["segments"], line["lift_offs"], line["cells"]) == (0, 0, [])
+        assert run("solve", path) == 0
+
+    def test_progress_only_for_people(
+        self, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+        monkeypatch.setenv("TERM", "xterm")
+        assert run("solve", RING, "--json") == 0
+        out, err = capsys.readouterr()
+        assert "ring.json" in err
+        assert len(json_lines(out)) == 1
+
+
+class TestAllSchemes:
+    @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
+    def test_all(self, solver: str, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "all.jsonl"
+        assert run("solve", ZEROS, "--all", "--solver", solver, "-o", out, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (3, True)
+        solution, *schemes = json_lines(out.read_text(encoding="utf-8"))
+        assert (solution["format"], solution["schemes"]) == ("cellcolor/solution", 3)
+        assert [scheme["format"] for scheme in schemes] == ["cellcolor/scheme"] * 3
+        assert len({scheme_key(division) for division in read_schemes(out)}) == 3
+        assert list(tmp_path.iterdir()) == [out]
+        assert run("check", ZEROS, out) == 0
+
+    def test_table(self, capsys: Capture) -> None:
+        assert run("solve", PAPER / "figeasycell3.json", "--all") == 0
+        rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+        assert ["schemes", "3", "(all", "of", "them)"] in rows
+
+    @pytest.mark.parametrize(("limit", "schemes", "complete"), [(1, 1, False), (2, 2, False)])
+    def test_limit(
+        self, limit: int, schemes: int, complete: bool, tmp_path: Path, capsys: Capture
+    ) -> None:
+        out = tmp_path / "some.jsonl"
+        assert run("solve", ZEROS, "--all", "--limit", limit, "-o", out, "--json") == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (schemes, complete)
+        assert len(list(read_schemes(out))) == limit
+        assert run("check", ZEROS, out) == 0
+
+    def test_limit_that_is_just_enough(self, capsys: Capture) -> None:
+        assert run("solve", ZEROS, "--all", "--limit", 3, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (3, True)
+
+    @pytest.mark.parametrize("stop", [OutOfTime("time"), KeyboardInterrupt()], ids=repr)
+    def test_stopped(
+        self,
+        stop: BaseException,
+        tmp_path: Path,
+        capsys: Capture,
+        monkeypatch: pytest.MonkeyPatch,
+    ) -> None:
+        """What was found before the end of the time, or Ctrl-C, is written."""
+        enumerate_schemes = cellcolor.solvers.run.enumerate_schemes
+
+        def interrupted(*arguments: Any) -> Iterator[Division]:
+            yield next(iter(enumerate_schemes(*arguments)))
+            raise stop
+
+        monkeypatch.setattr(cellcolor.solvers.run, "enumerate_schemes", interrupted)
+        out = tmp_path / "some.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out, "--json") == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["status"], line["schemes"], line["complete"]) == ("optimal", 1, False)
+        assert len(list(read_schemes(out))) == 1
+        assert list(tmp_path.iterdir()) == [out]
+
+    @pytest.mark.usefixtures("not_proved")
+    def test_no_schemes_of_what_is_not_proved(self, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "none.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out, "--json") == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (0, False)
+        assert list(read_schemes(out)) == []
+
+    def test_cell_with_several_live_loops(self, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "x.jsonl"
+        assert run("solve", PAPER / "annulus.json", "--all", "-o", out) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "annulus.json: cells[1].loops: " in line
+        assert not out.exists()
+
+    def test_several_loops_of_which_one_is_live(self, tmp_path: Path, capsys: Capture) -> None:
+        """Rule 5 speaks of live darts only: an unreachable hole does not count."""
+        hole = {
+            "format": "cellcolor/instance",
+            "version": 1,
+            "name": "hole",
+            "colors": ["red"],
+            "cells": [{"id": 0, "colors": [0], "loops": [[1], [2]]}],
+            "edges": [{"id": 1, "left": 0, "right": -1}, {"id": 2, "left": 0, "right": -1}],
+        }
+        path = tmp_path / "hole.json"
+        path.write_text(json.dumps(hole), encoding="utf-8")
+        assert run("solve", path, "--all", "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["segments"], line["schemes"], line["complete"]) == (1, 1, True)
+
+
+class TestBuild:
+    def test_surface(self, tmp_path: Path, capsys: Capture) -> None:
+        source = tmp_path / "surfaces" / "s.json"
+        source.parent.mkdir()
+        source.write_text(json.dumps(SURFACE), encoding="utf-8")
+        out = tmp_path / "graphs" / "s.json"
+        out.parent.mkdir()
+        assert run("build", source, "-o", out) == 0
+        instance = Instance.read(out)
+        assert instance.surface is not None
+        assert instance.surface.path == "../surfaces/s.json"
+        assert (out.parent / instance.surface.path).resolve() == source.resolve()
+        built = decompose(LabelledSurface.read(source), instance.surface.path)
+        assert built.to_json() == out.read_text(encoding="utf-8")
+        assert f"{len(instance.cells)} cells" in capsys.readouterr().out
+
+    def test_of_an_instance(self, tmp_path: Path, capsys: Capture) -> None:
+        assert run("build", RING, "-o", tmp_path / "x.json") == 2
+        assert "is an instance already" in capsys.readouterr().err
+        assert list(tmp_path.iterdir()) == []
+
+    def test_scene(self, tmp_path: Path, capsys: Capture) -> None:
+        pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+        text = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")
+        models = (INSTANCES.parent / "models").as_posix()
+        scene = tmp_path / "small.toml"
+        text = text.replace("target_vertices = 2000", "target_vertices = 120")
+        scene.write_text(text.replace("../../models", models), encoding="utf-8")
+        out = tmp_path / "small.json"
+        assert run("build", scene, "-o", out) == 0
+        assert "reachable" in capsys.readouterr().out
+        instance = Instance.read(out)
+        assert instance.surface is not None
+        assert instance.surface.path == "small.surface.json"
+        surface = LabelledSurface.read(tmp_path / "small.surface.json")
+        assert len(surface.vertices) == len(instance.surface.vertex_cell)
+        assert decompose(surface, "small.surface.json") == instance
+        assert sorted(tmp_path.iterdir()) == sorted([scene, out, tmp_path / "small.surface.json"])
+        assert run("solve", scene, out, "--json") == 0
+        lines = json_lines(capsys.readouterr().out)
+        assert lines[0]["segments"] == lines[1]["segments"]
+
+
+class TestCheck:
+    @pytest.fixture
+    def solved(self, tmp_path: Path) -> Path:
+        out = tmp_path / "all.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out) == 0
+        return out
+
+    def change(self, path: Path, line: int, change: Any) -> None:
+        documents = json_lines(path.read_text(encoding="utf-8"))
+        change(documents[line])
+        path.write_text("".join(json.dumps(d) + "\n" for d in documents), encoding="utf-8")
+
+    def test_valid(self, solved: Path, capsys: Capture) -> None:
+        capsys.readouterr()
+        assert run("check", ZEROS, solved, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert line["valid"] is True
+        assert (line["segments"], line["lift_offs"], line["schemes"]) == (2, 1, 3)
+
+    def test_wrong_number(self, solved: Path, capsys: Capture) -> None:
+        self.change(solved, 0, lambda d: d.update(segments=1, lift_offs=0))
+        assert run("check", ZEROS, solved) == 1
+        out = capsys.readouterr().out
+        assert "not valid" in out
+        assert "segments: says 1" in out
+
+    def test_another_instance(self, solved: Path) -> None:
+        assert run("check", PAPER / "dominated-by-crack.json", solved) == 1
+
+    def test_wrong_scheme(self, solved: Path, capsys: Capture) -> None:
+        self.change(solved, 2, lambda d: d["cells"][1]["subcells"][0].update(color=1))
+        assert run("check", ZEROS, solved, "--json") == 1
+        (line,) = json_lines(capsys.readouterr().out.splitlines()[-1])
+        assert all(problem.startswith("scheme 2: ") for problem in line["problems"])
+
+    def test_same_scheme_twice(self, solved: Path, capsys: Capture) -> None:
+        lines = solved.read_text(encoding="utf-8").splitlines()
+        lines[3] = lines[1]
+        solved.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        assert run("check", ZEROS, solved) == 1
+        assert "scheme 3: the same scheme" in capsys.readouterr().out
+
+    def test_scheme_missing(self, solved: Path, capsys: Capture) -> None:
+        lines = solved.read_text(encoding="utf-8").splitlines()
+        solved.write_text("\n".join(lines[:3]) + "\n", encoding="utf-8")
+        assert run("check", ZEROS, solved) == 1
+        assert "schemes: says 3, 2 follow" in capsys.readouterr().out
+
+    def test_scheme_that_is_not_optimal(self, solved: Path, capsys: Capture) -> None:
+        """A legal scheme with more segments than the solution has no place in its list."""
+        worse = {
+            "format": "cellcolor/scheme",
+            "cells": [
+                {"id": 0, "subcells": [{"color": 0, "darts": [1, 2, 3], "segment": 0}]},
+                {"id": 1, "subcells": [{"color": 0, "darts": [-2, -3], "segment": 0}]},
+                {"id": 2, "subcells": [{"color": 1, "darts": [], "segment": 1}]},
+                {"id": 3, "subcells": [{"color": 0, "darts": [-1], "segment": 0}]},
+                {"id": 4, "subcells": [{"color": 1, "darts": [], "segment": 2}]},
+            ],
+        }
+        self.change(solved, 3, lambda d: d.update(worse))
+        assert run("check", ZEROS, solved) == 1
+        assert "scheme 3: has 3 segments, the solution 2" in capsys.readouterr().out
+
+
+class TestBench:
+    def test_table(self, capsys: Capture) -> None:
+        assert run("bench", RING, ZEROS) == 0
+        rows = [line.split()[:4] for line in capsys.readouterr().out.splitlines()]
+        # Cells, live darts of the cell that has most of them, and the known minimum.
+        assert [str(RING), "3", "2", "2"] in rows
+        assert [str(ZEROS), "5", "6", "2"] in rows
+
+    def test_a_bad_file_does_not_stop_the_others(self, tmp_path: Path, capsys: Capture) -> None:
+        assert run("bench", tmp_path / "none.json", RING) == 2
+        out, err = capsys.readouterr()
+        assert str(RING) in out
+        assert len(err.splitlines()) == 1

@@ -1,0 +1,169 @@
+"""The oracle: never says more than is proved, never less than is known."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from documents import Document
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import PAPER
+from meshes import drawn, surfaces
+
+from cellcolor.cli import main
+from cellcolor.data.instance import Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.oracle import Contradiction, ProvenRange, judge, proven_range
+
+CORRIDORS = PAPER / "parallel-corridors.surface.json"
+RED, BLUE, GREEN = 0, 1, 2
+
+
+def halves(surface: LabelledSurface) -> Plan:
+    """Upper half red, lower half blue, green where there is nothing else."""
+    middle = surface.vertices[:, 1].mean()
+    colors = []
+    for (_, y, _), available in zip(surface.vertices, surface.vertex_colors, strict=True):
+        wanted = RED if y > middle else BLUE
+        colors.append(wanted if wanted in available else next(iter(available), None))
+    return Plan(tuple(colors))
+
+
+@pytest.mark.parametrize(
+    "path", sorted(PAPER.glob("*.surface.json")), ids=lambda path: path.name.partition(".")[0]
+)
+def test_range_holds_what_is_known(path: Path) -> None:
+    known = Instance.read(path.with_name(path.name.replace(".surface", ""))).known
+    bounds = proven_range(LabelledSurface.read(path))
+    assert bounds.lower <= bounds.upper
+    assert known is not None
+    if known.surface is not None:
+        assert bounds.lower <= known.surface.segments <= bounds.upper
+
+
+def test_the_papers_search_space_is_not_the_measure() -> None:
+    """A correct plan has 2 segments where the paper's search space has nothing below 3."""
+    surface = LabelledSurface.read(CORRIDORS)
+    verdict = judge(surface, halves(surface))
+    assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (2, 1, True)
+    assert verdict.bounds == ProvenRange(2, 2)
+    assert verdict.bounds.exact
+
+
+def test_plan_that_can_be_beaten() -> None:
+    row = drawn("AAMMBB AAMMBB AAMMBB", {"A": [RED], "M": [RED, BLUE], "B": [RED]})
+    best = judge(row, Plan((RED,) * 18))
+    assert (best.segments, best.lift_offs, best.optimal, best.beatable_by) == (1, 0, True, 0)
+    worse = judge(row, Plan((RED, RED, BLUE, BLUE, RED, RED) * 3))
+    assert (worse.segments, worse.optimal, worse.beatable_by) == (3, False, 2)
+
+
+def test_cracks_count() -> None:
+    """Equal colors on both sides of a crack are two segments, and no plan does better."""
+    surface = LabelledSurface.read(PAPER / "crack-separates.surface.json")
+    verdict = judge(surface, Plan((RED,) * len(surface.vertices)))
+    assert (verdict.segments, verdict.optimal) == (2, True)
+
+
+def test_what_is_not_proved_is_not_called_optimal() -> None:
+    """Three segments are the minimum here, but no bound for any division says more than two."""
+    surface = LabelledSurface.read(PAPER / "figeasycell4.surface.json")
+    bounds = ProvenRange(2, 3)
+    plan = Plan(tuple(colors[0] for colors in surface.vertex_colors))
+    verdict = judge(surface, plan, bounds=bounds)
+    assert (verdict.segments, verdict.optimal, verdict.beatable_by) == (3, None, 0)
+
+
+def test_no_time_at_all() -> None:
+    """Both ends hold however early the search ends."""
+    bounds = proven_range(LabelledSurface.read(CORRIDORS), time_limit=1e-9)
+    assert bounds.lower <= 2 <= bounds.upper
+
+
+def test_nothing_reachable() -> None:
+    surface = drawn("... ...", {".": []})
+    verdict = judge(surface, Plan((None,) * 6))
+    assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (0, 0, True)
+
+
+def test_invalid_plans() -> None:
+    surface = drawn("AB. AB.", {"A": [RED], "B": [RED, BLUE], ".": []})
+    assert judge(surface, Plan((RED, BLUE, None) * 2)).valid
+    faults = {
+        (GREEN, RED, None, RED, RED, None): "vertex_colors[0]",
+        (RED, RED, None, RED, None, None): "vertex_colors[4]",
+        (RED, RED, None, RED, RED, RED): "vertex_colors[5]",
+        (RED, RED, None): "vertex_colors",
+    }
+    for colors, place in faults.items():
+        verdict = judge(surface, Plan(colors))
+        assert not verdict.valid
+        assert (verdict.segments, verdict.lift_offs, verdict.optimal) == (None, None, None)
+        (problem,) = verdict.problems
+        assert problem.startswith(f"{place}: ")
+
+
+def test_contradiction_is_an_error() -> None:
+    surface = drawn("AA AA", {"A": [RED]})
+    with pytest.raises(Contradiction) as found:
+        judge(surface, Plan((RED,) * 4), bounds=ProvenRange(2, 5))
+    assert (found.value.segments, found.value.lower) == (1, 2)
+
+
+@settings(max_examples=30, deadline=None)
+@given(surfaces(), st.data())
+def test_no_plan_beats_the_lower_bound(surface: LabelledSurface, data: st.DataObject) -> None:
+    choices = [st.sampled_from(colors) if colors else st.none() for colors in surface.vertex_colors]
+    plan = Plan(data.draw(st.tuples(*choices)))
+    verdict = judge(surface, plan)
+    assert verdict.segments is not None
+    assert verdict.bounds is not None
+    assert verdict.segments >= verdict.bounds.lower
+    assert verdict.optimal in (
+        (True,) if verdict.segments == verdict.bounds.lower else (False, None)
+    )
+
+
+class TestCommand:
+    def check(self, surface: Path, plan: Plan, folder: Path, *options: str) -> int:
+        path = folder / "plan.json"
+        path.write_text(plan.to_json(), encoding="utf-8")
+        return main(["check", str(surface), str(path), *options])
+
+    def test_valid(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        plan = halves(LabelledSurface.read(CORRIDORS))
+        assert self.check(CORRIDORS, plan, tmp_path) == 0
+        out = capsys.readouterr().out
+        assert "2 segments, 1 lift-offs" in out
+        assert "exactly 2" in out
+        assert "optimal" in out.split()
+
+    def test_json(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        plan = halves(LabelledSurface.read(CORRIDORS))
+        assert self.check(CORRIDORS, plan, tmp_path, "--json") == 0
+        (line,) = capsys.readouterr().out.splitlines()
+        document: Document = json.loads(line)
+        assert document == {
+            "file": str(tmp_path / "plan.json"),
+            "valid": True,
+            "problems": [],
+            "segments": 2,
+            "lift_offs": 1,
+            "lower_bound": 2,
+            "upper_bound": 2,
+            "optimal": True,
+            "beatable_by": 0,
+        }
+
+    def test_not_valid(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+        colors = list(halves(LabelledSurface.read(CORRIDORS)).vertex_colors)
+        colors[3] = None
+        assert self.check(CORRIDORS, Plan(tuple(colors)), tmp_path) == 1
+        out = capsys.readouterr().out
+        assert "not valid" in out
+        assert "vertex_colors[3]: null" in out
+        assert self.check(CORRIDORS, Plan(tuple(colors)), tmp_path, "--json") == 1
+        assert json.loads(capsys.readouterr().out)["valid"] is False
