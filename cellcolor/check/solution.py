@@ -201,9 +201,9 @@ def _segments(division: Division) -> tuple[list[str], int]:
     components = list(nx.connected_components(graph))
     for component in components:
         labels = {label[node] for node in component}
-        cell, number = min(component)
+        place = min(component)
         if len(labels) > 1:
-            where = f"cells[{cell}].subcells[{number}].segment"
+            where = "cells[{}].subcells[{}].segment".format(*place)
             problems.append(f"{where}: one segment has numbers {sorted(labels)}")
         for value in labels:
             pieces[value] += 1

@@ -1,0 +1,5 @@
+"""Minimum-segment coloring as a CP-SAT model, sub-cell cutting paths included."""
+
+from cellcolor.solvers.cpsat.solver import CpSatSolver
+
+__all__ = ["CpSatSolver"]

@@ -1,0 +1,166 @@
+"""The full model: build it, hint it, solve it, read the painting off it."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ortools.sat.python import cp_model
+
+from cellcolor.solvers.bounds import Region
+from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
+from cellcolor.solvers.cpsat.graph import DartGraph
+from cellcolor.solvers.cpsat.painting import Block, Painting
+from cellcolor.solvers.cpsat.variables import Variables, make_variables
+
+__all__ = ["Model", "add_hint", "build", "read_painting"]
+
+
+@dataclass(frozen=True, slots=True)
+class Model:
+    """A model with its variables."""
+
+    model: cp_model.CpModel
+    variables: Variables
+
+
+def build(
+    graph: DartGraph,
+    regions: Sequence[Region],
+    groups: Sequence[Group] = DEFINING + REDUNDANT,
+) -> Model:
+    """The model of fewest segments.
+
+    Args:
+        graph: the dart graph.
+        regions: the color regions of the instance, for the set-cover constraint.
+        groups: the constraint groups.
+    """
+    model = cp_model.CpModel()
+    variables = make_variables(model, graph)
+    for group in groups:
+        group(model, graph, variables, regions)
+    model.minimize(sum(variables.root) + sum(variables.alone))
+    return Model(model, variables)
+
+
+def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:
+    """The sub-cells of a solved model; its counted joins only."""
+    color_of: dict[int, int] = {}
+    for (edge, color), literal in v.joined.items():
+        if solver.boolean_value(literal):
+            color_of[edge] = color_of[graph.darts[edge].twin] = color
+    painting: Painting = []
+    for number, cell in enumerate(graph.lists):
+        block_of: dict[int, Block] = {}
+        for place, dart in enumerate(cell):
+            if dart not in color_of:
+                continue
+            linked = (
+                other
+                for other in cell[:place]
+                if any(solver.boolean_value(link) for link in v.links(other, dart))
+            )
+            before = next(linked, None)
+            block_of[dart] = Block(color_of[dart], set()) if before is None else block_of[before]
+            block_of[dart].darts.add(dart)
+        blocks = [b for d, b in block_of.items() if d == min(b.darts)]
+        painting.append(blocks or [Block(min(graph.colors[number]), set())])
+    return painting
+
+
+def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
+    """Hint a whole painting: every variable that its forest of joins fixes.
+
+    A segment in which every cell is divided has no root that the model allows; then nothing is
+    hinted, since half a hint only misleads.
+    """
+    forest = _forest(graph, painting)
+    if forest is None:
+        return
+    model, v = built.model, built.variables
+    ones: set[int] = set()
+
+    def choose(literal: cp_model.IntVar) -> None:
+        ones.add(literal.index)
+
+    counted: dict[int, tuple[Block, bool]] = {}
+    for child, parent in forest.parent.items():
+        holder = forest.blocks[child]
+        if parent is None:
+            continue
+        choose(v.up[parent])
+        twin = graph.darts[parent].twin
+        choose(v.joined[min(parent, twin), holder.color])
+        counted[parent] = (holder, True)
+        counted[twin] = (forest.blocks[forest.block_of[twin]], False)
+    for number, cell in enumerate(graph.lists):
+        if not any(dart in counted for dart in cell):
+            choose(v.alone[number])
+        for block in painting[number]:
+            chain = [d for d in cell if d in counted and counted[d][0] is block]
+            goal = next((place for place, d in enumerate(chain) if counted[d][1]), 0)
+            if chain and not counted[chain[goal]][1]:
+                choose(v.root[chain[0]])
+            for place in range(1, len(chain)):
+                pair = (chain[place - 1], chain[place])
+                choose((v.forward if place <= goal else v.backward)[pair])
+    for literals in (
+        v.joined.values(),
+        v.up,
+        v.forward.values(),
+        v.backward.values(),
+        v.root,
+        v.alone,
+    ):
+        for literal in literals:
+            model.add_hint(literal, literal.index in ones)
+    for dart, rank in enumerate(v.rank):
+        depth = forest.depth[forest.block_of[dart]] if dart in counted else 0
+        model.add_hint(rank, depth)
+
+
+@dataclass(slots=True)
+class _Forest:
+    """A spanning forest of the sub-cells under joined edges.
+
+    Attributes:
+        blocks: all sub-cells.
+        block_of: the sub-cell of each dart in state 1.
+        parent: per sub-cell, in breadth-first order, the dart across which its parent lies.
+        depth: per sub-cell, pointers across edges from it to its root.
+    """
+
+    blocks: list[Block]
+    block_of: dict[int, int]
+    parent: dict[int, int | None]
+    depth: dict[int, int]
+
+
+def _forest(graph: DartGraph, painting: Painting) -> _Forest | None:
+    blocks = [block for cell in painting for block in cell]
+    block_of = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
+    forest = _Forest(blocks, block_of, {}, {})
+    undivided = [len(cell) == 1 for cell in painting for _ in cell]
+    # Roots with many darts first: a cell with one dart may be a root only if it is the first of
+    # its kind, which the last in line are not asked to be.
+    order = sorted(
+        (number for number in range(len(blocks)) if undivided[number]),
+        key=lambda number: (len(blocks[number].darts) == 1, min(blocks[number].darts, default=0)),
+    )
+    for root in order:
+        if root in forest.parent:
+            continue
+        forest.parent[root], forest.depth[root] = None, 0
+        queue = deque([root])
+        while queue:
+            number = queue.popleft()
+            for dart in sorted(blocks[number].darts):
+                twin = graph.darts[dart].twin
+                child = block_of[twin]
+                if child not in forest.parent:
+                    forest.parent[child] = twin
+                    forest.depth[child] = forest.depth[number] + 1
+                    queue.append(child)
+    return forest if len(forest.parent) == len(blocks) else None

@@ -1,0 +1,138 @@
+"""A colored division of a dart graph, and its canonical form, the scheme."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from cellcolor.data.solution import DartName, Division, number_segments
+from cellcolor.solvers.cpsat.graph import DartGraph
+
+__all__ = ["Block", "Painting", "canonical", "division_of", "painting_of"]
+
+
+@dataclass(slots=True)
+class Block:
+    """A sub-cell: its color, and its darts in state 1."""
+
+    color: int
+    darts: set[int]
+
+
+Painting = list[list[Block]]
+"""The sub-cells of each cell; a cell without darts in state 1 has one without darts."""
+
+
+def division_of(graph: DartGraph, painting: Sequence[Iterable[Block]]) -> Division:
+    """The painting as a solution writes it."""
+    blocks: list[list[tuple[int, tuple[DartName, ...]]]] = [
+        [(b.color, tuple(graph.darts[d].name for d in sorted(b.darts))) for b in cell]
+        for cell in painting
+    ]
+    return number_segments(blocks)
+
+
+def painting_of(graph: DartGraph, division: Division) -> Painting:
+    """A division on a graph with the same or more strands; strands it does not name are cut."""
+    index = {_strand(dart.name): number for number, dart in enumerate(graph.darts)}
+    return [
+        [Block(sub.color, {index[_strand(name)] for name in sub.darts}) for sub in cell.subcells]
+        for cell in division
+    ]
+
+
+def _strand(name: DartName) -> tuple[int, int]:
+    return (name, 1) if isinstance(name, int) else name
+
+
+def canonical(graph: DartGraph, painting: Painting) -> Painting:
+    """Make a scheme of a legal painting, with no more segments (docs/semantics.md, section 3).
+
+    Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order.
+
+    1. An edge in state 0 that shows one joinable color on both sides becomes joined.
+    2. A cutting path between equal colors goes.
+    3. A sub-cell with a single dart beside others goes. It ends its segment, so that the segment
+       stays in one piece without it. Then again from the start, with one sub-cell fewer.
+    """
+    cells = [
+        _Cell(list(darts), blocks) for darts, blocks in zip(graph.lists, painting, strict=True)
+    ]
+    while True:
+        _join(graph, cells)
+        for cell in cells:
+            cell.merge()
+        if not any(_dissolve(graph, cells, cell) for cell in cells):
+            return [cell.blocks() for cell in cells]
+
+
+class _Cell:
+    """One cell's border, each dart in state 1 with its block."""
+
+    def __init__(self, darts: list[int], blocks: Sequence[Block]) -> None:
+        self.darts = darts
+        self.block_of: dict[int, Block] = {}
+        self.own = blocks[0]
+        for block in blocks:
+            for dart in block.darts:
+                self.block_of[dart] = block
+
+    def before(self, dart: int) -> Block:
+        """The block that a dart in state 0 shows: the last one met before it."""
+        place = self.darts.index(dart)
+        for other in reversed(self.darts[place + 1 :] + self.darts[:place]):
+            if other in self.block_of:
+                return self.block_of[other]
+        return self.own
+
+    def merge(self) -> None:
+        """Undo cutting paths between successive darts of equal colors."""
+        joined = [dart for dart in self.darts if dart in self.block_of]
+        for dart, following in zip(joined, joined[1:] + joined[:1], strict=True):
+            one, other = self.block_of[dart], self.block_of[following]
+            if one is not other and one.color == other.color:
+                one.darts |= other.darts
+                for moved in other.darts:
+                    self.block_of[moved] = one
+
+    def add(self, dart: int, block: Block) -> None:
+        block.darts.add(dart)
+        self.block_of[dart] = block
+
+    def remove(self, dart: int) -> None:
+        block = self.block_of.pop(dart)
+        block.darts.discard(dart)
+        if not self.block_of:
+            self.own = block
+
+    def blocks(self) -> list[Block]:
+        found: list[Block] = []
+        for dart in self.darts:
+            block = self.block_of.get(dart)
+            if block is not None and not any(block is other for other in found):
+                found.append(block)
+        return found or [self.own]
+
+
+def _join(graph: DartGraph, cells: Sequence[_Cell]) -> None:
+    for edge in graph.edges:
+        dart = graph.darts[edge]
+        own, other = cells[dart.cell], cells[graph.darts[dart.twin].cell]
+        if edge in own.block_of:
+            continue
+        one, its = own.before(edge), other.before(dart.twin)
+        if one.color == its.color and one.color in dart.colors:
+            own.add(edge, one)
+            other.add(dart.twin, its)
+
+
+def _dissolve(graph: DartGraph, cells: Sequence[_Cell], cell: _Cell) -> bool:
+    blocks = cell.blocks()
+    single = next((block for block in blocks if len(block.darts) < 2), None)
+    if len(blocks) < 2 or single is None:
+        return False
+    (dart,) = single.darts
+    twin = graph.darts[dart].twin
+    cell.remove(dart)
+    cells[graph.darts[twin].cell].remove(twin)
+    return True

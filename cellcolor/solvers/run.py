@@ -1,0 +1,122 @@
+"""Solve an instance with a solver of choice; the checker sees every result."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+
+from cellcolor.check.solution import Report, check_division, check_solution
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, InstanceReference, Solution, Status
+from cellcolor.errors import CellcolorError
+from cellcolor.solvers.bounds import set_cover
+from cellcolor.solvers.interface import Options, Progress, Solver
+
+__all__ = ["SOLVERS", "ContradictionError", "enumerate_schemes", "make_solver", "solve"]
+
+SOLVERS = ("cp-sat", "dfs")
+"""The names of the solvers."""
+
+
+class ContradictionError(CellcolorError):
+    """A solver returned something that the checker refuses: a bug in one of the two."""
+
+
+def make_solver(name: str) -> Solver:
+    """The solver of that name.
+
+    Raises:
+        KeyError: there is none.
+    """
+    if name == "cp-sat":
+        from cellcolor.solvers.cpsat import CpSatSolver  # imports ortools
+
+        return CpSatSolver()
+    if name == "dfs":
+        from cellcolor.solvers.reference import ReferenceSolver
+
+        return ReferenceSolver()
+    raise KeyError(name)
+
+
+def solve(
+    instance: Instance,
+    options: Options,
+    solver: str = "cp-sat",
+    progress: Progress | None = None,
+) -> Solution:
+    """Color an instance with the fewest segments.
+
+    Args:
+        instance: the topological graph.
+        options: search space, limits, seed.
+        solver: one of ``SOLVERS``.
+        progress: called with the best so far and the lower bound.
+
+    Returns:
+        The solution, held against the instance by the checker.
+
+    Raises:
+        ContradictionError: the checker refuses what the solver found.
+    """
+    start = time.monotonic()
+    answer = make_solver(solver).minimize(instance, options, progress)
+    surface_bound = len(set_cover(instance)) if instance.cells else 0
+    lower_bound = max(answer.lower_bound, surface_bound)
+    segments = None if answer.division is None else _count(answer.division)
+    proved_for_surface = segments == surface_bound
+    status: Status = "feasible"
+    if segments is None:
+        status = "unknown"
+    elif proved_for_surface or (options.search_space == "paper" and segments == lower_bound):
+        status = "optimal"
+    solution = Solution(
+        instance=InstanceReference(instance.name, instance.sha256),
+        search_space=options.search_space,
+        strands=options.strands,
+        solver=solver,
+        status=status,
+        segments=segments,
+        lift_offs=None if segments is None else max(0, segments - 1),
+        lower_bound=lower_bound,
+        surface_lower_bound=surface_bound,
+        proved_for_surface=proved_for_surface,
+        seams=answer.seams,
+        cells=answer.division,
+        seconds=time.monotonic() - start,
+    )
+    _insist(check_solution(instance, solution), solver)
+    return solution
+
+
+def enumerate_schemes(
+    instance: Instance, options: Options, solver: str, segments: int
+) -> Iterator[Division]:
+    """Every optimal scheme (docs/semantics.md, section 3), each once, as they are found.
+
+    Args:
+        instance: the topological graph; at most one live loop a cell.
+        options: time limit and seed; the search space is ``paper``.
+        solver: one of ``SOLVERS``.
+        segments: the minimum.
+
+    Raises:
+        OutOfTime: the time limit came first.
+        ContradictionError: the checker refuses what the solver found.
+    """
+    for division in make_solver(solver).optimal_schemes(instance, options, segments):
+        report = check_division(instance, division)
+        _insist(report, solver)
+        if report.segments != segments or not report.is_scheme:
+            reasons = "; ".join(report.not_canonical) or f"{report.segments} segments"
+            raise ContradictionError(f"{solver} returned no optimal scheme: {reasons}")
+        yield division
+
+
+def _count(division: Division) -> int:
+    return len({sub.segment for cell in division for sub in cell.subcells})
+
+
+def _insist(report: Report, solver: str) -> None:
+    if not report.valid:
+        raise ContradictionError(f"{solver} returned something illegal: {report.problems[0]}")
