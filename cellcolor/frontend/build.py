@@ -69,7 +69,9 @@ def build_surface(scene_path: Path) -> BuildResult:
     try:
         return _build(scene, setup, robot, geometry, scene_path)
     except InputError as error:
-        raise error if error.file else error.in_file(str(scene_path)) from error
+        if error.file:
+            raise
+        raise error.in_file(str(scene_path)) from error
 
 
 def _load_robot(setup: Setup, setup_path: Path) -> Robot:
