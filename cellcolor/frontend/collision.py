@@ -46,7 +46,7 @@ def hits_ground(robot: Robot, poses: Poses, height: float, exempt: tuple[str, ..
     """Whether any body but those of the exempt links reaches below ``height`` (m), (n,)."""
     hit = np.zeros(len(poses.tip), dtype=bool)
     for body in robot.bodies:
-        if body.joint and body.link not in exempt:
+        if body.link not in exempt:
             start, end = _ends(body, poses)
             below = np.full(len(start), body.radius)
             if body.flat:

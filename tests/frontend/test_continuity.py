@@ -103,6 +103,17 @@ def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> N
     assert (near.linked()[:, 0] == ~across).all()
 
 
+def test_ill_conditioned_point_on_the_way_is_not_linked() -> None:
+    plane = Plane(lambda _: 0.0, determinant=0.001)
+
+    def probe(points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
+        return plane.joints(points, branch), (points[:, 0] < 0.4) | (points[:, 0] > 0.45)
+
+    found = link(plane.surface, plane.edges, plane.candidates, POLICY, probe)
+    across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.42).sum(axis=1) == 1
+    assert (found[:, 0] == ~across).all()
+
+
 def test_no_link_without_two_configurations() -> None:
     plane = Plane(lambda p: np.nan if p[0] > 0.9 else 0.0)
     assert plane.linked()[:, 0].tolist() == [1 not in edge for edge in plane.edges.tolist()]

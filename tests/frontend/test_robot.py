@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from shipped import ROBOTS
+from world import NEIGHBORS, PAIRS, World
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.robot import Robot, load_robot
@@ -78,9 +79,9 @@ def test_zero_pose_is_the_denavit_hartenberg_one_turned_by_pi(robot: Robot) -> N
 
 def test_every_shape_collides(robot: Robot) -> None:
     shapes = sum(load_urdf(ROBOTS / file).shapes[link] for file, link in _solid_links())
-    assert robot.geometry.ngeoms == shapes == 6 * 3 + 1 + 1
+    assert robot.geometry.ngeoms == shapes == 7 * 3 + 1 + 1
     kinds = [(body.link, body.flat) for body in robot.bodies]
-    assert len(kinds) == 8
+    assert len(kinds) == 9
     assert [link for link, flat in kinds if flat] == ["wrist_3_link", "tool_body"]
 
 
@@ -88,12 +89,20 @@ def _solid_links() -> list[tuple[str, str]]:
     return [(file, link) for file in (ARM, TOOL) for link in load_urdf(ROBOTS / file).shapes]
 
 
+def test_bodies_touch_one_another_in_a_row(robot: Robot) -> None:
+    # Therefore no part of the arm can be inside a closed mesh that the arm does not cut.
+    world = World(robot, np.eye(3), np.array([[0, 1, 2]]))
+    for q in np.random.default_rng(1).uniform(-np.pi, np.pi, (20, 6)):
+        world.place(q)
+        for pair in NEIGHBORS:
+            assert world.to_itself({frozenset(pair)}) <= 1e-9
+
+
 def test_neighbors_are_not_tested_against_each_other(robot: Robot) -> None:
-    names = [{robot.bodies[i].link, robot.bodies[j].link} for i, j in robot.tested_pairs]
-    assert len(names) == 8 * 7 / 2 - 7
-    assert {"forearm_link", "upper_arm_link"} not in names
-    assert {"wrist_3_link", "tool_body"} not in names
-    assert {"wrist_2_link", "tool_body"} in names
+    names = {frozenset((robot.bodies[i].link, robot.bodies[j].link)) for i, j in robot.tested_pairs}
+    assert names == PAIRS
+    # The upper arm has two bodies, and five links that are not next to it.
+    assert len(robot.tested_pairs) == 8 * 7 / 2 - 7 + 5
 
 
 @pytest.mark.parametrize(

@@ -13,7 +13,7 @@ import pytest
 from world import PAIRS, World
 
 from cellcolor.frontend import BuildResult, Reason, build_surface
-from cellcolor.frontend.robot import Array, Robot
+from cellcolor.frontend.robot import Array, Robot, load_robot
 from cellcolor.frontend.scene import Setup
 from cellcolor.frontend.validity import within_limits
 
@@ -54,15 +54,22 @@ def first_failure(robot: Robot, setup: Setup, world: World, ground: float, q: Ar
     return possible | {Reason.VALID}
 
 
-def test_reasons_agree_with_an_independent_loop(robot: Robot, setup: Setup, scene: Scene) -> None:
-    # Placed so that six of the eight reasons occur.
+@pytest.mark.parametrize("weak", [False, True])
+def test_reasons_agree_with_an_independent_loop(
+    setup: Setup, scene: Scene, tmp_path: Path, weak: bool
+) -> None:
+    # Placed so that most reasons occur; once with small torque limits and little room for joint 3.
     result = build_surface(
         scene(
+            arm=lambda text: narrow_elbow(lowered_effort(text)) if weak else text,
             target_vertices=200,
             radius_m=0.22,
             half_angle_rad=1.5,
             position_m="[0.39, 0.03, 0.09]",
         )
+    )
+    robot = load_robot(
+        tmp_path / "ur5.urdf", "wrist_3_link", tmp_path / "polishing_tool.urdf", "tool_tip"
     )
     surface = result.surface
     world = World(robot, surface.vertices, surface.faces)
