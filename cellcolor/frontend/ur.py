@@ -85,6 +85,7 @@ def ur_geometry(robot: Robot) -> UrGeometry:
             raise refuse(joint, f"its axis does not meet that of joint {other + 1}")
 
     shoulder, wrist, knuckle = (_crossing(p[i], w[i], p[j]) for i, j in _MEETING)
+    z1 = -w[0] if w[0, 2] < 0 else w[0]  # up in the world, so that the names mean the same
     z2 = w[1] * np.sign((wrist - shoulder) @ w[1])
     z5 = w[4] * np.sign((knuckle - wrist) @ w[4])
     z6 = poses.tool_axis[0]
@@ -106,8 +107,8 @@ def ur_geometry(robot: Robot) -> UrGeometry:
     if lengths["reach"] < 0:
         raise refuse(5, "the tool's z axis points back into the wrist")
 
-    x1 = np.cross(w[0], z2)
-    axes = np.array([w[0], z2, z2, z2, z5])
+    x1 = np.cross(z1, z2)
+    axes = np.array([z1, z2, z2, z2, z5])
     x = [
         x1,  # the canonical base takes its x axis from the arm at zero
         x1,
@@ -120,7 +121,7 @@ def ur_geometry(robot: Robot) -> UrGeometry:
     return UrGeometry(
         **lengths,
         shoulder=shoulder,
-        frame=np.column_stack([x1, np.cross(w[0], x1), w[0]]),
+        frame=np.column_stack([x1, np.cross(z1, x1), z1]),
         sign=np.einsum("ij,ij->i", axes, w[:5]).round(),
         offset=np.array(offset),
     )

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+import pinocchio as pin
 import pytest
 from shipped import ROBOTS
 from world import NEIGHBORS, PAIRS, World
@@ -87,6 +88,20 @@ def test_every_shape_collides(robot: Robot) -> None:
 
 def _solid_links() -> list[tuple[str, str]]:
     return [(file, link) for file in (ARM, TOOL) for link in load_urdf(ROBOTS / file).shapes]
+
+
+def test_a_shape_that_pinocchio_drops_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    complete = pin.buildGeomFromUrdfString
+
+    def dropping(*arguments: object) -> pin.GeometryModel:
+        geometry = complete(*arguments)
+        geometry.removeGeometryObject("forearm_link_1")
+        return geometry
+
+    monkeypatch.setattr(pin, "buildGeomFromUrdfString", dropping)
+    with pytest.raises(InputError, match="read 2 of 3 shapes") as caught:
+        load(ROBOTS)
+    assert caught.value.field == "link[forearm_link].collision"
 
 
 def test_bodies_touch_one_another_in_a_row(robot: Robot) -> None:
