@@ -42,7 +42,7 @@ def crossing(cell: Painted) -> tuple[int, int] | None:
             # A block may be taken up again only when all those begun since are complete.
             while block in stack and stack[-1] != block:
                 if remaining[stack[-1]]:
-                    return stack[-1], block
+                    return min(stack[-1], block), max(stack[-1], block)
                 stack.pop()
             if block not in stack:
                 stack.append(block)
@@ -125,8 +125,10 @@ def _contradiction(clauses: Sequence[tuple[_Literal, _Literal]]) -> Strand | Non
     for one, other in clauses:
         implications.add_edge((one[0], not one[1]), other)
         implications.add_edge((other[0], not other[1]), one)
-    for component in nx.strongly_connected_components(implications):
-        for dart, value in component:
-            if value and (dart, False) in component:
-                return dart
-    return None
+    stuck = [
+        dart
+        for component in nx.strongly_connected_components(implications)
+        for dart, value in component
+        if value and (dart, False) in component
+    ]
+    return max(stuck, default=None)

@@ -86,7 +86,7 @@ def check_division(
         return Report(tuple(problems), (), None)
     stuck = unavoidable_join(painted, joinable)
     if stuck is not None:
-        problems.append(f"edge {_text(stuck)}: shows one joinable color on both sides in state 0")
+        problems.append(f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0")
     labels, segments = _segments(division)
     problems += labels
     return Report(tuple(problems), tuple(_not_canonical(painted)), segments)
@@ -176,11 +176,11 @@ def _edge_problems(division: Division, joinable: Joinable) -> list[str]:
     problems = []
     for dart, own in color.items():
         if twin(dart) not in color:
-            problems.append(f"edge {_text(dart)}: in state 1 on one side only")
+            problems.append(f"edge {_edge(dart)}: in state 1 on one side only")
         elif color[twin(dart)] != own:
-            problems.append(f"edge {_text(dart)}: joins two different colors")
+            problems.append(f"edge {_edge(dart)}: joins two different colors")
         elif own not in joinable(dart):
-            problems.append(f"edge {_text(dart)}: color {own} cannot continue across it")
+            problems.append(f"edge {_edge(dart)}: color {own} cannot continue across it")
     return problems
 
 
@@ -234,3 +234,7 @@ def _not_canonical(cells: Sequence[Painted]) -> list[str]:
 
 def _text(dart: Strand) -> str:
     return str(dart[0]) if dart[1] == 1 else f"{dart[0]} strand {dart[1]}"
+
+
+def _edge(dart: Strand) -> str:
+    return _text((abs(dart[0]), dart[1]))

@@ -16,6 +16,7 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
+from cellcolor.errors import InputError
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.painting import Block, Painting, division_of
 from cellcolor.solvers.cpsat.zeros import zeros_can_differ
@@ -33,11 +34,17 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         segments: the minimum.
 
     Raises:
+        InputError: a cell has several loops with live darts, for which schemes are not defined.
         OutOfTime: the time limit came first.
     """
     if not instance.cells:
         yield ()
         return
+    for cell in instance.cells:
+        if sum(any(map(instance.joinable, loop)) for loop in cell.loops) > 1:
+            raise InputError(
+                None, f"cells[{cell.id}].loops", "schemes are defined for one loop with live darts"
+            )
     colors = [frozenset(cell.colors) for cell in instance.cells]
     graph = dart_graph(instance, colors, 1, ())
     model = _SchemeModel(graph, segments)

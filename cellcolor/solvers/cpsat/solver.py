@@ -28,11 +28,11 @@ PORTFOLIO = 8
 FEW_STRANDS = 2
 """Seams are tried this narrow first, which is enough when the result meets the cover bound."""
 
-WHOLE_EFFORT = 2.0
-"""Deterministic seconds for undivided cells; often in vain where cutting paths are needed."""
+WHOLE_EFFORT = 0.2
+"""Deterministic seconds a worker for undivided cells; often in vain where cutting paths are needed."""
 
-TRIAL_EFFORT = 10.0
-"""Deterministic seconds for a model that is not the widest, so that its bound proves nothing."""
+TRIAL_EFFORT = 2.0
+"""Deterministic seconds a worker for a model that is not the widest, so that its bound proves nothing."""
 
 
 class CpSatSolver:
