@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 from bruteforce import live_darts, minimum, optimal_schemes, vertex_minimum
+from library import PAPER
 
 from cellcolor.check.solution import check_division
 from cellcolor.data.instance import Instance
@@ -21,7 +22,6 @@ from cellcolor.solvers.interface import Options, Solver
 from cellcolor.solvers.reference import ReferenceSolver
 
 SOLVERS: tuple[Solver, ...] = (ReferenceSolver(), CpSatSolver())
-PAPER = Path(__file__).parents[1] / "instances" / "paper"
 KNOWN = sorted(p for p in PAPER.glob("*.json") if not p.name.endswith(".surface.json"))
 DRAWN = sorted(PAPER.glob("*.surface.json"))
 
