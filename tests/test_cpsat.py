@@ -1,0 +1,302 @@
+"""The CP-SAT model: its constraint groups, its bounds and reductions, its enumeration."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+from bruteforce import minimum
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import INSTANCES, PAPER
+from ortools.sat.python import cp_model
+
+from cellcolor.check.solution import check_division
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.solution import scheme_key
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.families import blobs, hub, hub_minimum, planar_graph
+from cellcolor.solvers.bounds import color_regions, set_cover
+from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
+from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
+from cellcolor.solvers.cpsat.model import build, read_painting
+from cellcolor.solvers.cpsat.painting import canonical, division_of
+from cellcolor.solvers.interface import Options, OutOfTime
+from cellcolor.solvers.reductions import drop_dominated
+from cellcolor.solvers.run import solve
+
+RED, BLUE = 0, 1
+SEEDS = st.integers(0, 10**6)
+
+
+def graph_of(instance: Instance) -> DartGraph:
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    return dart_graph(instance, colors, 1, seams_of(instance, colors, 1, None))
+
+
+def effort(instance: Instance, groups: tuple[Group, ...], limit: float) -> tuple[bool, int]:
+    """Whether one worker proves the minimum within so many deterministic seconds; its conflicts."""
+    built = build(graph_of(instance), color_regions(instance), groups)
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    solver.parameters.random_seed = 0
+    solver.parameters.max_deterministic_time = limit
+    return solver.solve(built.model) == cp_model.OPTIMAL, solver.num_conflicts
+
+
+def model_minimum(instance: Instance, groups: tuple[Group, ...]) -> int:
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    built = build(graph_of(instance), color_regions(instance), groups)
+    assert solver.solve(built.model) == cp_model.OPTIMAL
+    return round(solver.objective_value)
+
+
+def petals(*colors: int) -> Instance:
+    """A hub of red and blue with single-colored petals."""
+    return Instance(
+        "petals",
+        ("red", "blue"),
+        (
+            Cell(0, (RED, BLUE), (tuple(range(1, len(colors) + 1)),)),
+            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(colors, start=1)),
+        ),
+        tuple(Edge(i, 0, i) for i in range(1, len(colors) + 1)),
+    )
+
+
+TRIPLE = Instance.read(PAPER / "triple-junction.json")
+MIXED = Instance(
+    "a petal of both colors between a red and a blue one",
+    ("red", "blue"),
+    tuple(replace(c, colors=(RED, BLUE)) if c.id == 2 else c for c in petals(RED, RED, BLUE).cells),
+    petals(RED, RED, BLUE).edges,
+)
+
+
+@pytest.mark.parametrize(
+    ("group", "instance", "segments"),
+    [
+        # The middle petal, joined in both colors, would join the other two to one sub-cell.
+        ("one_color", MIXED, 2),
+        # Without pointers a cell joined on two sides need not be divided, nor have a root.
+        ("one_pointer", petals(RED, BLUE), 2),
+        # So would links between darts that are joined in different colors.
+        ("equal_colors", MIXED, 2),
+        # Red and blue petals in turn: only one color can be joined through the hub.
+        ("no_crossing", petals(RED, BLUE, RED, BLUE), 3),
+        # Cells without a joined dart cost a segment each.
+        ("roots", petals(RED, BLUE), 2),
+        # Three cells around a corner: their three joins would be a circle without a root.
+        ("no_circles", TRIPLE, 1),
+    ],
+)
+def test_every_defining_group_is_needed(group: str, instance: Instance, segments: int) -> None:
+    assert minimum(instance) == segments
+    assert model_minimum(instance, DEFINING) == segments
+    rest = tuple(g for g in DEFINING if g.__name__ != group)
+    assert len(rest) == len(DEFINING) - 1
+    assert model_minimum(instance, rest) < segments
+
+
+def feasible(instance: Instance, groups: tuple[Group, ...], *links: tuple[int, int]) -> bool:
+    """Whether the first darts of cell 0 can be linked like this, the first of a pair pointing."""
+    graph = graph_of(instance)
+    built = build(graph, color_regions(instance), groups)
+    for one, other in links:
+        low, high = sorted((graph.lists[0][one], graph.lists[0][other]))
+        built.model.add(built.variables.links(low, high)[one > other] == 1)
+    solver = cp_model.CpSolver()
+    return solver.solve(built.model) in (cp_model.OPTIMAL, cp_model.FEASIBLE)
+
+
+def test_sub_cells_are_chains() -> None:
+    """Without this group a sub-cell could be linked as a star, which is read as two sub-cells."""
+    instance = petals(RED, RED, RED)
+    rest = tuple(g for g in DEFINING if g.__name__ != "one_chain")
+    assert feasible(instance, DEFINING, (2, 1), (1, 0))
+    assert not feasible(instance, DEFINING, (2, 0), (1, 0))
+    assert feasible(instance, rest, (2, 0), (1, 0))
+
+
+def test_redundant_groups_change_no_minimum() -> None:
+    for seed in range(12):
+        instance = planar_graph(seed, 6, 10, 3)
+        expected = minimum(instance)
+        assert model_minimum(instance, DEFINING) == expected
+        for group in REDUNDANT:
+            assert model_minimum(instance, (*DEFINING, group)) == expected, group.__name__
+
+
+def test_cover_proves_robot_scenes() -> None:
+    path = INSTANCES / "scenes" / "feasibility" / "hemisphere_flat_2000.surface.json"
+    scene = decompose(LabelledSurface.read(path))
+    rest = tuple(g for g in DEFINING + REDUNDANT if g.__name__ != "cover")
+    assert effort(scene, DEFINING + REDUNDANT, 0.4)[0]
+    assert not effort(scene, rest, 0.4)[0]
+
+
+def test_most_links_proves_hubs() -> None:
+    instance = Instance.read(INSTANCES / "random" / "hub_24.json")
+    rest = tuple(g for g in DEFINING + REDUNDANT if g.__name__ != "most_links")
+    assert effort(instance, DEFINING + REDUNDANT, 2.0)[1] * 10 < effort(instance, rest, 2.0)[1]
+
+
+def test_only_the_first_petal_of_a_sub_cell_is_a_root() -> None:
+    """The first petal's dart then points at the second's, whose parent is its petal."""
+    instance = petals(RED, RED, BLUE, BLUE)
+    rest = tuple(g for g in DEFINING + REDUNDANT if g.__name__ != "first_petal")
+    assert not feasible(instance, DEFINING + REDUNDANT, (0, 1), (2, 3))
+    assert feasible(instance, rest, (0, 1), (2, 3))
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(1, 4))
+def test_what_the_model_finds_has_a_scheme(seed: int, cells: int, colors: int) -> None:
+    """The painting read off the model, made canonical, is a scheme with no more segments."""
+    instance = planar_graph(seed, cells, cells + 4, colors)
+    graph = graph_of(instance)
+    built = build(graph, color_regions(instance))
+    solver = cp_model.CpSolver()
+    solver.parameters.num_workers = 1
+    # Any division will do, not just the best: sub-cells to be dissolved are more likely then.
+    solver.parameters.stop_after_first_solution = True
+    solver.solve(built.model)
+    painting = canonical(graph, read_painting(graph, built.variables, solver))
+    report = check_division(instance, division_of(graph, painting))
+    assert report.is_scheme, (report.problems, report.not_canonical)
+    assert report.segments is not None and report.segments <= round(solver.objective_value)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
+def test_set_cover_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    cover = set_cover(instance)
+    assert set().union(*(touched for _, touched in cover)) == set(range(len(instance.cells)))
+    assert len(cover) <= minimum(instance)
+
+
+def test_set_cover_splits_colors_into_regions() -> None:
+    # Two red cells that do not touch need a segment each.
+    apart = Instance("apart", ("red",), (Cell(0, (RED,), ()), Cell(1, (RED,), ())), ())
+    assert len(set_cover(apart)) == 2
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 4))
+def test_dropping_dominated_colors_keeps_the_minimum(seed: int, cells: int, colors: int) -> None:
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    reduced = drop_dominated(instance)
+    assert all(own <= set(cell.colors) for own, cell in zip(reduced, instance.cells, strict=True))
+    assert minimum(with_colors(instance, reduced)) == minimum(instance)
+
+
+def with_colors(instance: Instance, colors: tuple[frozenset[int], ...]) -> Instance:
+    """The instance with fewer colors a cell."""
+    cells = tuple(
+        replace(cell, colors=tuple(sorted(own)))
+        for cell, own in zip(instance.cells, colors, strict=True)
+    )
+    edges = []
+    for edge in instance.edges:
+        left = instance.joinable(edge.id)
+        if left:
+            left = tuple(c for c in left if c in colors[edge.left] & colors[edge.right])
+        edges.append(replace(edge, colors=left))
+    return replace(instance, cells=cells, edges=tuple(edges))
+
+
+def test_a_crack_keeps_a_color_from_being_dominated() -> None:
+    # Blue is everywhere where red is, but only red passes the one edge.
+    instance = Instance.read(PAPER / "dominated-by-crack.json")
+    assert drop_dominated(instance) == (frozenset({RED}), frozenset({RED}))
+    assert solve(instance, Options()).segments == 1
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=SEEDS, petal_count=st.integers(2, 14), colors=st.integers(2, 5))
+def test_hubs_have_their_known_minimum(seed: int, petal_count: int, colors: int) -> None:
+    if colors == 2 and petal_count % 2:
+        petal_count += 1  # two colors can alternate around an even ring only
+    instance = hub(seed, petal_count, colors)
+    ring = [cell.colors[0] for cell in instance.cells[1:]]
+    assert solve(instance, Options()).segments == hub_minimum(ring)
+
+
+@pytest.mark.parametrize(
+    ("name", "paper", "surface"),
+    [("parallel-corridors", 3, 2), ("parallel-corridors-private", 4, 3)],
+)
+def test_surface_may_beat_paper(name: str, paper: int, surface: int) -> None:
+    instance = Instance.read(PAPER / f"{name}.json")
+    found = solve(instance, Options())
+    assert (found.status, found.segments) == ("optimal", paper)
+    assert not found.proved_for_surface
+    found = solve(instance, Options(search_space="surface", strands=2))
+    assert (found.status, found.segments, found.proved_for_surface) == ("optimal", surface, True)
+
+
+def test_three_loops_need_more_strands_than_two_at_a_time_would_get() -> None:
+    instance = Instance.read(PAPER / "three-loops.json")
+    found = solve(instance, Options())
+    assert (found.status, found.segments) == ("optimal", 4)
+
+
+def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
+    # A hub's cover bound is its number of colors, far below its minimum.
+    found = solve(hub(1, 6, 3), Options(search_space="surface", strands=2))
+    assert found.segments is not None and found.surface_lower_bound < found.segments
+    assert found.status == "feasible" and not found.proved_for_surface
+
+
+def test_no_time_gives_no_more_than_was_found() -> None:
+    instance = decompose(blobs(3))
+    found = solve(instance, Options(time_limit=0.0))
+    assert found.status in ("unknown", "feasible", "optimal")
+    assert (found.segments is None) == (found.status == "unknown")
+    assert found.lower_bound == len(set_cover(instance))
+
+
+@pytest.mark.parametrize("instance", [Instance("empty", (), (), ()), Instance("e", ("r",), (), ())])
+def test_empty_instance(instance: Instance) -> None:
+    found = solve(instance, Options())
+    assert (found.status, found.segments, found.lift_offs, found.cells) == ("optimal", 0, 0, ())
+    assert list(CpSatSolver().optimal_schemes(instance, Options(), 0)) == [()]
+
+
+def test_a_closed_surface_of_one_cell() -> None:
+    instance = Instance("sphere", ("red", "blue"), (Cell(0, (RED, BLUE), ()),), ())
+    assert solve(instance, Options()).segments == 1
+    # It may be painted in either color.
+    schemes = list(CpSatSolver().optimal_schemes(instance, Options(), 1))
+    assert {scheme_key(s) for s in schemes} == {
+        (frozenset({(color, frozenset())}),) for color in (RED, BLUE)
+    }
+
+
+def test_enumeration_stops_when_its_time_is_over() -> None:
+    # Forty cells of two free colors each have 2**40 optimal schemes.
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(time_limit=0.5), 40)
+    with pytest.raises(OutOfTime):
+        for _ in found:
+            pass
+
+
+def test_enumeration_can_be_left_early() -> None:
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(), 40)
+    assert len({scheme_key(next(found)) for _ in range(5)}) == 5
+    found.close()  # type: ignore[attr-defined]
+
+
+def test_progress_reports_the_best_and_the_bound() -> None:
+    seen: list[tuple[int | None, int]] = []
+    instance = Instance.read(PAPER / "split-cell.json")
+    CpSatSolver().minimize(instance, Options(), lambda best, bound: seen.append((best, bound)))
+    assert seen[0] == (None, 2) and seen[-1] == (2, 2)
