@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
@@ -25,6 +27,28 @@ RING = PAPER / "ring.json"
 CORRIDORS = PAPER / "parallel-corridors.json"
 ZEROS = PAPER / "crossing-zeros.json"
 Capture = pytest.CaptureFixture[str]
+
+
+# Ctrl-C as soon as the search has a division: from another thread if it runs in one.
+INTERRUPTED = """
+import contextlib, signal, sys, threading
+import cellcolor.cli, cellcolor.cli.solve
+
+sent = threading.Event()
+
+@contextlib.contextmanager
+def watched(_file):
+    def report(segments, _bound):
+        searching = "dfs" in sys.argv or threading.current_thread() is not threading.main_thread()
+        if segments is not None and searching and not sent.is_set():
+            sent.set()
+            signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+    yield report
+
+cellcolor.cli.solve.progress_of = watched
+code = cellcolor.cli.main(sys.argv[1:])
+sys.exit(code if sent.is_set() else 99)
+"""
 
 
 def run(*arguments: object) -> int:
@@ -164,6 +188,26 @@ class TestSolve:
         assert solution.status in ("feasible", "unknown")
         assert run("check", hub, out) == 0
 
+    @pytest.mark.parametrize(
+        ("instance", "options"),
+        [
+            # In the surface nothing proves the 3 segments of this one, so the search goes on.
+            (PAPER / "annulus.json", ["--search-space", "surface"]),
+            (INSTANCES / "random" / "hub_24.json", ["--solver", "dfs"]),
+        ],
+        ids=["cp-sat", "dfs"],
+    )
+    def test_interrupt(self, instance: Path, options: list[str], tmp_path: Path) -> None:
+        """Ctrl-C ends the search, the best found is written, and the files after it are left."""
+        arguments = ["solve", instance, RING, "-o", tmp_path, *options]
+        done = subprocess.run(
+            [sys.executable, "-c", INTERRUPTED, *map(str, arguments)], check=False
+        )
+        assert done.returncode == 3
+        (written,) = tmp_path.iterdir()
+        assert Solution.read(written).status == "feasible"
+        assert run("check", instance, written) == 0
+
     def test_empty_instance(self, tmp_path: Path, capsys: Capture) -> None:
         empty = INSTANCE | {"cells": [], "edges": [], "known": {}}
         empty.pop("surface")
@@ -221,10 +265,10 @@ class TestAllSchemes:
         (line,) = json_lines(capsys.readouterr().out)
         assert (line["schemes"], line["complete"]) == (3, True)
 
-    @pytest.mark.parametrize("stop", [OutOfTime("time"), KeyboardInterrupt()], ids=repr)
+    @pytest.mark.parametrize("ctrl_c", [False, True])
     def test_stopped(
         self,
-        stop: BaseException,
+        ctrl_c: bool,
         tmp_path: Path,
         capsys: Capture,
         monkeypatch: pytest.MonkeyPatch,
@@ -234,7 +278,9 @@ class TestAllSchemes:
 
         def interrupted(*arguments: Any) -> Iterator[Division]:
             yield next(iter(enumerate_schemes(*arguments)))
-            raise stop
+            if ctrl_c:
+                signal.raise_signal(signal.SIGINT)
+            raise OutOfTime("time")
 
         monkeypatch.setattr(cellcolor.solvers.run, "enumerate_schemes", interrupted)
         out = tmp_path / "some.jsonl"

@@ -37,7 +37,7 @@ def halves(surface: LabelledSurface) -> Plan:
 )
 def test_range_holds_what_is_known(path: Path) -> None:
     known = Instance.read(path.with_name(path.name.replace(".surface", ""))).known
-    bounds = proven_range(LabelledSurface.read(path))
+    bounds = proven_range(LabelledSurface.read(path), time_limit=5.0)
     assert bounds.lower <= bounds.upper
     assert known is not None
     if known.surface is not None:

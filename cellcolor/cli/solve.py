@@ -17,6 +17,7 @@ import click
 
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
+from cellcolor.cli.interrupts import Interrupted, Interrupts
 from cellcolor.cli.progress import progress_of
 from cellcolor.cli.tables import print_overview, print_solution
 from cellcolor.data.files import replacing, write_text
@@ -54,15 +55,18 @@ def solve_files(request: Request) -> Exit:
     targets = _targets(request)
     codes: list[Exit] = []
     solved: list[tuple[Path, Instance, Solution]] = []
+    interrupts = Interrupts()
     for file, target in zip(request.files, targets, strict=True):
         try:
             instance = read_instance(file)
-            solution = _solve(instance, file, target, request)
+            solution = _solve(instance, file, target, request, interrupts)
+        except Interrupted:
+            _say_failed(request, file, f"{file}: interrupted, nothing found yet")
+            codes.append(Exit.STOPPED)
+            break
         except CellcolorError as error:
-            named = error if isinstance(error, InputError) and error.file else f"{file}: {error}"
-            print(f"cellcolor: {named}", file=sys.stderr)
-            if request.as_json:
-                _print_json({"file": str(file), "error": str(named)})
+            named = isinstance(error, InputError) and error.file
+            _say_failed(request, file, str(error) if named else f"{file}: {error}")
             codes.append(Exit.BAD_INPUT)
             continue
         if request.as_json:
@@ -72,9 +76,19 @@ def solve_files(request: Request) -> Exit:
         solved.append((file, instance, solution))
         done = solution.status == "optimal" and solution.complete is not False
         codes.append(Exit.DONE if done else Exit.STOPPED)
+        if interrupts.seen:
+            break
+    if len(codes) < len(request.files):
+        codes.append(Exit.STOPPED)
     if len(request.files) > 1 and not request.as_json:
         print_overview(solved)
     return worst(codes)
+
+
+def _say_failed(request: Request, file: Path, message: str) -> None:
+    print(f"cellcolor: {message}", file=sys.stderr)
+    if request.as_json:
+        _print_json({"file": str(file), "error": message})
 
 
 def _print_json(document: dict[str, object]) -> None:
@@ -105,23 +119,29 @@ def _targets(request: Request) -> list[Path | None]:
     return list(targets)
 
 
-def _solve(instance: Instance, file: Path, target: Path | None, request: Request) -> Solution:
+def _solve(
+    instance: Instance, file: Path, target: Path | None, request: Request, interrupts: Interrupts
+) -> Solution:
     """Solve one instance and write what was found."""
     from cellcolor.solvers.run import solve
 
     if request.every:
         _refuse_schemes(instance)
     started = time.monotonic()
-    with progress_of(file) as report:
+    with progress_of(file) as report, interrupts.end_the_search():
         solution = solve(instance, request.options, request.solver, report)
     if not request.every:
         if target is not None:
-            target.parent.mkdir(parents=True, exist_ok=True)
+            _make_folder(target)
             write_text(target, solution.to_json())
         return solution
     spent = time.monotonic() - started
     with _spool(target) as spool:
-        solution = _with_schemes(instance, solution, spent, request, spool)
+        if interrupts.seen:
+            solution = replace(solution, schemes=0, complete=False)
+        else:
+            with interrupts.end_the_search():
+                solution = _with_schemes(instance, solution, spent, request, spool)
         if target is not None and spool is not None:
             spool.seek(0)
             with replacing(target) as stream:
@@ -141,14 +161,21 @@ def _refuse_schemes(instance: Instance) -> None:
             )
 
 
+def _make_folder(target: Path) -> None:
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(str(target), None, error.strerror or "cannot be written") from error
+
+
 @contextmanager
 def _spool(target: Path | None) -> Iterator[IO[str] | None]:
     """A file beside the target, where schemes wait for the solution that goes before them."""
     if target is None:
         yield None
         return
+    _make_folder(target)
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
         spool = tempfile.NamedTemporaryFile(  # noqa: SIM115
             "w+", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.schemes."
         )
@@ -181,7 +208,7 @@ def _with_schemes(
             if spool is not None:
                 spool.write(scheme_line(division) + "\n")
                 spool.flush()
-    except (OutOfTime, KeyboardInterrupt):
+    except OutOfTime:
         complete = False
     seconds = solution.seconds + time.monotonic() - started
     return replace(solution, schemes=count, complete=complete, seconds=seconds)
