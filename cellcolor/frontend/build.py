@@ -16,6 +16,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.frontend.collision import Mask
 from cellcolor.frontend.continuity import Coloring, color, find_cracks, link, node_links
+from cellcolor.frontend.generators import make_surface
 from cellcolor.frontend.kinematics import (
     forward,
     manipulability,
@@ -25,7 +26,6 @@ from cellcolor.frontend.kinematics import (
 from cellcolor.frontend.report import BuildReport, make_report
 from cellcolor.frontend.robot import Array, Robot, load_robot
 from cellcolor.frontend.scene import Scene, Setup, load_scene, load_setup
-from cellcolor.frontend.surfaces import make_surface
 from cellcolor.frontend.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
 from cellcolor.frontend.validity import judge
 
@@ -109,7 +109,7 @@ def _build(
     solutions = solve_inverse(geometry, surface.vertices, -surface.normals, locked)
     lap("inverse kinematics", started)
 
-    candidates = judge(robot, setup, scene.ground, surface, solutions)
+    candidates = judge(robot, setup, scene, surface, solutions)
     seconds |= candidates.seconds
 
     def probe(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Array, Mask]:

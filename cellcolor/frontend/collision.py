@@ -1,8 +1,8 @@
-"""Collisions of the arm with itself, the ground and the object, of many configurations at once.
+"""Collisions of many configurations at once: with the arm itself, ground, obstacles and object.
 
 Shapes are capsules and flat-ended cylinders (:class:`~cellcolor.frontend.robot.Body`). Capsules
 are settled in numpy. A cylinder lies between two capsules, one around and one inside it; only
-where these disagree, and against the object's mesh, fcl decides.
+where these disagree, and against obstacles and the object's mesh, fcl decides.
 """
 
 from __future__ import annotations
@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from cellcolor.frontend.kinematics import Poses
 from cellcolor.frontend.robot import Array, Body, Robot
-from cellcolor.frontend.surfaces import Faces
+from cellcolor.frontend.scene import BoxObstacle, CylinderObstacle, Obstacle, SphereObstacle
+from cellcolor.frontend.surfaces import Faces, rotation_from_rpy
 
-__all__ = ["ObjectCollider", "hits_ground", "hits_itself", "segment_distance"]
+__all__ = ["Collider", "hits_ground", "hits_itself", "segment_distance"]
 
 Mask = NDArray[np.bool_]
 
@@ -56,22 +57,18 @@ def hits_ground(robot: Robot, poses: Poses, height: float, exempt: tuple[str, ..
     return hit
 
 
-class ObjectCollider:
-    """The object's mesh, prepared for many queries.
+class Collider:
+    """Something that stands still, prepared for many queries.
 
-    The mesh is a shell: a body wholly inside a closed mesh does not touch it. That cannot
-    happen unnoticed to an arm whose bodies touch one another in a row and whose tool ends
-    outside, at the surface.
+    A mesh is a shell: a body wholly inside a closed one does not touch it. That cannot happen
+    unnoticed to an arm whose bodies touch one another in a row and of which a part is outside.
     """
 
-    def __init__(self, robot: Robot, vertices: Array, faces: Faces) -> None:
-        self._robot = robot
-        self._lowest, self._highest = vertices.min(axis=0), vertices.max(axis=0)
-        model = fcl.BVHModel()
-        model.beginModel(len(faces), len(vertices))
-        model.addSubModel(vertices, faces)
-        model.endModel()
-        self._object = fcl.CollisionObject(model, fcl.Transform())
+    def __init__(
+        self, robot: Robot, solid: fcl.CollisionObject, lowest: Array, highest: Array
+    ) -> None:
+        """``lowest`` and ``highest`` (3,) bound the solid in the world, m."""
+        self._solid, self._lowest, self._highest = solid, lowest, highest
         self._request = fcl.CollisionRequest()
         # From the tool to the base: what is near the object is asked first.
         self._bodies = [
@@ -79,15 +76,40 @@ class ObjectCollider:
             for body in reversed(robot.bodies)
         ]
 
+    @classmethod
+    def of_mesh(cls, robot: Robot, vertices: Array, faces: Faces) -> Collider:
+        """A triangle mesh in the world."""
+        model = fcl.BVHModel()
+        model.beginModel(len(faces), len(vertices))
+        model.addSubModel(vertices, faces)
+        model.endModel()
+        solid = fcl.CollisionObject(model, fcl.Transform())
+        return cls(robot, solid, vertices.min(axis=0), vertices.max(axis=0))
+
+    @classmethod
+    def of_obstacle(cls, robot: Robot, obstacle: Obstacle) -> Collider:
+        """A primitive of the scene."""
+        match obstacle:
+            case BoxObstacle(size_m=size):
+                shape, half = fcl.Box(*size), np.array(size) / 2
+            case CylinderObstacle(radius_m=radius, height_m=height):
+                shape, half = fcl.Cylinder(radius, height), np.array([radius, radius, height / 2])
+            case SphereObstacle(radius_m=radius):
+                shape, half = fcl.Sphere(radius), np.full(3, radius)
+        turn, center = rotation_from_rpy(*obstacle.rpy_rad), np.array(obstacle.position_m)
+        solid = fcl.CollisionObject(shape, fcl.Transform(turn, center))
+        reach = np.abs(turn) @ half
+        return cls(robot, solid, center - reach, center + reach)
+
     def hits_fixed(self) -> str | None:
-        """The link that stands still and touches the object, if there is one."""
+        """The link of the robot that cannot move and touches the solid, if there is one."""
         for body, solid, (center, turn) in self._bodies:
             if body.joint == 0 and self._touches(solid, center, turn):
                 return body.link
         return None
 
     def hits(self, poses: Poses) -> Mask:
-        """Whether any moving body touches the object, (n,)."""
+        """Whether any moving body touches the solid, (n,)."""
         hit = np.zeros(len(poses.tip), dtype=bool)
         for body, solid, (center, turn) in self._bodies:
             if body.joint == 0:
@@ -106,7 +128,7 @@ class ObjectCollider:
 
     def _touches(self, solid: fcl.CollisionObject, center: Array, turn: Array) -> bool:
         solid.setTransform(fcl.Transform(turn, center))
-        return bool(fcl.collide(self._object, solid, self._request, fcl.CollisionResult()))
+        return bool(fcl.collide(self._solid, solid, self._request, fcl.CollisionResult()))
 
 
 def segment_distance(p0: Array, p1: Array, q0: Array, q1: Array) -> Array:

@@ -8,21 +8,28 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Literal, TypeVar
+from typing import Annotated, Literal, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from cellcolor.errors import InputError
 
 __all__ = [
+    "BoxObstacle",
     "CapObject",
     "Continuity",
+    "CylinderObstacle",
     "Ground",
     "MeshObject",
+    "Object",
+    "Obstacle",
+    "PipeObject",
     "Placement",
+    "RectangleObject",
     "RobotFiles",
     "Scene",
     "Setup",
+    "SphereObstacle",
     "Task",
     "Thresholds",
     "load_scene",
@@ -38,15 +45,35 @@ class _Table(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
 
 
-class CapObject(_Table):
+class _Sampled(_Table):
+    target_vertices: Annotated[int, Field(ge=7, le=1_000_000)]
+    jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
+    seed: Annotated[int, Field(ge=0)] = 0
+
+
+class CapObject(_Sampled):
     """A spherical cap about +z, the sphere's center at the object's origin."""
 
     kind: Literal["spherical-cap"]
     radius_m: Positive
     half_angle_rad: Annotated[FiniteFloat, Field(gt=0, lt=3.1)]
-    target_vertices: Annotated[int, Field(ge=7, le=1_000_000)]
-    jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
-    seed: Annotated[int, Field(ge=0)] = 0
+
+
+class PipeObject(_Sampled):
+    """Part of a pipe's outside: its axis along y through the origin, its crown at +z."""
+
+    kind: Literal["pipe"]
+    radius_m: Positive
+    length_m: Positive
+    arc_rad: Annotated[FiniteFloat, Field(gt=0, lt=6.2)]
+
+
+class RectangleObject(_Sampled):
+    """A flat rectangle in z = 0, centered on the origin, its outside at +z."""
+
+    kind: Literal["rectangle"]
+    size_x_m: Positive
+    size_y_m: Positive
 
 
 class MeshObject(_Table):
@@ -70,14 +97,41 @@ class Ground(_Table):
     height_m: FiniteFloat
 
 
+class BoxObstacle(Placement):
+    """A solid box, centered on its position."""
+
+    kind: Literal["box"]
+    size_m: tuple[Positive, Positive, Positive]
+
+
+class CylinderObstacle(Placement):
+    """A solid cylinder about its own z axis, centered on its position."""
+
+    kind: Literal["cylinder"]
+    radius_m: Positive
+    height_m: Positive
+
+
+class SphereObstacle(Placement):
+    """A solid sphere, centered on its position."""
+
+    kind: Literal["sphere"]
+    radius_m: Positive
+
+
+Object = CapObject | PipeObject | RectangleObject | MeshObject
+Obstacle = BoxObstacle | CylinderObstacle | SphereObstacle
+
+
 class Scene(_Table):
-    """An object, where it stands, and the ground if there is one."""
+    """An object, where it stands, and what else is there: ground and obstacles."""
 
     name: Annotated[str, Field(min_length=1)]
     setup: str
-    object: Annotated[CapObject | MeshObject, Field(discriminator="kind")]
+    object: Annotated[Object, Field(discriminator="kind")]
     placement: Placement
     ground: Ground | None = None
+    obstacle: tuple[Annotated[Obstacle, Field(discriminator="kind")], ...] = ()
 
 
 class RobotFiles(_Table):
@@ -165,11 +219,17 @@ def _tuples(value: object) -> object:
 
 def _key(location: tuple[int | str, ...]) -> str:
     """``("object", "spherical-cap", "radius_m")`` as ``object.radius_m``: no variant tags."""
-    tags = {"spherical-cap", "mesh"}
     text = ""
     for part in location:
         if isinstance(part, int):
             text += f"[{part}]"
-        elif part not in tags:
+        elif part not in _KINDS:
             text += f".{part}" if text else part
     return text
+
+
+_KINDS = {
+    kind
+    for variant in (*get_args(Object), *get_args(Obstacle))
+    for kind in get_args(variant.model_fields["kind"].annotation)
+}

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.collision import Mask, ObjectCollider, hits_ground, hits_itself
+from cellcolor.frontend.collision import Collider, Mask, hits_ground, hits_itself
 from cellcolor.frontend.kinematics import (
     forward,
     manipulability,
@@ -24,7 +24,7 @@ from cellcolor.frontend.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.robot import Array, Robot
-from cellcolor.frontend.scene import Ground, Setup
+from cellcolor.frontend.scene import Scene, Setup
 from cellcolor.frontend.surfaces import Surface
 
 __all__ = ["Candidates", "Reason", "judge", "within_limits"]
@@ -43,7 +43,8 @@ class Reason(IntEnum):
     TASK_DETERMINANT = 5
     GROUND = 6
     SELF_COLLISION = 7
-    OBJECT_COLLISION = 8
+    OBSTACLE_COLLISION = 8
+    OBJECT_COLLISION = 9
 
     @property
     def text(self) -> str:
@@ -92,7 +93,7 @@ def within_limits(robot: Robot, configurations: Array) -> tuple[Array, Mask]:
 
 
 def judge(
-    robot: Robot, setup: Setup, ground: Ground | None, surface: Surface, solutions: Array
+    robot: Robot, setup: Setup, scene: Scene, surface: Surface, solutions: Array
 ) -> Candidates:
     """Test all inverse-kinematic solutions (n, 8, 6) of a surface's vertices.
 
@@ -104,7 +105,8 @@ def judge(
     reasons = np.full(len(flat), Reason.VALID, dtype=np.uint8)
     determinants = np.full(len(flat), np.nan)
     seconds: dict[str, float] = {}
-    collider = ObjectCollider(robot, surface.vertices, surface.faces)
+    collider = Collider.of_mesh(robot, surface.vertices, surface.faces)
+    obstacles = [Collider.of_obstacle(robot, obstacle) for obstacle in scene.obstacle]
     blocked = collider.hits_fixed()
     if blocked is not None:
         raise InputError(None, "placement", f"the object stands in the robot's {blocked!r}")
@@ -131,9 +133,16 @@ def judge(
         return weak
 
     def in_ground(rows: Rows) -> Mask:
-        if ground is None:
+        if scene.ground is None:
             return np.zeros(len(rows), dtype=bool)
-        return hits_ground(robot, poses.take(rows), ground.height_m, setup.robot.may_touch_ground)
+        exempt = setup.robot.may_touch_ground
+        return hits_ground(robot, poses.take(rows), scene.ground.height_m, exempt)
+
+    def in_obstacle(rows: Rows) -> Mask:
+        hit = np.zeros(len(rows), dtype=bool)
+        for obstacle in obstacles:
+            hit[~hit] = obstacle.hits(poses.take(rows[~hit]))
+        return hit
 
     # Each test sees the rows of `poses` that have passed the ones before it.
     tests: tuple[tuple[Reason, Callable[[Rows], Mask]], ...] = (
@@ -148,6 +157,7 @@ def judge(
         ),
         (Reason.GROUND, in_ground),
         (Reason.SELF_COLLISION, lambda rows: hits_itself(robot, poses.take(rows))),
+        (Reason.OBSTACLE_COLLISION, in_obstacle),
         (Reason.OBJECT_COLLISION, lambda rows: collider.hits(poses.take(rows))),
     )
     passed = np.arange(len(posed))

@@ -5,24 +5,33 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
+import coal
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 from world import PAIRS, World
 
 from cellcolor.errors import InputError
-from cellcolor.frontend import build_surface
+from cellcolor.frontend import Reason, build_surface
 from cellcolor.frontend.collision import (
-    ObjectCollider,
+    Collider,
     hits_ground,
     hits_itself,
     segment_distance,
 )
+from cellcolor.frontend.generators import disc_mesh, spherical_cap
 from cellcolor.frontend.kinematics import forward
 from cellcolor.frontend.robot import Array, Robot
-from cellcolor.frontend.scene import Placement
-from cellcolor.frontend.surfaces import Surface, spherical_cap
+from cellcolor.frontend.scene import (
+    BoxObstacle,
+    CylinderObstacle,
+    Obstacle,
+    Placement,
+    SphereObstacle,
+)
+from cellcolor.frontend.surfaces import Surface
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
 EXEMPT = ("base_link", "shoulder_link")
@@ -32,7 +41,7 @@ corner = st.lists(st.sampled_from([-2, -1, 0, 1, 2]), min_size=3, max_size=3)
 @pytest.fixture(scope="module")
 def wok() -> Surface:
     place = Placement(position_m=(0.465, -0.15, -0.04))
-    return spherical_cap(0.2, 1.13, 500, 0.15, 1).placed(place)
+    return spherical_cap(0.2, 1.13, *disc_mesh(500, 0.15, 1)).placed(place)
 
 
 @pytest.fixture(scope="module")
@@ -67,7 +76,7 @@ def test_ground_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> N
 
 def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
     world = World(robot, wok.vertices, wok.faces)
-    found = ObjectCollider(robot, wok.vertices, wok.faces).hits(forward(robot, joints))
+    found = Collider.of_mesh(robot, wok.vertices, wok.faces).hits(forward(robot, joints))
     assert 0.05 < found.mean() < 0.95
     near = 0
     for q, verdict in zip(joints, found, strict=True):
@@ -78,6 +87,44 @@ def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> N
             assert abs(distance) <= CONTACT
             near += 1
     assert near < 0.01 * len(joints)
+
+
+ASIDE = {"position_m": (0.3, -0.1, 0.35), "rpy_rad": (0.4, -0.7, 1.1)}
+OBSTACLES = [
+    (BoxObstacle(kind="box", size_m=(0.1, 0.4, 0.2), **ASIDE), coal.Box(0.1, 0.4, 0.2)),
+    (CylinderObstacle(kind="cylinder", radius_m=0.1, height_m=0.5, **ASIDE),
+     coal.Cylinder(0.1, 0.5)),
+    (SphereObstacle(kind="sphere", radius_m=0.2, **ASIDE), coal.Sphere(0.2)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("obstacle", "shape"), OBSTACLES, ids=["box", "cylinder", "sphere"])
+def test_obstacles_agree_with_coal(
+    robot: Robot, wok: Surface, joints: Array, obstacle: Obstacle, shape: coal.ShapeBase
+) -> None:
+    world = World(robot, wok.vertices, wok.faces)
+    turn = Rotation.from_euler("xyz", obstacle.rpy_rad).as_matrix()
+    pose = coal.Transform3s(turn, np.array(obstacle.position_m))
+    distances = []
+    for q in joints[:600]:
+        world.place(q)
+        distances.append(world.to_solid(shape, pose))
+    found = Collider.of_obstacle(robot, obstacle).hits(forward(robot, joints[:600]))
+    agree(found, np.array(distances))
+
+
+def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Path]) -> None:
+    file = scene(target_vertices=500)
+    free = build_surface(file)
+    file.write_text(
+        file.read_text()
+        + '\n[[obstacle]]\nkind = "cylinder"\nradius_m = 0.03\nheight_m = 0.3\n'
+        + "position_m = [0.205, 0.005, 0.15]\n"
+    )
+    blocked = build_surface(file)
+    changed = free.reasons != blocked.reasons
+    assert (blocked.reasons[changed] == Reason.OBSTACLE_COLLISION).all()
+    assert changed.sum() == blocked.report.candidates["obstacle collision"] > 100
 
 
 @given(st.tuples(corner, corner, corner, corner))
@@ -110,10 +157,10 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
 def test_only_the_tip_touches(robot: Robot) -> None:
     # A plate 9 mm above the tip is free, one at 11 mm cuts the tool's body.
     poses = forward(robot, tool_down(-0.3))
-    plate = spherical_cap(5.0, 0.01, 300, 0.0, 0)
+    plate = spherical_cap(5.0, 0.01, *disc_mesh(300, 0.0, 0))
     for height, expected in ((0.009, False), (0.011, True)):
         vertices = plate.vertices - [0, 0, 5.0] + poses.tip[0] + [0, 0, height]
-        assert ObjectCollider(robot, vertices, plate.faces).hits(poses)[0] == expected
+        assert Collider.of_mesh(robot, vertices, plate.faces).hits(poses)[0] == expected
 
 
 def test_object_in_the_base_is_refused(scene: Callable[..., Path]) -> None:

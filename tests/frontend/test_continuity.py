@@ -15,9 +15,10 @@ from cellcolor.data.surface import Crack
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.continuity import color, find_cracks, joint_step, link, node_links
+from cellcolor.frontend.generators import disc_mesh
 from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Continuity
-from cellcolor.frontend.surfaces import Surface, disc_mesh
+from cellcolor.frontend.surfaces import Surface
 from cellcolor.frontend.validity import Candidates, Reason
 
 POLICY = Continuity(

@@ -48,6 +48,10 @@ MESH = '[object]\nkind = "mesh"\nfile = "none.stl"\nmeters_per_unit = 1.0\n[plac
         (SCENE, r"position_m = .*?\]", "position_m = [0.0, nan, 0.0]", SCENE,
          "placement.position_m[1]", "finite"),
         (SCENE, r"\[placement\].*?\[ground", "[ground", SCENE, "placement", "required"),
+        (SCENE, r"$", '\n[[obstacle]]\nkind = "box"\nsize_m = [1.0, 1.0, 0.0]\n'
+         "position_m = [0.0, 0.0, 0.0]", SCENE, "obstacle[0].size_m[2]", "greater"),
+        (SCENE, r"$", '\n[[obstacle]]\nkind = "sphere"\nradius_m = 0.1\n', SCENE,
+         "obstacle[0].position_m", "required"),
         (SCENE, r"\[placement\]", "[placement", SCENE, None, "not TOML"),
         (SCENE, r"\[object\].*?\[placement\]", MESH, "none.stl", None, "no such mesh file"),
         (SCENE, r'"ur5_polishing.toml"', '"none.toml"', "none.toml", None, "No such file"),

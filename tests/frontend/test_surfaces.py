@@ -15,9 +15,17 @@ from scipy.spatial.transform import Rotation
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.generators import (
+    disc_mesh,
+    grid_mesh,
+    pipe,
+    rectangle,
+    spherical_cap,
+)
+from cellcolor.frontend.meshfile import load_mesh
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.scene import Placement
-from cellcolor.frontend.surfaces import Surface, disc_mesh, load_mesh, spherical_cap
+from cellcolor.frontend.surfaces import Surface
 
 
 def double_areas(points: Array, faces: Array) -> Array:
@@ -41,9 +49,53 @@ def test_disc_is_a_counter_clockwise_disc(target: int, jitter: float, seed: int)
     assert abs(len(points) - target) == np.abs(1 + 3 * k * (k + 1) - target).min()
 
 
+@given(
+    st.floats(0.1, 10),
+    st.floats(0.1, 10),
+    st.integers(7, 3000),
+    st.floats(0, 0.25),
+    st.integers(0, 10**6),
+)
+@settings(deadline=None, max_examples=50)
+def test_grid_is_a_counter_clockwise_rectangle(
+    width: float, height: float, target: int, jitter: float, seed: int
+) -> None:
+    points, faces = grid_mesh(width, height, target, jitter, seed)
+    areas = double_areas(points, faces)
+    assert (areas > 0).all() and areas.sum() / 2 == pytest.approx(width * height)
+    assert np.unique(faces).tolist() == list(range(len(points)))
+    box = np.vstack([points.min(axis=0), points.max(axis=0)])
+    assert np.allclose(box, [[0, 0], [width, height]])
+    if 0.5 < width / height < 2 and target > 100:
+        assert 0.8 < len(points) / target < 1.25
+
+
+def test_pipe() -> None:
+    grid = grid_mesh(0.083 * np.pi, 0.315, 2000, 0.15, 1)
+    half = pipe(0.083, np.pi, 0.315, *grid)
+    assert np.allclose(np.hypot(half.vertices[:, 0], half.vertices[:, 2]), 0.083)
+    assert half.vertices[:, 2].min() == pytest.approx(0, abs=1e-12)
+    assert abs(half.vertices[:, 1]).max() == pytest.approx(0.315 / 2)
+    assert half.vertices[np.argmax(half.vertices[:, 2]), 2] == pytest.approx(0.083, rel=1e-3)
+    mesh = trimesh.Trimesh(half.vertices, half.faces, process=False)
+    outward = mesh.triangles_center * [1, 0, 1]
+    assert ((mesh.face_normals * outward).sum(axis=1) > 0).all()
+    assert mesh.area == pytest.approx(np.pi * 0.083 * 0.315, rel=0.01)
+    nearest = (mesh.vertex_normals * half.normals).sum(axis=1)
+    assert nearest.min() > 0.98
+
+
+def test_rectangle() -> None:
+    flat = rectangle(0.4, 0.2, *grid_mesh(0.4, 0.2, 500, 0.2, 2))
+    assert np.allclose(flat.vertices.min(axis=0), [-0.2, -0.1, 0])
+    assert np.allclose(flat.vertices.max(axis=0), [0.2, 0.1, 0])
+    mesh = trimesh.Trimesh(flat.vertices, flat.faces, process=False)
+    assert np.allclose(mesh.face_normals, [0, 0, 1]) and np.allclose(flat.normals, [0, 0, 1])
+
+
 @pytest.mark.parametrize("half_angle", [0.3, 1.134, np.pi / 2, 2.5])
 def test_cap(half_angle: float) -> None:
-    cap = spherical_cap(0.2, half_angle, 2000, 0.15, 3)
+    cap = spherical_cap(0.2, half_angle, *disc_mesh(2000, 0.15, 3))
     assert np.allclose(np.linalg.norm(cap.vertices, axis=1), 0.2)
     assert np.allclose(cap.normals, cap.vertices / 0.2)
     assert np.arccos(cap.normals[:, 2]).max() == pytest.approx(half_angle)
@@ -56,18 +108,18 @@ def test_cap(half_angle: float) -> None:
 
 
 def test_cap_vertices_share_the_area_evenly() -> None:
-    cap = spherical_cap(0.2, np.pi / 2, 2000, 0.0, 0)
+    cap = spherical_cap(0.2, np.pi / 2, *disc_mesh(2000, 0.0, 0))
     inner = cap.vertex_areas()[:1000]
     assert inner.max() / inner.min() < 1.5
 
 
 def test_jitter_is_seeded() -> None:
-    same = [spherical_cap(0.2, 1.0, 500, 0.2, seed).vertices for seed in (4, 4, 5)]
+    same = [spherical_cap(0.2, 1.0, *disc_mesh(500, 0.2, seed)).vertices for seed in (4, 4, 5)]
     assert np.array_equal(same[0], same[1]) and not np.allclose(same[0], same[2])
 
 
 def test_placement_is_extrinsic_xyz() -> None:
-    cap = spherical_cap(0.2, 1.0, 100, 0.1, 0)
+    cap = spherical_cap(0.2, 1.0, *disc_mesh(100, 0.1, 0))
     place = Placement(position_m=(1.0, 2.0, 3.0), rpy_rad=(0.3, -0.5, 0.8))
     turn = Rotation.from_euler("xyz", [0.3, -0.5, 0.8])
     placed = cap.placed(place)
@@ -77,7 +129,7 @@ def test_placement_is_extrinsic_xyz() -> None:
 
 @pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
 def test_mesh_files(tmp_path: Path, suffix: str) -> None:
-    cap = spherical_cap(200.0, 1.2, 500, 0.1, 0)
+    cap = spherical_cap(200.0, 1.2, *disc_mesh(500, 0.1, 0))
     file = tmp_path / f"cap.{suffix}"
     trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
     read = load_mesh(file, 0.001)
@@ -87,11 +139,30 @@ def test_mesh_files(tmp_path: Path, suffix: str) -> None:
     assert ((read.normals * read.vertices).sum(axis=1) / 0.2 > 0.98).all()
 
 
+@pytest.mark.parametrize(
+    ("table", "area"),
+    [
+        ('kind = "pipe"\nradius_m = 0.083\nlength_m = 0.315\narc_rad = 3.0', 0.083 * 3 * 0.315),
+        ('kind = "rectangle"\nsize_x_m = 0.3\nsize_y_m = 0.2', 0.06),
+    ],
+)
+def test_other_objects_in_scenes(
+    scene: Callable[..., Path], tmp_path: Path, table: str, area: float
+) -> None:
+    text = scene(position_m="[0.45, 0.1, 0.1]").read_text()
+    start, end = text.index("[object]"), text.index("[placement]")
+    text = f"{text[:start]}[object]\n{table}\ntarget_vertices = 300\n\n{text[end:]}"
+    (tmp_path / "scene.toml").write_text(text)
+    report = build_surface(tmp_path / "scene.toml").report
+    assert report.area_m2 == pytest.approx(area, rel=0.01)
+    assert 200 < report.vertices < 400 and report.reachable > 100
+
+
 def test_mesh_scene_gives_what_the_generator_gives(
     scene: Callable[..., Path], tmp_path: Path
 ) -> None:
     generated = build_surface(scene(target_vertices=500))
-    cap = spherical_cap(200.0, 1.1344640137963142, 500, 0.15, 1)
+    cap = spherical_cap(200.0, 1.1344640137963142, *disc_mesh(500, 0.15, 1))
     trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(tmp_path / "wok.ply")
     text = (tmp_path / "scene.toml").read_text()
     start, end = text.index("[object]"), text.index("[placement]")

@@ -8,8 +8,6 @@ import pinocchio as pin
 
 from cellcolor.frontend.robot import Array, Robot
 
-CLEAR = float("inf")
-
 
 class World:
     """Signed distances (m, negative inside) between the arm and what is around it."""
@@ -41,8 +39,12 @@ class World:
 
     def to_object(self) -> float:
         """Smallest distance of a moving shape to the mesh; 0 when it touches."""
+        return self.to_solid(self.object, coal.Transform3s())
+
+    def to_solid(self, solid: coal.CollisionGeometry, pose: coal.Transform3s) -> float:
+        """Smallest distance of a moving shape to something that stands still."""
         return min(
-            self._distance(self.object, coal.Transform3s(), i)
+            self._distance(solid, pose, i)
             for i in range(len(self.link))
             if self.link[i] != "base_link"
         )

@@ -1,0 +1,97 @@
+"""Surfaces from mesh files: checked, never repaired."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.errors import InputError
+from cellcolor.frontend.robot import Array
+from cellcolor.frontend.surfaces import Faces, Surface, face_normals
+
+__all__ = ["load_mesh"]
+
+
+def load_mesh(file: Path, meters_per_unit: float) -> Surface:
+    """A mesh file as it is: checked, never repaired.
+
+    STL has no shared vertices, so there the corners with equal coordinates are one vertex.
+    Normals are those of the adjoining faces, weighted with their angles.
+
+    Raises:
+        InputError: missing or unreadable file, no triangles, coordinates that are not finite,
+            two vertices in one place, faces without area, vertices without faces, edges or
+            vertices that are not manifold, inconsistent winding, a closed mesh inside out;
+            names the element.
+    """
+    vertices, faces = _read_mesh(file)
+    if not len(faces):
+        raise InputError(str(file), "faces", "there are none")
+    try:
+        # The labelled surface's own rules, held here before any work is done.
+        bare = LabelledSurface(file.name, (), vertices, faces, ((),) * len(vertices))
+    except InputError as error:
+        raise error.in_file(str(file)) from error
+    _check_elements(file, vertices, faces)
+    if len(bare.left_of) == 2 * len(
+        np.unique(np.sort(np.array(list(bare.left_of)), axis=1), axis=0)
+    ):
+        corners = vertices[faces]
+        if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
+            raise InputError(str(file), "faces", "closed mesh inside out: its volume is negative")
+    normals = _vertex_normals(vertices, faces)
+    return Surface(vertices * meters_per_unit, faces, normals)
+
+
+def _read_mesh(file: Path) -> tuple[Array, Faces]:
+    if not file.is_file():
+        raise InputError(str(file), None, "no such mesh file")
+    if file.suffix.lower() not in (".stl", ".obj", ".ply"):
+        raise InputError(str(file), None, "not a mesh format known here (STL, OBJ, PLY)")
+    try:
+        mesh = trimesh.load_mesh(file, process=False, maintain_order=True)
+        vertices = np.array(mesh.vertices, dtype=np.float64).reshape(-1, 3)
+        faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
+    except Exception as error:  # trimesh's readers raise whatever their parsers ran into
+        raise InputError(str(file), None, f"trimesh cannot read it: {error!r}") from error
+    if file.suffix.lower() == ".stl":
+        vertices, index = np.unique(vertices, axis=0, return_inverse=True)
+        faces = index.reshape(-1)[faces]
+    return vertices, faces
+
+
+def _check_elements(file: Path, vertices: Array, faces: Faces) -> None:
+    used = np.zeros(len(vertices), dtype=bool)
+    used[faces] = True
+    if not used.all():
+        raise InputError(str(file), f"vertices[{np.argmin(used)}]", "belongs to no face")
+    _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
+    twin = first[index.reshape(-1)] != np.arange(len(vertices))
+    if twin.any():
+        vertex = int(np.argmax(twin))
+        other = int(first[index.reshape(-1)[vertex]])
+        raise InputError(str(file), f"vertices[{vertex}]", f"in one place with vertex {other}")
+    double_area = np.linalg.norm(face_normals(vertices, faces), axis=1)
+    longest = np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2).max(1)
+    flat = double_area <= 1e-9 * longest**2
+    if flat.any():
+        raise InputError(str(file), f"faces[{np.argmax(flat)}]", "has no area")
+
+
+def _vertex_normals(vertices: Array, faces: Faces) -> Array:
+    corners = vertices[faces]
+    ahead = np.roll(corners, -1, axis=1) - corners
+    behind = np.roll(corners, 1, axis=1) - corners
+    cosine = (
+        (ahead * behind).sum(2) / np.linalg.norm(ahead, axis=2) / np.linalg.norm(behind, axis=2)
+    )
+    angles = np.arccos(np.clip(cosine, -1, 1))
+    unit = face_normals(vertices, faces)
+    unit /= np.linalg.norm(unit, axis=1, keepdims=True)
+    normals = np.zeros_like(vertices)
+    np.add.at(normals, faces, angles[:, :, None] * unit[:, None])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return normals
