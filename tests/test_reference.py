@@ -5,9 +5,11 @@ from __future__ import annotations
 import random
 import time
 from dataclasses import replace
+from itertools import product
 from math import comb
 
 import pytest
+from bruteforce import any_scheme
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
@@ -19,8 +21,10 @@ from cellcolor.errors import InputError
 from cellcolor.families import hub, planar_graph
 from cellcolor.solvers.interface import Answer, Options, OutOfTime
 from cellcolor.solvers.reference import ReferenceSolver, code, divisions, literal_cost
-from cellcolor.solvers.reference.graph import Graphs
+from cellcolor.solvers.reference.cells import CellScheme, cell_schemes
+from cellcolor.solvers.reference.graph import GraphCell, Graphs
 from cellcolor.solvers.reference.segments import Segments
+from cellcolor.solvers.reference.zeros import zeros_fit
 
 SOLVER = ReferenceSolver()
 SURFACE = Options(search_space="surface", strands=2)
@@ -67,6 +71,37 @@ def test_codes_of_a_four_edge_cell() -> None:
         for division in divisions(4)
     }
     assert found == {f"{number:04b}" for number in range(16)} | {"11(11)", "1(11)1"}
+
+
+@pytest.mark.parametrize("edges", range(1, 7))
+def test_paintedof_a_lone_cell_in_two_colors(edges: int) -> None:
+    """With colors: rules 2 to 4, round the cyclic list's end too (red, blue and red again)."""
+    cell = Cell(0, (0, 1), (tuple(range(1, edges + 1)),))
+    alone = GraphCell(
+        0, (0, 1), cell.loops[0], (frozenset((0, 1)),) * edges, (-1,) * edges, (0,) * edges
+    )
+    found = [frozenset(scheme.subcells) for scheme in cell_schemes(alone, (None,) * edges)]
+    expected = {
+        frozenset(local.blocks)
+        for painted in product((None, 0, 1), repeat=edges)
+        for local in any_scheme(cell, painted)
+    }
+    assert len(found) == len(set(found)) and set(found) == expected
+
+
+def test_zeros_that_show_one_color_on_both_sides_do_not_fit() -> None:
+    """Two cells painted alike, or not, and an edge in state 0 that is joinable in red, or not."""
+    red, blue = (CellScheme(((color, ()),), ((0, color),)) for color in (0, 1))
+    for joinable, painted, fits in (
+        ({0, 1}, (red, red), False),
+        ({0, 1}, (red, blue), True),
+        ({1}, (red, red), True),
+    ):
+        cells = [
+            GraphCell(i, (0, 1), (dart,), (frozenset(joinable),), (-1,), (0,))
+            for i, dart in enumerate((1, -1))
+        ]
+        assert zeros_fit(cells, painted) == fits
 
 
 def test_brackets_nest_and_leave_zeros_outside() -> None:
@@ -274,7 +309,7 @@ def test_seams_carry_what_must_pass() -> None:
 # --- refusals and limits --------------------------------------------------------------------------
 
 
-def test_schemes_are_refused_where_they_are_not_defined() -> None:
+def test_paintedare_refused_where_they_are_not_defined() -> None:
     with pytest.raises(InputError, match="cell 1 has several loops") as caught:
         SOLVER.optimal_schemes(Instance.read(PAPER / "annulus.json"), Options(), 3)
     assert caught.value.field == "cells[1].loops"
@@ -282,7 +317,7 @@ def test_schemes_are_refused_where_they_are_not_defined() -> None:
         SOLVER.optimal_schemes(Instance.read(PAPER / "ring.json"), SURFACE, 2)
 
 
-def test_schemes_of_a_wrong_minimum_are_refused() -> None:
+def test_paintedof_a_wrong_minimum_are_refused() -> None:
     ring = Instance.read(PAPER / "ring.json")
     for wrong in (1, 3):
         with pytest.raises(ValueError, match="the minimum is 2"):

@@ -142,7 +142,8 @@ class _CellSearch:
         """The colors in which dart i may be in state 1."""
         joinable, side, partner = self._cell.joinable[i], self._known[i], self._cell.partner[i]
         if side is not None:
-            return [color for color in (side[1],) if side[0] == 1 and color in joinable]
+            state, color = side
+            return [color] if state == 1 and color is not None else []
         if 0 <= partner < i:  # the other side of this edge belongs to this cell
             block = self._block[partner]
             return [self._color[block]] if block >= 0 else []
