@@ -324,6 +324,20 @@ def test_paintedof_a_wrong_minimum_are_refused() -> None:
             list(SOLVER.optimal_schemes(ring, Options(), wrong))
 
 
+def test_depth_is_refused_before_the_stack_ends() -> None:
+    """A row of 600 cells can be painted, one of 1000 is refused."""
+
+    def row(count: int) -> Instance:
+        loops = [(1,), *((-i, i + 1) for i in range(1, count - 1)), (1 - count,)]
+        cells = tuple(Cell(i, (0,), (loop,)) for i, loop in enumerate(loops))
+        edges = tuple(Edge(i, i - 1, i) for i in range(1, count))
+        return Instance("row", ("red",), cells, edges)
+
+    assert segments(row(600), SOLVER.minimize(row(600), Options(time_limit=60.0))) == 1
+    with pytest.raises(InputError, match="too many"):
+        SOLVER.minimize(row(1000), Options())
+
+
 def test_time_limit_gives_the_best_so_far() -> None:
     """40 petals are out of reach: 6 colors give no useful bound."""
     instance = hub(0, 40, 6)

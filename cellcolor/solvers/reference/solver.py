@@ -19,6 +19,9 @@ __all__ = ["ReferenceSolver"]
 
 _Blocks = list[tuple[int, list[DartName]]]
 
+_DEEPEST = 700
+"""Levels of the recursion over cells and darts that Python's stack has room for."""
+
 
 class ReferenceSolver:
     """The paper's depth-first enumerative solver (sections IV and V), counting segments.
@@ -35,6 +38,9 @@ class ReferenceSolver:
 
         In the search space ``surface`` it has the fewest segments that ``options.strands``
         corridors across each edge allow, and the lower bound is one that any division obeys.
+
+        Raises:
+            InputError: the graph is far too large for a depth-first search.
         """
         deadline = _deadline(options)
         graphs = Graphs(instance, options.strands)
@@ -70,7 +76,7 @@ class ReferenceSolver:
 
         Raises:
             InputError: a cell has several live loops, or edges have strands: schemes are defined
-                for neither.
+                for neither; or the graph is far too large.
             ValueError: ``segments`` is not the minimum.
             OutOfTime: the time limit came first.
         """
@@ -178,6 +184,14 @@ class _Part:
     def _search(self, seam_strands: int) -> tuple[list[GraphCell], Search, list[Seam]]:
         built = [self._graphs.cell(cell, seam_strands) for cell in self._cells]
         graph = [cell for cell, _ in built]
+        depth = len(graph) + max(len(cell.darts) for cell in graph)
+        if depth > _DEEPEST:
+            raise InputError(
+                None,
+                "cells",
+                f"too many for a depth-first search: {depth} cells and darts in a row, "
+                f"at most {_DEEPEST}",
+            )
         search = Search(graph, self._graphs.region, self._deadline)
         return graph, search, [seam for _, seams in built for seam in seams]
 
