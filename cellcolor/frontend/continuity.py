@@ -27,6 +27,8 @@ from cellcolor.frontend.validity import Candidates
 
 __all__ = ["Coloring", "color", "find_cracks", "joint_step", "link", "node_links"]
 
+_PROBES_AT_ONCE = 20_000  # a matter of memory: some kilobytes each
+
 Index = NDArray[np.int64]
 Probe = Callable[[Array, Array, NDArray[np.intp]], tuple[Array, Mask]]
 """Points (k, 3), unit tool directions (k, 3) and branches (k,) to configurations (k, 6) in rad,
@@ -80,10 +82,14 @@ def link(
         clear = (step <= bound / 2) & (nearest >= policy.near_singular_determinant_m3)
     linked: Mask = both & clear
     rows, branches = np.nonzero(both & ~clear)
-    if len(rows):
-        linked[rows, branches] = _probed(
-            surface, edges, rows, branches, length, candidates, policy, probe
-        )
+    pieces = np.maximum(np.ceil(length[rows] / policy.probe_spacing_m).astype(int), 2)
+    for count in np.unique(pieces):
+        alike = np.flatnonzero(pieces == count)
+        size = max(1, _PROBES_AT_ONCE // int(count))
+        for some in (alike[k : k + size] for k in range(0, len(alike), size)):
+            linked[rows[some], branches[some]] = _probed(
+                surface, edges[rows[some]], branches[some], int(count), candidates, policy, probe
+            )
     return linked
 
 
@@ -95,28 +101,28 @@ def _bound(policy: Continuity, length: Array) -> Array:
 def _probed(
     surface: Surface,
     edges: Index,
-    rows: NDArray[np.intp],
     branches: NDArray[np.intp],
-    length: Array,
+    pieces: int,
     candidates: Candidates,
     policy: Continuity,
     probe: Probe,
 ) -> Mask:
-    """Follow a branch along edges: straight between the points, the normal turning evenly."""
-    i, j = edges[rows].T
-    pieces = max(2, int(np.ceil(length[rows].max() / policy.probe_spacing_m)))
+    """Follow a branch along each edge: straight, the normal turning with it."""
+    i, j = edges.T
     way = np.linspace(0.0, 1.0, pieces + 1)[None, 1:-1, None]
     points = (1 - way) * surface.vertices[i][:, None] + way * surface.vertices[j][:, None]
     normals = (1 - way) * surface.normals[i][:, None] + way * surface.normals[j][:, None]
-    normals /= np.linalg.norm(normals, axis=2, keepdims=True)
+    with np.errstate(invalid="ignore"):  # between opposite normals there is none: NaN
+        normals /= np.linalg.norm(normals, axis=2, keepdims=True)
     between, conditioned = probe(
         points.reshape(-1, 3), -normals.reshape(-1, 3), np.repeat(branches, pieces - 1)
     )
-    between = between.reshape(len(rows), pieces - 1, -1)
-    conditioned = conditioned.reshape(len(rows), pieces - 1)
-    start, end = (candidates.configurations[edges[rows, side], branches] for side in (0, 1))
+    between = between.reshape(len(edges), pieces - 1, -1)
+    conditioned = conditioned.reshape(len(edges), pieces - 1)
+    start, end = (candidates.configurations[ends, branches] for ends in (i, j))
     path = np.concatenate([start[:, None], between, end[:, None]], axis=1)
-    bound = _bound(policy, length[rows] / pieces)
+    length = np.linalg.norm(surface.vertices[i] - surface.vertices[j], axis=1)
+    bound = _bound(policy, length / pieces)
     # A missing configuration is NaN, and a comparison with NaN is false.
     smooth = np.all(joint_step(path[:, :-1], path[:, 1:]) <= bound[:, None], axis=1)
     followed: Mask = smooth & np.all(conditioned, axis=1)

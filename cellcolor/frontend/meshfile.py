@@ -36,13 +36,16 @@ def load_mesh(file: Path, meters_per_unit: float) -> Surface:
     except InputError as error:
         raise error.in_file(str(file)) from error
     _check_elements(file, vertices, faces)
-    if len(bare.left_of) == 2 * len(
-        np.unique(np.sort(np.array(list(bare.left_of)), axis=1), axis=0)
-    ):
+    if all((j, i) in bare.left_of for i, j in bare.left_of):  # closed
         corners = vertices[faces]
         if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
             raise InputError(str(file), "faces", "closed mesh inside out: its volume is negative")
     normals = _vertex_normals(vertices, faces)
+    size = np.linalg.norm(normals, axis=1, keepdims=True)
+    if size.min() < 1e-6:
+        vertex = np.argmin(size)
+        raise InputError(str(file), f"vertices[{vertex}]", "has no normal: its faces cancel out")
+    normals /= size
     return Surface(vertices * meters_per_unit, faces, normals)
 
 
@@ -82,6 +85,7 @@ def _check_elements(file: Path, vertices: Array, faces: Faces) -> None:
 
 
 def _vertex_normals(vertices: Array, faces: Faces) -> Array:
+    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex."""
     corners = vertices[faces]
     ahead = np.roll(corners, -1, axis=1) - corners
     behind = np.roll(corners, 1, axis=1) - corners
@@ -93,5 +97,4 @@ def _vertex_normals(vertices: Array, faces: Faces) -> Array:
     unit /= np.linalg.norm(unit, axis=1, keepdims=True)
     normals = np.zeros_like(vertices)
     np.add.at(normals, faces, angles[:, :, None] * unit[:, None])
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return normals

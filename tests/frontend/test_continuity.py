@@ -88,6 +88,21 @@ def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
     assert plane.linked().all() and plane.asked > 0
 
 
+def test_many_probes_are_taken_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
+    plane = Plane(lambda p: 1.9 * p[0] if p[1] < 0.5 else np.sign(p[0]))
+    whole = plane.linked()
+    largest = 0
+
+    def probe(points: Array, directions: Array, branch: Array) -> tuple[Array, Array]:
+        nonlocal largest
+        largest = max(largest, len(points))
+        return plane.probe(points, directions, branch)
+
+    monkeypatch.setattr("cellcolor.frontend.continuity._PROBES_AT_ONCE", 50)
+    batched = link(plane.surface, plane.edges, plane.candidates, POLICY, probe)
+    assert (batched == whole).all() and 0 < largest <= 50
+
+
 def test_jump_between_the_ends_is_not_linked() -> None:
     plane = Plane(lambda p: 0.0 if p[0] < 0.3 else 1.5)
     across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.3).sum(axis=1) == 1
@@ -96,7 +111,7 @@ def test_jump_between_the_ends_is_not_linked() -> None:
 
 def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> None:
     def gap(p: Array) -> float:
-        return np.nan if 0.4 < p[0] < 0.45 else 0.0
+        return np.nan if 0.38 < p[0] < 0.46 else 0.0
 
     assert Plane(gap).linked().all()
     near = Plane(gap, determinant=0.001)
@@ -108,7 +123,7 @@ def test_ill_conditioned_point_on_the_way_is_not_linked() -> None:
     plane = Plane(lambda _: 0.0, determinant=0.001)
 
     def probe(points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
-        return plane.joints(points, branch), (points[:, 0] < 0.4) | (points[:, 0] > 0.45)
+        return plane.joints(points, branch), (points[:, 0] < 0.38) | (points[:, 0] > 0.46)
 
     found = link(plane.surface, plane.edges, plane.candidates, POLICY, probe)
     across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.42).sum(axis=1) == 1

@@ -97,6 +97,13 @@ def test_configurations_put_the_tool_on_the_surface(robot: Robot, scene: Scene) 
         assert np.allclose(pose.rotation[:, 2], -(vertex - center) / 0.2, atol=1e-9)
 
 
+def test_locked_joint_stays_where_the_setup_says(scene: Scene) -> None:
+    result = build_surface(scene(setup={"locked_joint_6_rad": 0.7}, target_vertices=200))
+    solved = result.reasons != Reason.NO_SOLUTION
+    assert solved.sum() > 500
+    assert (result.configurations[solved][:, 5] == 0.7).all()
+
+
 def counts(result: BuildResult) -> dict[str, int]:
     return result.report.candidates
 
