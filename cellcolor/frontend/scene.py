@@ -204,11 +204,12 @@ def _load(file: Path, model: type[_Model]) -> _Model:
     except tomllib.TOMLDecodeError as error:
         raise InputError(str(file), None, f"not TOML: {error}") from error
     try:
-        # Strict validation takes a TOML array for a tuple only when told that it is no Python.
+        # Strict validation takes no list for a tuple, and TOML's arrays are lists.
         return model.model_validate(_tuples(document))
     except ValidationError as error:
         first = error.errors()[0]
-        raise InputError(str(file), _key(first["loc"]), first["msg"]) from error
+        message = "unknown key" if first["type"] == "extra_forbidden" else first["msg"]
+        raise InputError(str(file), _key(first["loc"]), message) from error
 
 
 def _tuples(value: object) -> object:

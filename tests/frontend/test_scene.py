@@ -30,8 +30,8 @@ MESH = '[object]\nkind = "mesh"\nfile = "none.stl"\nmeters_per_unit = 1.0\n[plac
 @pytest.mark.parametrize(
     ("file", "pattern", "replacement", "blamed", "field", "message"),
     [
-        (SCENE, r"seed = 1", "sed = 1", SCENE, "object.sed", "not permitted"),
-        (SCENE, r"\[ground\]", "[floor]", SCENE, "floor", "not permitted"),
+        (SCENE, r"seed = 1", "sed = 1", SCENE, "object.sed", "unknown key"),
+        (SCENE, r"\[ground\]", "[floor]", SCENE, "floor", "unknown key"),
         (SCENE, r"radius_m = 0.20", "", SCENE, "object.radius_m", "required"),
         (SCENE, r"radius_m = 0.20", "radius_m = nan", SCENE, "object.radius_m", "finite"),
         (SCENE, r"radius_m = 0.20", "radius_m = inf", SCENE, "object.radius_m", "finite"),
