@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from dataclasses import asdict, dataclass
 
-from cellcolor.data.instance import Instance
+from cellcolor.data.files import parse_json
+from cellcolor.data.instance import Cell, Instance
 from cellcolor.errors import CellcolorError
+from cellcolor.solvers.interface import Options
 
 __all__ = ["SOLVERS", "Contradiction", "Run", "compare", "max_live_darts", "measure"]
 
@@ -46,37 +46,55 @@ def max_live_darts(instance: Instance) -> int:
     )
 
 
-def measure(path: Path, solver: str, time_limit: float) -> Run:
-    """Solve a file with ``cellcolor solve`` in a new process.
+def measure(instance: Instance, solver: str, time_limit: float) -> Run:
+    """Solve an instance in a new process, in the search space ``paper``.
 
     Raises:
-        CellcolorError: the file cannot be solved; with the line that the process printed.
+        CellcolorError: the process failed; with the last line that it printed.
     """
-    command = [sys.executable, "-m", "cellcolor.cli", "solve", str(path), "--json"]
-    command += ["--solver", solver, "--time-limit", str(time_limit)]
+    command = [sys.executable, "-m", "cellcolor.bench", solver, str(time_limit)]
     try:
         done = subprocess.run(
-            command, capture_output=True, text=True, timeout=time_limit + _GRACE, check=False
+            command,
+            input=instance.to_json(),
+            capture_output=True,
+            encoding="utf-8",
+            timeout=time_limit + _GRACE,
+            check=False,
         )
     except subprocess.TimeoutExpired:
         return Run(None, False, None)
-    if done.returncode not in (0, 3):
+    if done.returncode != 0:
         line = (done.stderr.strip().splitlines() or [f"exit code {done.returncode}"])[-1]
-        raise CellcolorError(line.removeprefix("cellcolor: "))
-    solution: dict[str, Any] = json.loads(done.stdout)
-    return Run(solution["segments"], solution["status"] == "optimal", solution["seconds"])
+        raise CellcolorError(f"{solver} failed: {line}")
+    return Run(**json.loads(done.stdout))
 
 
-def compare(path: Path, time_limit: float) -> dict[str, Run]:
-    """Every solver's run on one file.
+def compare(instance: Instance, time_limit: float) -> dict[str, Run]:
+    """Every solver's run on one instance.
 
     Raises:
         Contradiction: two proved minima differ.
-        CellcolorError: the file cannot be solved.
+        CellcolorError: a solver failed.
     """
-    runs = {solver: measure(path, solver, time_limit) for solver in SOLVERS}
+    runs = {solver: measure(instance, solver, time_limit) for solver in SOLVERS}
     minima = {solver: run.segments for solver, run in runs.items() if run.optimal}
     if len(set(minima.values())) > 1:
         claims = ", ".join(f"{solver} {segments}" for solver, segments in minima.items())
-        raise Contradiction(f"{path}: different proved minima: {claims}")
+        raise Contradiction(f"different proved minima: {claims}")
     return runs
+
+
+def _run(solver: str, time_limit: float) -> Run:
+    """What the new process does with the instance on its standard input."""
+    from cellcolor.solvers.run import solve
+
+    instance = Instance.from_document(parse_json(sys.stdin.read()))
+    # Solvers import what they need on first use, which is not what is measured here.
+    solve(Instance("warm-up", ("any",), (Cell(0, (0,), ()),), ()), Options(), solver)
+    solution = solve(instance, Options(time_limit=time_limit), solver)
+    return Run(solution.segments, solution.status == "optimal", solution.seconds)
+
+
+if __name__ == "__main__":
+    print(json.dumps(asdict(_run(sys.argv[1], float(sys.argv[2])))))

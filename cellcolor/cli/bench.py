@@ -14,7 +14,7 @@ from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.progress import progress_of
 from cellcolor.cli.tables import console
-from cellcolor.errors import CellcolorError
+from cellcolor.errors import CellcolorError, InputError
 
 
 def bench_files(files: Sequence[Path], time_limit: float) -> Exit:
@@ -28,9 +28,10 @@ def bench_files(files: Sequence[Path], time_limit: float) -> Exit:
         try:
             instance = read_instance(file)
             with progress_of(file):
-                runs = compare(file, time_limit)
+                runs = compare(instance, time_limit)
         except CellcolorError as error:
-            print(f"cellcolor: {error}", file=sys.stderr)
+            named = isinstance(error, InputError) and error.file
+            print(f"cellcolor: {error if named else f'{file}: {error}'}", file=sys.stderr)
             codes.append(Exit.BAD_INPUT)
             continue
         table.add_row(
