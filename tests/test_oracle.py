@@ -9,7 +9,7 @@ import pytest
 from documents import Document
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from library import PAPER
+from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
 
 from cellcolor.cli import main
@@ -42,6 +42,19 @@ def test_range_holds_what_is_known(path: Path) -> None:
     assert known is not None
     if known.surface is not None:
         assert bounds.lower <= known.surface.segments <= bounds.upper
+
+
+@pytest.mark.parametrize(
+    "path",
+    sorted((INSTANCES / "scenes" / "feasibility").glob("*.surface.json"))
+    + sorted((INSTANCES / "random").glob("*.surface.json")),
+    ids=lambda path: path.name.partition(".")[0],
+)
+def test_minima_found_elsewhere(path: Path) -> None:
+    """With all the time it needs the range ends at or below the paper's known minimum."""
+    surface = LabelledSurface.read(path)
+    bounds = proven_range(surface, time_limit=None)
+    assert bounds.lower <= bounds.upper <= surface.meta["known_paper_segments"]
 
 
 def test_the_papers_search_space_is_not_the_measure() -> None:
