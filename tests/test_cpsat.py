@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import pytest
-from bruteforce import minimum
-from hypothesis import given, settings
+from bruteforce import minimum, optimal_schemes, vertex_minimum
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from ortools.sat.python import cp_model
@@ -21,9 +22,10 @@ from cellcolor.solvers.bounds import color_regions, set_cover
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model import build, read_painting
-from cellcolor.solvers.cpsat.painting import canonical, division_of
-from cellcolor.solvers.interface import Options, OutOfTime
+from cellcolor.solvers.cpsat.model import add_hint, build, read_painting
+from cellcolor.solvers.cpsat.painting import Block, canonical, division_of, painting_of
+from cellcolor.solvers.crossings import enough_crossings
+from cellcolor.solvers.interface import Options, OutOfTime, Start
 from cellcolor.solvers.reductions import drop_dominated
 from cellcolor.solvers.run import solve
 
@@ -33,7 +35,8 @@ SEEDS = st.integers(0, 10**6)
 
 def graph_of(instance: Instance) -> DartGraph:
     colors = [frozenset(cell.colors) for cell in instance.cells]
-    return dart_graph(instance, colors, 1, seams_of(instance, colors, 1, None))
+    once = {edge.id: 1 for edge in instance.edges}
+    return dart_graph(instance, colors, once, seams_of(instance, colors, once, None))
 
 
 def effort(instance: Instance, groups: tuple[Group, ...], limit: float) -> tuple[bool, int]:
@@ -246,10 +249,118 @@ def test_three_loops_need_more_strands_than_two_at_a_time_would_get() -> None:
 
 
 def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
-    # A hub's cover bound is its number of colors, far below its minimum.
-    found = solve(hub(1, 6, 3), Options(search_space="surface", strands=2))
-    assert found.segments is not None and found.surface_lower_bound < found.segments
-    assert found.status == "feasible" and not found.proved_for_surface
+    # With one strand the corridors' two segments are not found, and two could cross edge 2.
+    instance = Instance.read(PAPER / "parallel-corridors.json")
+    found = solve(instance, Options(search_space="surface", strands=1))
+    assert (found.segments, found.surface_lower_bound, found.status) == (3, 2, "feasible")
+    assert not found.proved_for_surface
+
+
+def test_crossings_that_are_enough() -> None:
+    """X and Y of the corridors share red and blue, and each touches two cells of one color more."""
+    instance = Instance.read(PAPER / "parallel-corridors.json")
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    enough = enough_crossings(instance, colors)
+    assert enough == {edge: 2 if edge == 2 else 1 for edge in (1, 2, 3, 5, 7)}
+
+
+def test_a_ring_of_cells_that_share_two_colors_bounds_no_crossings() -> None:
+    cells = tuple(Cell(i, (RED, BLUE), ((i + 1, -((i - 1) % 3 + 1)),)) for i in range(3))
+    edges = tuple(Edge(i + 1, i, (i + 1) % 3) for i in range(3))
+    instance = Instance("ring of three", ("red", "blue"), cells, edges)
+    both = [frozenset({RED, BLUE})] * 3
+    assert set(enough_crossings(instance, both).values()) == {math.inf}
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
+def test_more_crossings_than_enough_gain_nothing(seed: int, cells: int, colors: int) -> None:
+    """Against the reference solver, which knows nothing of this, with one strand more."""
+    instance = planar_graph(seed, cells, cells + 2, colors)
+    enough = max(enough_crossings(instance, drop_dominated(instance)).values(), default=1)
+    assume(enough <= 2)
+    strands = int(enough)
+    found = solve(instance, Options(search_space="surface", strands=strands))
+    assert found.proved_for_surface
+    wider = Options(search_space="surface", strands=strands + 1)
+    assert solve(instance, wider, "dfs").segments == found.segments
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=SEEDS, colors=st.integers(2, 3), cracks=st.integers(0, 2))
+def test_the_surface_bound_holds_for_vertex_colorings(seed: int, colors: int, cracks: int) -> None:
+    """No painting of the mesh's vertices, found without the graph, has fewer segments."""
+    surface = blobs(seed, size=5, colors=colors, waves=0.5, cracks=cracks)
+    instance = decompose(surface)
+    assume(1 < len(instance.cells) < 9)
+    found = solve(instance, Options())
+    assert found.surface_lower_bound <= vertex_minimum(surface)
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
+def test_fewest_cutting_paths(seed: int, cells: int, colors: int) -> None:
+    """Against all optimal schemes: a division with the fewest sub-cells is a scheme."""
+    instance = planar_graph(seed, cells, cells + 4, colors)
+    found = solve(instance, Options(fewest_cuts=True))
+    _, schemes = optimal_schemes(instance)
+    fewest = min(sum(len(subcells) - 1 for subcells in scheme) for scheme in schemes)
+    assert found.cutting_paths == found.cutting_paths_lower_bound == fewest
+
+
+def test_fewest_cutting_paths_of_the_cell_that_must_be_split() -> None:
+    instance = Instance.read(PAPER / "split-cell.json")
+    found = solve(instance, Options(fewest_cuts=True))
+    assert (found.segments, found.cutting_paths, found.cutting_paths_lower_bound) == (2, 1, 1)
+
+
+def test_a_start_is_kept_when_there_is_no_time() -> None:
+    instance = decompose(blobs(3))
+    good = solve(instance, Options())
+    assert good.cells is not None
+    start = Start(good.cells, good.seams)
+    found = solve(instance, Options(time_limit=0.0, start=start))
+    assert found.segments == good.segments
+
+
+def test_a_start_helps_the_model() -> None:
+    """Its hint is complete: the model's first solution is the division that was handed in."""
+    for seed in range(10):
+        instance = planar_graph(seed, 6, 10, 3)
+        best = solve(instance, Options())
+        assert best.cells is not None
+        graph = graph_of(instance)
+        built = build(graph, color_regions(instance))
+        add_hint(built, graph, painting_of(graph, best.cells))
+        solver = cp_model.CpSolver()
+        solver.parameters.num_workers = 1
+        solver.parameters.stop_after_first_solution = True
+        solver.parameters.fix_variables_to_their_hinted_value = True
+        assert solver.solve(built.model) in (cp_model.OPTIMAL, cp_model.FEASIBLE)
+        assert round(solver.objective_value) == best.segments
+
+
+def test_a_canonical_painting_has_no_idle_cuts_and_no_single_darts() -> None:
+    """Three red darts in two sub-cells become one; a blue one alone beside them goes."""
+    instance = petals(RED, RED, RED, BLUE)
+    graph = graph_of(instance)
+    hub_darts = graph.lists[0]
+    outer = [graph.darts[dart].twin for dart in hub_darts]
+    colors = (RED, RED, RED, BLUE)
+    painting = [
+        [Block(RED, set(hub_darts[:2])), Block(RED, {hub_darts[2]}), Block(BLUE, {hub_darts[3]})],
+        *([Block(color, {dart})] for color, dart in zip(colors, outer, strict=True)),
+    ]
+    result = canonical(graph, painting)
+    assert [(block.color, block.darts) for block in result[0]] == [(RED, set(hub_darts[:3]))]
+    assert result[4] == [Block(BLUE, set())]
+
+
+def test_a_canonical_painting_joins_what_shows_one_color() -> None:
+    instance = petals(RED, RED)
+    graph = graph_of(instance)
+    result = canonical(graph, [[Block(RED, set())] for _ in instance.cells])
+    assert result[0] == [Block(RED, set(graph.lists[0]))]
 
 
 def test_no_time_gives_no_more_than_was_found() -> None:

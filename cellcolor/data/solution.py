@@ -118,6 +118,9 @@ class Solution:
         seconds: wall-clock time spent solving.
         schemes: with "all optimal schemes" asked for, how many were found.
         complete: with "all optimal schemes" asked for, whether that is all of them.
+        cutting_paths: with "fewest cutting paths" asked for, how many the division has.
+        cutting_paths_lower_bound: with "fewest cutting paths" asked for, no division in the search
+            space with as few segments has fewer.
     """
 
     __pydantic_config__ = _STRICT
@@ -137,6 +140,8 @@ class Solution:
     seconds: Annotated[float, Ge(0)]
     schemes: Count | None = None
     complete: bool | None = None
+    cutting_paths: Count | None = None
+    cutting_paths_lower_bound: Count | None = None
 
     def __post_init__(self) -> None:
         missing = [
@@ -180,6 +185,9 @@ class Solution:
         if self.schemes is not None:
             document["schemes"] = self.schemes
             document["complete"] = self.complete
+        if self.cutting_paths_lower_bound is not None:
+            document["cutting_paths"] = self.cutting_paths
+            document["cutting_paths_lower_bound"] = self.cutting_paths_lower_bound
         return document
 
     def to_json(self) -> str:

@@ -61,6 +61,8 @@ def set_cover(instance: Instance, colors: Sequence[frozenset[int]] | None = None
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = 0
+    # Left to itself, OR-Tools makes the next Ctrl-C kill the process.
+    solver.parameters.catch_sigint_signal = False
     status = solver.solve(model)
     # Every cell has a color, so there is a cover, and nothing limits the search for the best.
     assert status == cp_model.OPTIMAL

@@ -15,6 +15,19 @@ Progress = Callable[[int | None, int], None]
 
 
 @dataclass(frozen=True, slots=True)
+class Start:
+    """A legal division to start from.
+
+    Attributes:
+        division: as a solution has it.
+        seams: the seams that its darts refer to.
+    """
+
+    division: Division
+    seams: tuple[Seam, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Options:
     """How to solve.
 
@@ -24,6 +37,9 @@ class Options:
         time_limit: seconds of wall-clock time, None for as long as it takes.
         workers: CP-SAT's search workers, None for its portfolio of 8.
         seed: of everything random.
+        start: a division to start from (CP-SAT only).
+        fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
+            paths (CP-SAT only).
     """
 
     search_space: SearchSpace = "paper"
@@ -31,6 +47,8 @@ class Options:
     time_limit: float | None = None
     workers: int | None = None
     seed: int = 0
+    start: Start | None = None
+    fewest_cuts: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,11 +59,16 @@ class Answer:
         division: the best division found, None when none was found.
         seams: the seams that its darts refer to.
         lower_bound: no division in the search space has fewer segments.
+        surface_lower_bound: no division of the physical surface has fewer segments.
+        cutting_paths_lower_bound: no division in the search space with the fewest segments has
+            fewer cutting paths; None when that was not asked for.
     """
 
     division: Division | None
     seams: tuple[Seam, ...]
     lower_bound: int
+    surface_lower_bound: int = 0
+    cutting_paths_lower_bound: int | None = None
 
 
 class OutOfTime(CellcolorError):

@@ -59,9 +59,11 @@ def solve(
     Raises:
         ContradictionError: the checker refuses what the solver found.
     """
+    chosen = make_solver(solver)
     start = time.monotonic()
-    answer = make_solver(solver).minimize(instance, options, progress)
-    surface_bound = len(set_cover(instance)) if instance.cells else 0
+    answer = chosen.minimize(instance, options, progress)
+    cover = len(set_cover(instance)) if instance.cells else 0
+    surface_bound = max(cover, answer.surface_lower_bound)
     lower_bound = max(answer.lower_bound, surface_bound)
     segments = None if answer.division is None else _count(answer.division)
     proved_for_surface = segments == surface_bound
@@ -84,6 +86,8 @@ def solve(
         seams=answer.seams,
         cells=answer.division,
         seconds=time.monotonic() - start,
+        cutting_paths=None if answer.cutting_paths_lower_bound is None else _cuts(answer.division),
+        cutting_paths_lower_bound=answer.cutting_paths_lower_bound,
     )
     _insist(check_solution(instance, solution), solver)
     return solution
@@ -115,6 +119,13 @@ def enumerate_schemes(
 
 def _count(division: Division) -> int:
     return len({sub.segment for cell in division for sub in cell.subcells})
+
+
+def _cuts(division: Division | None) -> int | None:
+    """Cutting paths: the sub-cells of each cell beyond the first."""
+    if division is None:
+        return None
+    return sum(len(cell.subcells) - 1 for cell in division)
 
 
 def _insist(report: Report, solver: str) -> None:

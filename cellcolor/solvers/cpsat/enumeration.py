@@ -46,7 +46,7 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
                 None, f"cells[{cell.id}].loops", "schemes are defined for one loop with live darts"
             )
     colors = [frozenset(cell.colors) for cell in instance.cells]
-    graph = dart_graph(instance, colors, 1, ())
+    graph = dart_graph(instance, colors, dict.fromkeys((e.id for e in instance.edges), 1), ())
     model = _SchemeModel(graph, segments)
     solver = cp_model.CpSolver()
     solver.parameters.enumerate_all_solutions = True

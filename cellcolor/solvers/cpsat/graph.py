@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from cellcolor.data.instance import Cell, Instance
-from cellcolor.data.solution import DartName, Seam
+from cellcolor.data.solution import Seam
+
+Strand = tuple[int, int]
+"""A dart and its strand, strands counted from 1 along the positive dart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -14,13 +17,13 @@ class Dart:
     """One side of one strand of a live edge or seam.
 
     Attributes:
-        name: as a solution writes it.
+        name: the signed edge or seam, and the strand.
         cell: the cell whose border it is on.
         twin: index of the other side in ``DartGraph.darts``.
         colors: the colors joinable across it.
     """
 
-    name: DartName
+    name: Strand
     cell: int
     twin: int
     colors: frozenset[int]
@@ -72,14 +75,17 @@ def enough_strands(counts: Sequence[int]) -> list[int]:
 
 
 def seams_of(
-    instance: Instance, colors: Sequence[frozenset[int]], strands: int, most: int | None
+    instance: Instance,
+    colors: Sequence[frozenset[int]],
+    strands: Mapping[int, int],
+    most: int | None,
 ) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops.
 
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
-        strands: strands per live edge.
+        strands: strands of each live edge.
         most: no seam gets more strands than this; None for as many as are ever needed.
     """
     seams: list[Seam] = []
@@ -87,7 +93,7 @@ def seams_of(
     for cell in instance.cells:
         loops = _live_loops(instance, cell)
         counts = [
-            strands * sum(1 for dart in loop if _joinable(instance, colors, cell, dart))
+            sum(strands[abs(d)] for d in loop if _joinable(instance, colors, cell, d))
             for loop in loops
         ]
         for loop, count in zip(loops[1:], enough_strands(counts), strict=False):
@@ -98,45 +104,35 @@ def seams_of(
 
 
 def dart_graph(
-    instance: Instance, colors: Sequence[frozenset[int]], strands: int, seams: Sequence[Seam]
+    instance: Instance,
+    colors: Sequence[frozenset[int]],
+    strands: Mapping[int, int],
+    seams: Sequence[Seam],
 ) -> DartGraph:
     """Put strands and seams into the instance's loops and leave out what is dead.
 
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
-        strands: strands per live edge.
+        strands: strands of each live edge.
         seams: one for each further live loop of a cell, all from the cell's first live loop.
     """
-    index: dict[tuple[int, int], int] = {}
-    found: list[tuple[DartName, int, frozenset[int]]] = []
+    found: list[tuple[Strand, int, frozenset[int]]] = []
     lists: list[tuple[int, ...]] = []
-
-    def append(
-        dart: int, cell: int, joinable: frozenset[int], count: int, plain: bool
-    ) -> list[int]:
-        numbers = range(1, count + 1)
-        placed = []
-        for strand in numbers if dart > 0 else reversed(numbers):
-            index[dart, strand] = len(found)
-            placed.append(len(found))
-            found.append((dart if plain else (dart, strand), cell, joinable))
-        return placed
-
     for cell in instance.cells:
-        placed: list[int] = []
+        first = len(found)
         for dart, seam in _walk(instance, cell, [s for s in seams if s.cell == cell.id]):
-            if seam is not None:
-                placed += append(dart, cell.id, colors[cell.id], seam.strands, plain=False)
-                continue
-            joinable = _joinable(instance, colors, cell, dart)
-            if joinable:
-                placed += append(dart, cell.id, joinable, strands, plain=strands == 1)
-        lists.append(tuple(placed))
-    twins = {number: index[-dart, strand] for (dart, strand), number in index.items()}
+            if seam is None:
+                joinable, count = _joinable(instance, colors, cell, dart), strands[abs(dart)]
+            else:
+                joinable, count = colors[cell.id], seam.strands
+            numbers = range(1, count + 1 if joinable else 1)
+            order = numbers if dart > 0 else reversed(numbers)
+            found += [((dart, strand), cell.id, joinable) for strand in order]
+        lists.append(tuple(range(first, len(found))))
+    index = {name: number for number, (name, _, _) in enumerate(found)}
     darts = tuple(
-        Dart(name, cell, twins[number], joinable)
-        for number, (name, cell, joinable) in enumerate(found)
+        Dart(name, cell, index[-name[0], name[1]], joinable) for name, cell, joinable in found
     )
     return DartGraph(darts, tuple(lists), tuple(colors), tuple(seams))
 

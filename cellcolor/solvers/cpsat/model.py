@@ -14,7 +14,7 @@ from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
 from cellcolor.solvers.cpsat.variables import Variables, make_variables
 
-__all__ = ["Model", "add_hint", "build", "read_painting"]
+__all__ = ["Model", "add_hint", "build", "cut_paths", "read_painting"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +43,17 @@ def build(
         group(model, graph, variables, regions)
     model.minimize(sum(variables.root) + sum(variables.alone))
     return Model(model, variables)
+
+
+def cut_paths(built: Model, segments: int) -> None:
+    """Turn the model into one of fewest cutting paths, with so many segments.
+
+    Sub-cells are the segments and the joins of their trees; cutting paths are the sub-cells beyond
+    one a cell. So the fewest joins are wanted.
+    """
+    model, v = built.model, built.variables
+    model.add(sum(v.root) + sum(v.alone) == segments)
+    model.minimize(sum(v.joined.values()))
 
 
 def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from cellcolor.data.solution import DartName, Division, number_segments
 from cellcolor.solvers.cpsat.graph import DartGraph
 
-__all__ = ["Block", "Painting", "canonical", "division_of", "painting_of"]
+__all__ = ["Block", "Painting", "canonical", "division_of", "moved", "painting_of"]
 
 
 @dataclass(slots=True)
@@ -23,26 +23,42 @@ Painting = list[list[Block]]
 """The sub-cells of each cell; a cell without darts in state 1 has one without darts."""
 
 
-def division_of(graph: DartGraph, painting: Sequence[Iterable[Block]]) -> Division:
-    """The painting as a solution writes it."""
-    blocks: list[list[tuple[int, tuple[DartName, ...]]]] = [
-        [(b.color, tuple(graph.darts[d].name for d in sorted(b.darts))) for b in cell]
+def division_of(
+    graph: DartGraph, painting: Sequence[Iterable[Block]], strands: int = 1
+) -> Division:
+    """The painting as a solution writes it, with so many strands for every edge."""
+    seams = {seam.id for seam in graph.seams}
+
+    def name(dart: int) -> DartName:
+        signed, strand = graph.darts[dart].name
+        return signed if strands == 1 and abs(signed) not in seams else (signed, strand)
+
+    blocks = [
+        [(block.color, tuple(name(dart) for dart in sorted(block.darts))) for block in cell]
         for cell in painting
     ]
     return number_segments(blocks)
 
 
-def painting_of(graph: DartGraph, division: Division) -> Painting:
-    """A division on a graph with the same or more strands; strands it does not name are cut."""
-    index = {_strand(dart.name): number for number, dart in enumerate(graph.darts)}
+def moved(graph: DartGraph, painting: Painting, target: DartGraph) -> Painting:
+    """A painting on a graph with the same or more strands; the strands it does not know are cut."""
+    index = {dart.name: number for number, dart in enumerate(target.darts)}
     return [
-        [Block(sub.color, {index[_strand(name)] for name in sub.darts}) for sub in cell.subcells]
-        for cell in division
+        [Block(b.color, {index[graph.darts[dart].name] for dart in b.darts}) for b in cell]
+        for cell in painting
     ]
 
 
-def _strand(name: DartName) -> tuple[int, int]:
-    return (name, 1) if isinstance(name, int) else name
+def painting_of(graph: DartGraph, division: Division) -> Painting:
+    """A solution's division on a graph that has the strands it names, or more."""
+    index = {dart.name: number for number, dart in enumerate(graph.darts)}
+    return [
+        [
+            Block(s.color, {index[(n, 1) if isinstance(n, int) else n] for n in s.darts})
+            for s in cell.subcells
+        ]
+        for cell in division
+    ]
 
 
 def canonical(graph: DartGraph, painting: Painting) -> Painting:

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from math import ceil, isfinite
-from threading import Thread
+from threading import Event, Thread
 
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
+from cellcolor.errors import InputError
 from cellcolor.solvers.bounds import color_regions, set_cover
 from cellcolor.solvers.cpsat.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model import Model, add_hint, build, read_painting
-from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, painting_of
+from cellcolor.solvers.cpsat.model import Model, add_hint, build, cut_paths, read_painting
+from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, moved, painting_of
 from cellcolor.solvers.cpsat.whole import paint_whole_cells
-from cellcolor.solvers.interface import Answer, Options, Progress
+from cellcolor.solvers.crossings import enough_crossings
+from cellcolor.solvers.interface import Answer, Options, OutOfTime, Progress
 from cellcolor.solvers.reductions import drop_dominated
 
 __all__ = ["CpSatSolver"]
@@ -29,10 +32,10 @@ FEW_STRANDS = 2
 """Seams are tried this narrow first, which is enough when the result meets the cover bound."""
 
 WHOLE_EFFORT = 0.2
-"""Deterministic seconds a worker for undivided cells; often in vain where cutting paths are needed."""
+"""Deterministic seconds a worker for undivided cells: in vain where cutting paths are needed."""
 
 TRIAL_EFFORT = 2.0
-"""Deterministic seconds a worker for a model that is not the widest, so that its bound proves nothing."""
+"""Deterministic seconds a worker for a model that is not the widest: its bound proves nothing."""
 
 
 class CpSatSolver:
@@ -45,16 +48,10 @@ class CpSatSolver:
     ) -> Answer:
         """A division with the fewest segments, or the best that the time limit allowed."""
         if not instance.cells:
-            return Answer((), (), 0)
+            return Answer((), (), 0, 0, 0 if options.fewest_cuts else None)
         search = _Search(instance, options, progress)
-        # The paper's divisions are among the surface's, and usually enough for the bound.
-        for strands in sorted({1, options.strands}):
-            wide = seams_of(instance, search.colors, strands, None)
-            narrow = seams_of(instance, search.colors, strands, FEW_STRANDS)
-            for seams in dict.fromkeys((narrow, wide)):
-                search.run(strands, seams, final=strands == options.strands and seams == wide)
-                if search.done:
-                    return search.answer()
+        with suppress(OutOfTime):  # an interrupt between two models
+            search.run()
         return search.answer()
 
     def optimal_schemes(
@@ -73,62 +70,149 @@ class _Search:
         self._progress = progress
         self._start = time.monotonic()
         self._stopped = False
-        self.colors = drop_dominated(instance)
-        self._regions = color_regions(instance, self.colors)
-        self._cover = set_cover(instance, self.colors)
+        own = tuple(frozenset(cell.colors) for cell in instance.cells)
+        # A division to start from may use colors that would be dropped.
+        self._colors = drop_dominated(instance) if options.start is None else own
+        self._regions = color_regions(instance, self._colors)
+        self._cover = set_cover(instance, self._colors)
         self._bound = len(self._cover)
-        self._best: int | None = None
-        self._division: Division | None = None
-        self._seams: tuple[Seam, ...] = ()
-        self._strands = 1
+        self._surface_bound = self._bound
+        self._cuts_bound = 0
+        self._enough = enough_crossings(instance, self._colors)
+        self._best: tuple[DartGraph, Painting] | None = None
+        self._segments: int | None = None
         self._report(None, None)
-
-    @property
-    def done(self) -> bool:
-        """Whether the best division is proved, or there is no time left."""
-        return self._best == self._bound or self._stopped or self._left() <= 0
 
     def answer(self) -> Answer:
         """The best division, in the strands that were asked for, and what is proved of it."""
-        division, seams = self._division, self._seams
-        if division is not None and self._strands != self._options.strands:
-            graph = dart_graph(self._instance, self.colors, self._options.strands, seams)
-            division = division_of(graph, canonical(graph, painting_of(graph, division)))
-        return Answer(division, seams, self._bound)
+        division: Division | None = None
+        seams: tuple[Seam, ...] = ()
+        if self._best is not None:
+            graph, painting = self._best
+            seams = graph.seams
+            strands = self._options.strands
+            full = self._graph(dict.fromkeys(self._enough, strands), seams)
+            painting = canonical(full, moved(graph, painting, full))
+            division = division_of(full, painting, strands)
+        cuts = self._cuts_bound if self._options.fewest_cuts else None
+        return Answer(division, seams, self._bound, self._surface_bound, cuts)
 
-    def run(self, strands: int, seams: tuple[Seam, ...], final: bool) -> None:
+    def run(self) -> None:
+        """Solve until the best division is proved, or there is no time left."""
+        self._begin()
+        most = self._options.strands
+        wanted = {edge: int(min(most, enough)) for edge, enough in self._enough.items()}
+        # The paper's divisions are among the surface's, and usually enough for the bound.
+        widths = [dict.fromkeys(wanted, 1), wanted]
+        stages = [
+            (strands, self._seams(strands, width))
+            for strands in (widths if widths[0] != wanted else widths[1:])
+            for width in (FEW_STRANDS, None)
+        ]
+        for number, (strands, seams) in enumerate(stages):
+            if not self._done and stages.index((strands, seams)) == number:
+                self._minimize(strands, seams, final=(strands, seams) == stages[-1])
+        if self._options.fewest_cuts and self._segments == self._bound and not self._over:
+            self._fewest_cuts(*stages[-1])
+
+    @property
+    def _done(self) -> bool:
+        return self._segments == self._bound or self._over
+
+    @property
+    def _over(self) -> bool:
+        return self._stopped or self._left() <= 0
+
+    def _begin(self) -> None:
+        """A first division: what was handed in, or whole cells in the colors of the cover."""
+        start = self._options.start
+        if start is not None:
+            strands = dict.fromkeys(self._enough, self._options.strands)
+            places = {(s.id, s.cell, s.from_, s.to) for s in self._seams(strands, None)}
+            if {(s.id, s.cell, s.from_, s.to) for s in start.seams} != places:
+                raise InputError(None, "seams", "lie elsewhere than this solver puts them")
+            graph = self._graph(strands, start.seams)
+            self._offer(graph, painting_of(graph, start.division))
+        if self._done:
+            return
+        graph = self._graph(
+            dict.fromkeys(self._enough, 1), self._seams(dict.fromkeys(self._enough, 1), FEW_STRANDS)
+        )
+        first = paint_whole_cells(graph, self._cover, self._solver(WHOLE_EFFORT), self._solve)
+        if first is not None:
+            self._offer(graph, first)
+
+    def _minimize(self, strands: dict[int, int], seams: tuple[Seam, ...], final: bool) -> None:
         """Solve one model; only the final one, the widest, proves a bound of its own."""
-        graph = dart_graph(self._instance, self.colors, strands, seams)
-        if self._division is None:
-            first = paint_whole_cells(graph, self._cover, self._solver(WHOLE_EFFORT))
-            if first is not None:
-                self._offer(graph, strands, first)
-            if self.done:
-                return
+        graph = self._graph(strands, seams)
         built = build(graph, self._regions)
-        if self._division is not None:
-            add_hint(built, graph, canonical(graph, painting_of(graph, self._division)))
+        self._hint(built, graph)
         solver = self._solver(None if final else TRIAL_EFFORT)
         if final:
             solver.best_bound_callback = lambda bound: self._report(None, ceil(bound - 1e-6))
-        status = self._solve(solver, built)
-        if final:
-            self._raise_bound(solver)
+        status = self._solve(solver, built.model)
+        if final and isfinite(solver.best_objective_bound):
+            self._bound = max(self._bound, ceil(solver.best_objective_bound - 1e-6))
+            # Where more corridors across an edge are never needed, neither is a wider model.
+            if all(enough <= self._options.strands for enough in self._enough.values()):
+                self._surface_bound = self._bound
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            self._offer(graph, strands, read_painting(graph, built.variables, solver))
+            self._offer(graph, read_painting(graph, built.variables, solver))
 
-    def _solve(self, solver: cp_model.CpSolver, built: Model) -> cp_model.CpSolverStatus:
+    def _fewest_cuts(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> None:
+        """Of the divisions with the fewest segments, one with the fewest cutting paths."""
+        graph = self._graph(strands, seams)
+        built = build(graph, self._regions)
+        self._hint(built, graph)
+        cut_paths(built, self._bound)
+        solver = self._solver(None)
+        status = self._solve(solver, built.model)
+        # As many joins as a forest needs: sub-cells less segments.
+        spare = len(self._instance.cells) - self._bound
+        if isfinite(solver.best_objective_bound):
+            self._cuts_bound = max(0, ceil(solver.best_objective_bound - 1e-6) - spare)
+        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            painting = canonical(graph, read_painting(graph, built.variables, solver))
+            if self._best is None or _sub_cells(painting) < _sub_cells(self._best[1]):
+                self._best = graph, painting
+
+    def _hint(self, built: Model, graph: DartGraph) -> None:
+        """Hint the best division, if it has no more strands than the model."""
+        if self._best is None:
+            return
+        known, painting = self._best
+        if {dart.name for dart in known.darts} <= {dart.name for dart in graph.darts}:
+            add_hint(built, graph, canonical(graph, moved(known, painting, graph)))
+
+    def _graph(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> DartGraph:
+        return dart_graph(self._instance, self._colors, strands, seams)
+
+    def _seams(self, strands: dict[int, int], most: int | None) -> tuple[Seam, ...]:
+        return seams_of(self._instance, self._colors, strands, most)
+
+    def _solve(self, solver: cp_model.CpSolver, model: cp_model.CpModel) -> cp_model.CpSolverStatus:
         """Solve in a thread, so that an interrupt here ends the search with its best."""
         found: list[cp_model.CpSolverStatus] = []
-        watcher = _Watcher(self._report)
-        thread = Thread(target=lambda: found.append(solver.solve(built.model, watcher)))
-        thread.start()
-        while thread.is_alive():
+        finished = Event()
+
+        def work() -> None:
             try:
-                thread.join()
-            except KeyboardInterrupt:
+                found.append(solver.solve(model, _Watcher(self._report)))
+            finally:
+                finished.set()
+
+        Thread(target=work).start()
+        # Not Thread.join: interrupted, it takes a running thread for a finished one (Python 3.11).
+        interrupt: KeyboardInterrupt | None = None
+        while not finished.is_set():
+            try:
+                finished.wait()
+            except KeyboardInterrupt as error:
+                interrupt = error
                 self._stopped = True
                 solver.stop_search()
+        if interrupt is not None and not isinstance(interrupt, OutOfTime):
+            raise interrupt
         return found[0]
 
     def _solver(self, effort: float | None) -> cp_model.CpSolver:
@@ -146,23 +230,23 @@ class _Search:
         limit = self._options.time_limit
         return float("inf") if limit is None else limit - (time.monotonic() - self._start)
 
-    def _offer(self, graph: DartGraph, strands: int, painting: Painting) -> None:
-        division = division_of(graph, canonical(graph, painting))
+    def _offer(self, graph: DartGraph, painting: Painting) -> None:
+        painting = canonical(graph, painting)
+        division = division_of(graph, painting)
         segments = 1 + max(sub.segment for cell in division for sub in cell.subcells)
-        if self._best is None or segments < self._best:
-            self._best = segments
-            self._division, self._seams, self._strands = division, graph.seams, strands
+        if self._segments is None or segments < self._segments:
+            self._segments = segments
+            self._best = graph, painting
             self._report(segments, None)
-
-    def _raise_bound(self, solver: cp_model.CpSolver) -> None:
-        bound = solver.best_objective_bound
-        if isfinite(bound):
-            self._bound = max(self._bound, ceil(bound - 1e-6))
 
     def _report(self, segments: int | None, bound: int | None) -> None:
         if self._progress is not None:
-            known = [n for n in (segments, self._best) if n is not None]
+            known = [n for n in (segments, self._segments) if n is not None]
             self._progress(min(known, default=None), max(bound or 0, self._bound))
+
+
+def _sub_cells(painting: Painting) -> int:
+    return sum(len(blocks) for blocks in painting)
 
 
 class _Watcher(cp_model.CpSolverSolutionCallback):

@@ -7,7 +7,7 @@ always enough for it; then this small model finds what the full one would take l
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from ortools.sat.python import cp_model
 
@@ -22,6 +22,7 @@ def paint_whole_cells(
     graph: DartGraph,
     regions: Sequence[Region],
     solver: cp_model.CpSolver,
+    solve: Callable[[cp_model.CpSolver, cp_model.CpModel], cp_model.CpSolverStatus],
 ) -> Painting | None:
     """Paint undivided cells with few segments.
 
@@ -29,6 +30,7 @@ def paint_whole_cells(
         graph: the dart graph.
         regions: the color regions to paint with; they touch every cell.
         solver: with its limits, workers and seed set.
+        solve: runs it.
 
     Returns:
         A painting, or None when none was found in time.
@@ -62,7 +64,7 @@ def paint_whole_cells(
     # The regions are a smallest cover.
     model.add(sum(root) >= len(regions))
     model.minimize(sum(root))
-    if solver.solve(model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+    if solve(solver, model) not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
     color_of = {
         cell: color for (cell, color), literal in painted.items() if solver.boolean_value(literal)

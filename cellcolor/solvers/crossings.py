@@ -1,0 +1,59 @@
+"""How many corridors may have to cross an edge: where one is enough, ``paper`` is ``surface``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from cellcolor.data.instance import Instance
+
+__all__ = ["enough_crossings"]
+
+
+def enough_crossings(instance: Instance, colors: Sequence[frozenset[int]]) -> dict[int, float]:
+    """Strands of each live edge that are enough for a minimum over all divisions.
+
+    Of all divisions of the surface with the fewest segments take one with the fewest sub-cells,
+    and a spanning tree of each segment. Then (docs/solver.md, "Crossing an edge twice")
+
+    - successive strands of an edge that the trees cross have different colors, so an edge with a
+      single joinable color is crossed once;
+    - the sub-cells on either side of an edge that is crossed m > 1 times are m different ones,
+      each crossing some other edge of its cell too. So m is at most the sum of the crossings of
+      the other edges of the cell, on either side.
+
+    The second point is repeated until nothing changes. Cells with several live loops bound
+    nothing, and neither do edges that have one cell on both sides.
+
+    Args:
+        instance: the topological graph.
+        colors: the colors each cell may be painted in, all or some of its own.
+
+    Returns:
+        A number for every live edge; infinity where nothing is known.
+    """
+    enough = {
+        edge.id: math.inf
+        if len(colors[edge.left] & colors[edge.right] & set(instance.joinable(edge.id))) > 1
+        else 1
+        for edge in instance.edges
+        if instance.joinable(edge.id)
+    }
+    borders: list[list[int]] = []
+    for cell in instance.cells:
+        live = [[abs(d) for d in loop if instance.joinable(d)] for loop in cell.loops]
+        live = [loop for loop in live if loop]
+        borders.append(live[0] if len(live) == 1 else [])
+    changed = True
+    while changed:
+        changed = False
+        for edge in instance.edges:
+            known = enough.get(edge.id, 1)
+            if known == 1 or edge.left == edge.right:
+                continue
+            for border in (borders[edge.left], borders[edge.right]):
+                others = sum(enough[other] for other in border if other != edge.id)
+                if border and max(1, others) < enough[edge.id]:
+                    enough[edge.id] = max(1, others)
+                    changed = True
+    return enough
