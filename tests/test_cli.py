@@ -230,6 +230,54 @@ class TestSolve:
         assert len(json_lines(out)) == 1
 
 
+class TestMore:
+    """Options beyond the contract: a second objective, a start, a warning, a reason."""
+
+    def test_fewest_cuts(self, tmp_path: Path, capsys: Capture) -> None:
+        target = tmp_path / "solution.json"
+        assert run("solve", PAPER / "split-cell.json", "--fewest-cuts", "-o", target) == 0
+        assert "cutting paths  1 (fewest)" in capsys.readouterr().out
+        solution = Solution.read(target)
+        assert (solution.cutting_paths, solution.cutting_paths_lower_bound) == (1, 1)
+        assert run("check", PAPER / "split-cell.json", target) == 0
+
+    def test_warm_start(self, tmp_path: Path) -> None:
+        """A start that is optimal already is what comes back when there is no time for more."""
+        start, target = tmp_path / "start.json", tmp_path / "solution.json"
+        assert run("solve", CORRIDORS, "-o", start) == 0
+        assert run("solve", CORRIDORS, "--warm-start", start, "--time-limit", "1e-9", "-o", target)
+        assert Solution.read(target).cells == Solution.read(start).cells
+        assert run("solve", CORRIDORS, "--time-limit", "1e-9", "-o", target)
+        assert Solution.read(target).cells is None
+
+    @pytest.mark.parametrize(
+        ("arguments", "expected"),
+        [
+            ([RING], "instance.sha256: the solution is not for"),
+            ([CORRIDORS, "--search-space", "surface"], "strands: is 1, wanted are 2"),
+        ],
+    )
+    def test_wrong_start(
+        self, arguments: list[object], expected: str, tmp_path: Path, capsys: Capture
+    ) -> None:
+        start = tmp_path / "start.json"
+        assert run("solve", CORRIDORS, "-o", start) == 0
+        capsys.readouterr()
+        assert run("solve", *arguments, "--warm-start", start) == 2
+        err = capsys.readouterr().err
+        assert err.count("\n") == 1 and str(start) in err and expected in err
+
+    def test_too_many_workers(self, capsys: Capture) -> None:
+        assert run("solve", RING, "--workers", 1000) == 0
+        assert "1000 workers share" in capsys.readouterr().err
+
+    def test_reason_for_the_bound(self, capsys: Capture) -> None:
+        assert run("solve", RING) == 0
+        # Cells 0 and 1 have red, and cell 2 in the middle is blue.
+        out = capsys.readouterr().out
+        assert any(f"no two of the cells {cell}, 2 can be" in out for cell in (0, 1))
+
+
 class TestAllSchemes:
     @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
     def test_all(self, solver: str, tmp_path: Path, capsys: Capture) -> None:
@@ -348,7 +396,7 @@ class TestBuild:
         text = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")
         models = (INSTANCES.parent / "models").as_posix()
         scene = tmp_path / "small.toml"
-        text = text.replace("target_vertices = 2000", "target_vertices = 120")
+        text = text.replace("target_vertices = 1000", "target_vertices = 120")
         scene.write_text(text.replace("../../models", models), encoding="utf-8")
         out = tmp_path / "small.json"
         assert run("build", scene, "-o", out) == 0
@@ -359,7 +407,11 @@ class TestBuild:
         surface = LabelledSurface.read(tmp_path / "small.surface.json")
         assert len(surface.vertices) == len(instance.surface.vertex_cell)
         assert decompose(surface, "small.surface.json") == instance
-        assert sorted(tmp_path.iterdir()) == sorted([scene, out, tmp_path / "small.surface.json"])
+        side = tmp_path / "small.reasons.npz"
+        assert sorted(tmp_path.iterdir()) == sorted(
+            [scene, out, side, tmp_path / "small.surface.json"]
+        )
+        assert surface.meta["side_file"] == side.name
         assert run("solve", scene, out, "--json") == 0
         lines = json_lines(capsys.readouterr().out)
         assert lines[0]["segments"] == lines[1]["segments"]

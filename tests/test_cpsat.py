@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import replace
 
@@ -18,7 +19,7 @@ from cellcolor.data.solution import scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.families import blobs, hub, hub_minimum, planar_graph
-from cellcolor.solvers.bounds import color_regions, set_cover
+from cellcolor.solvers.bounds import color_regions, set_cover, strangers
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
@@ -210,6 +211,22 @@ def with_colors(instance: Instance, colors: tuple[frozenset[int], ...]) -> Insta
             left = tuple(c for c in left if c in colors[edge.left] & colors[edge.right])
         edges.append(replace(edge, colors=left))
     return replace(instance, cells=cells, edges=tuple(edges))
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
+def test_strangers_share_no_region(seed: int, cells: int, colors: int) -> None:
+    """Against trying all sets of cells."""
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    regions = [touched for _, touched in color_regions(instance)]
+
+    def apart(chosen: tuple[int, ...]) -> bool:
+        return all(len(touched.intersection(chosen)) < 2 for touched in regions)
+
+    found = strangers(instance)
+    assert apart(tuple(found)) and len(found) <= len(set_cover(instance))
+    more = itertools.combinations(range(len(instance.cells)), len(found) + 1)
+    assert not any(map(apart, more))
 
 
 def test_a_crack_keeps_a_color_from_being_dominated() -> None:

@@ -72,6 +72,15 @@ def build(source: Path, output: Path) -> int:
     help="Corridors that may cross an edge, in search space surface.  [default: 2]",
 )
 @click.option("--all", "every", is_flag=True, help="All optimal schemes.")
+@click.option(
+    "--fewest-cuts", is_flag=True, help="Of the best divisions one with fewest cutting paths."
+)
+@click.option(
+    "--warm-start",
+    metavar="SOLUTION.json",
+    type=_PATH,
+    help="Start from this solution of the one file given.",
+)
 @click.option("--limit", metavar="N", type=click.IntRange(min=1), help="No more schemes than that.")
 @click.option("--time-limit", metavar="S", type=_SECONDS, help="Seconds for each file.")
 @click.option("--workers", metavar="N", type=click.IntRange(min=1), help="CP-SAT's search workers.")
@@ -84,6 +93,8 @@ def solve(
     search_space: str,
     strands: int | None,
     every: bool,
+    fewest_cuts: bool,
+    warm_start: Path | None,
     limit: int | None,
     time_limit: float | None,
     workers: int | None,
@@ -98,6 +109,11 @@ def solve(
     if every and search_space == "surface":
         raise click.UsageError("--all goes with --search-space paper: schemes are defined there")
 
+    if solver != "cp-sat" and (fewest_cuts or warm_start):
+        raise click.UsageError("--fewest-cuts and --warm-start go with --solver cp-sat")
+    if warm_start is not None and len(files) > 1:
+        raise click.UsageError("--warm-start goes with a single file")
+
     from cellcolor.cli.solve import Request, solve_files
     from cellcolor.solvers.interface import Options
 
@@ -107,8 +123,10 @@ def solve(
         time_limit,
         workers,
         seed,
+        fewest_cuts=fewest_cuts,
     )
-    return solve_files(Request(files, output, solver, options, every, limit, as_json))
+    request = Request(files, output, solver, options, warm_start, every, limit, as_json)
+    return solve_files(request)
 
 
 @cellcolor.command()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 import sys
 import tempfile
@@ -15,6 +16,7 @@ from typing import IO
 
 import click
 
+from cellcolor.check.solution import check_solution
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.interrupts import Interrupted, Interrupts
@@ -24,7 +26,7 @@ from cellcolor.data.files import replacing, write_text
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.solvers.interface import Options, OutOfTime
+from cellcolor.solvers.interface import PORTFOLIO, Options, OutOfTime, Start
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +38,7 @@ class Request:
         output: a file, or a folder for several inputs; None writes nothing.
         solver: the solver's name.
         options: how to solve.
+        warm_start: a solution to start from.
         every: all optimal schemes.
         limit: no more schemes than that.
         as_json: JSON Lines instead of tables.
@@ -45,6 +48,7 @@ class Request:
     output: Path | None
     solver: str
     options: Options
+    warm_start: Path | None
     every: bool
     limit: int | None
     as_json: bool
@@ -53,6 +57,7 @@ class Request:
 def solve_files(request: Request) -> Exit:
     """Solve every file; a bad one does not stop the others."""
     targets = _targets(request)
+    _warn_of_workers(request.options.workers)
     codes: list[Exit] = []
     solved: list[tuple[Path, Instance, Solution]] = []
     interrupts = Interrupts()
@@ -74,7 +79,11 @@ def solve_files(request: Request) -> Exit:
         else:
             print_solution(instance, solution)
         solved.append((file, instance, solution))
-        done = solution.status == "optimal" and solution.complete is not False
+        done = (
+            solution.status == "optimal"
+            and solution.complete is not False
+            and solution.cutting_paths == solution.cutting_paths_lower_bound
+        )
         codes.append(Exit.DONE if done else Exit.STOPPED)
         if interrupts.seen:
             break
@@ -83,6 +92,32 @@ def solve_files(request: Request) -> Exit:
     if len(request.files) > 1 and not request.as_json:
         print_overview(solved)
     return worst(codes)
+
+
+def _warn_of_workers(workers: int | None) -> None:
+    """More workers than processors are useful in a portfolio, and slow beyond it."""
+    cores = os.cpu_count() or 1
+    if workers is not None and workers > max(cores, PORTFOLIO):
+        print(f"cellcolor: {workers} workers share {cores} processors", file=sys.stderr)
+
+
+def _start(instance: Instance, path: Path, options: Options) -> Start:
+    """A solution file as a start.
+
+    Raises:
+        InputError: it is not a valid solution of this instance with these strands.
+    """
+    solution = Solution.read(path)
+    problems = check_solution(instance, solution).problems
+    if problems:
+        raise InputError(str(path), None, f"is not valid: {problems[0]}")
+    if solution.cells is None:
+        raise InputError(str(path), "cells", "holds no division to start from")
+    if solution.strands != options.strands:
+        raise InputError(
+            str(path), "strands", f"is {solution.strands}, wanted are {options.strands}"
+        )
+    return Start(solution.cells, solution.seams)
 
 
 def _say_failed(request: Request, file: Path, message: str) -> None:
@@ -127,9 +162,12 @@ def _solve(
 
     if request.every:
         _refuse_schemes(instance)
+    options = request.options
+    if request.warm_start is not None:
+        options = replace(options, start=_start(instance, request.warm_start, options))
     started = time.monotonic()
     with progress_of(file) as report, interrupts.end_the_search():
-        solution = solve(instance, request.options, request.solver, report)
+        solution = solve(instance, options, request.solver, report)
     if not request.every:
         if target is not None:
             _make_folder(target)

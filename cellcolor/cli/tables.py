@@ -35,7 +35,7 @@ def print_solution(instance: Instance, solution: Solution) -> None:
     if solution.cells:
         out.print(_segments(instance, solution))
     summary = Table(box=None, show_header=False, pad_edge=False)
-    for name, value in _summary(solution):
+    for name, value in [*_summary(solution), *_witness(instance, solution)]:
         summary.add_row(Text(name, style="bold"), value)
     out.print(summary)
     out.print()
@@ -121,10 +121,27 @@ def _summary(solution: Solution) -> list[tuple[str, str]]:
         ),
         ("time", f"{solution.seconds:.2f} s with {solution.solver}"),
     ]
+    if solution.cutting_paths is not None:
+        fewest = solution.cutting_paths == solution.cutting_paths_lower_bound
+        proof = "fewest" if fewest else f"at least {solution.cutting_paths_lower_bound}"
+        lines.insert(2, ("cutting paths", f"{solution.cutting_paths} ({proof})"))
     if solution.schemes is not None:
         extent = "all of them" if solution.complete else "maybe not all"
         lines.insert(3, ("schemes", f"{solution.schemes} ({extent})"))
     return lines
+
+
+def _witness(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
+    """Why there cannot be fewer segments, where a person can see it."""
+    from cellcolor.solvers.bounds import strangers
+
+    if not solution.proved_for_surface or not 1 < (solution.segments or 0) <= _CELLS_SHOWN:
+        return []
+    cells = strangers(instance)
+    if len(cells) != solution.segments:
+        return []
+    names = ", ".join(str(cell) for cell in cells)
+    return [("because", f"no two of the cells {names} can be in one segment")]
 
 
 def _status(solution: Solution) -> str:

@@ -1,14 +1,18 @@
-"""A lower bound that holds for any division of the physical surface: set cover."""
+"""Lower bounds that hold for any division of the physical surface: set cover, strangers."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import networkx as nx
 
 from cellcolor.data.instance import Instance
 
-__all__ = ["Region", "color_regions", "set_cover"]
+if TYPE_CHECKING:
+    from ortools.sat.python import cp_model
+
+__all__ = ["Region", "color_regions", "set_cover", "strangers"]
 
 Region = tuple[int, frozenset[int]]
 """A color, and the cells of one connected component of the part of the surface it reaches."""
@@ -58,16 +62,35 @@ def set_cover(instance: Instance, colors: Sequence[frozenset[int]] | None = None
             literal for literal, (_, cells) in zip(chosen, regions, strict=True) if cell.id in cells
         )
     model.minimize(sum(chosen))
+    return [regions[number] for number in _solve(model, chosen)]
+
+
+def strangers(instance: Instance) -> list[int]:
+    """A largest set of cells of which no two lie in one color region.
+
+    No two of them can be in one segment, so there are at least as many segments: a bound that can
+    be checked by eye. It is at most that of the set cover, and often equal to it.
+    """
+    from ortools.sat.python import cp_model
+
+    model = cp_model.CpModel()
+    chosen = [model.new_bool_var("") for _ in instance.cells]
+    for _, cells in color_regions(instance):
+        model.add_at_most_one(chosen[cell] for cell in sorted(cells))
+    model.maximize(sum(chosen))
+    return _solve(model, chosen)
+
+
+def _solve(model: cp_model.CpModel, chosen: list[cp_model.IntVar]) -> list[int]:
+    """Solve a small model to the end; which of its variables are chosen."""
+    from ortools.sat.python import cp_model
+
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = 0
     # Left to itself, OR-Tools makes the next Ctrl-C kill the process.
     solver.parameters.catch_sigint_signal = False
     status = solver.solve(model)
-    # Every cell has a color, so there is a cover, and nothing limits the search for the best.
+    # Something can always be chosen, and nothing limits the search for the best.
     assert status == cp_model.OPTIMAL
-    return [
-        region
-        for literal, region in zip(chosen, regions, strict=True)
-        if solver.boolean_value(literal)
-    ]
+    return [number for number, literal in enumerate(chosen) if solver.boolean_value(literal)]

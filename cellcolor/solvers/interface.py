@@ -10,6 +10,9 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, SearchSpace
 from cellcolor.errors import CellcolorError
 
+PORTFOLIO = 8
+"""CP-SAT's workers unless asked for otherwise: different searches, useful beyond the cores."""
+
 Progress = Callable[[int | None, int], None]
 """Called with the segments of the best division so far (None: none yet) and the lower bound."""
 
@@ -35,7 +38,7 @@ class Options:
         search_space: ``paper``, or ``surface`` for any division of the physical surface.
         strands: strands per topological edge; 1 in ``paper``.
         time_limit: seconds of wall-clock time, None for as long as it takes.
-        workers: CP-SAT's search workers, None for its portfolio of 8.
+        workers: CP-SAT's search workers, None for ``PORTFOLIO``.
         seed: of everything random.
         start: a division to start from (CP-SAT only).
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting

@@ -20,13 +20,10 @@ from cellcolor.solvers.cpsat.model import Model, add_hint, build, cut_paths, rea
 from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, moved, painting_of
 from cellcolor.solvers.cpsat.whole import paint_whole_cells
 from cellcolor.solvers.crossings import enough_crossings
-from cellcolor.solvers.interface import Answer, Options, OutOfTime, Progress
+from cellcolor.solvers.interface import PORTFOLIO, Answer, Options, OutOfTime, Progress
 from cellcolor.solvers.reductions import drop_dominated
 
 __all__ = ["CpSatSolver"]
-
-PORTFOLIO = 8
-"""Workers unless asked for otherwise: different searches, useful beyond the number of cores."""
 
 FEW_STRANDS = 2
 """Seams are tried this narrow first, which is enough when the result meets the cover bound."""
