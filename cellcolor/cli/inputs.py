@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 from cellcolor.data import instance as instance_file
@@ -23,10 +25,12 @@ class Scene:
     Attributes:
         surface: what the front end made of it.
         report: what it has to say about that, several lines.
+        write_side: writes the surface's side file, reasons and configurations (``.npz``).
     """
 
     surface: LabelledSurface
     report: str
+    write_side: Callable[[Path], None]
 
 
 def is_scene(path: Path) -> bool:
@@ -42,6 +46,7 @@ def build_scene(path: Path) -> Scene:
     """
     try:
         from cellcolor.frontend import build_surface
+        from cellcolor.frontend.sidefile import write_side_file
     except ModuleNotFoundError as error:
         missing = (error.name or "").partition(".")[0]
         if missing not in _FRONTEND_PACKAGES:
@@ -50,7 +55,7 @@ def build_scene(path: Path) -> Scene:
             str(path), None, f"scenes need {missing}: pip install 'cellcolor[frontend]'"
         ) from error
     result = build_surface(path)
-    return Scene(result.surface, str(result.report))
+    return Scene(result.surface, str(result.report), partial(write_side_file, result))
 
 
 def read_graph(path: Path) -> Instance | LabelledSurface:

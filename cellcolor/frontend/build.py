@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import time
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +26,7 @@ from cellcolor.frontend.kinematics import (
 from cellcolor.frontend.report import BuildReport, make_report
 from cellcolor.frontend.robot import Array, Robot, load_robot
 from cellcolor.frontend.scene import Scene, Setup, load_scene, load_setup
+from cellcolor.frontend.slivers import SliverReport, clean
 from cellcolor.frontend.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
 from cellcolor.frontend.validity import judge
 
@@ -42,7 +43,8 @@ class BuildResult:
         configurations: (n, 8, 6) in rad, NaN where a branch has no solution.
         reasons: (n, 8) uint8 codes of :class:`~cellcolor.frontend.validity.Reason`, the first
             test that a candidate fails.
-        node_color: (n, 8) the color of each valid candidate, -1 for the others.
+        node_color: (n, 8) the color of each valid candidate, -1 for the others and for those
+            that a sliver policy took away.
         report: the same in numbers for people.
     """
 
@@ -120,7 +122,14 @@ def _build(
     started = time.perf_counter()
     edges = surface.edges()
     linked = link(surface, edges, candidates, setup.continuity, probe)
-    coloring = color(candidates, node_links(edges, linked), BRANCHES)
+    valid, configurations = candidates.valid, candidates.configurations
+    coloring = color(valid, configurations, node_links(edges, linked), BRANCHES)
+    slivers = None
+    if setup.slivers is not None:
+        areas = surface.vertex_areas()
+        kept, slivers = clean(edges, linked, coloring, areas, setup.slivers)
+        linked &= kept[edges[:, 0]] & kept[edges[:, 1]]
+        coloring = color(kept, configurations, node_links(edges, linked), BRANCHES)
     cracks = find_cracks(edges, linked, coloring)
     lap("continuity", started)
 
@@ -131,9 +140,9 @@ def _build(
         faces=surface.faces,
         vertex_colors=_vertex_colors(coloring),
         cracks=cracks,
-        meta=_meta(scene, setup, seconds),
+        meta=_meta(scene, setup, seconds, slivers),
     )
-    report = make_report(surface, candidates, coloring, BRANCHES, len(cracks), seconds)
+    report = make_report(surface, candidates, coloring, BRANCHES, len(cracks), seconds, slivers)
     return BuildResult(
         surface=labelled,
         branches=BRANCHES,
@@ -162,12 +171,15 @@ def _vertex_colors(coloring: Coloring) -> tuple[tuple[int, ...], ...]:
     )
 
 
-def _meta(scene: Scene, setup: Setup, seconds: dict[str, float]) -> dict[str, Any]:
+def _meta(
+    scene: Scene, setup: Setup, seconds: dict[str, float], slivers: SliverReport | None
+) -> dict[str, Any]:
     packages = {"pin": "pin", "trimesh": "trimesh", "fcl": "python-fcl", "numpy": "numpy"}
     versions = {name: importlib.metadata.version(package) for name, package in packages.items()}
+    done = {} if slivers is None else {"slivers": asdict(slivers)}
     return {
         "scene": scene.model_dump(mode="json"),
         "setup": setup.model_dump(mode="json"),
         "versions": {"cellcolor": cellcolor.__version__} | versions,
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
-    }
+    } | done

@@ -129,38 +129,41 @@ def _probed(
     return followed
 
 
-def color(candidates: Candidates, links: Index, branch_names: tuple[str, ...]) -> Coloring:
+def color(
+    nodes: Mask, configurations: Array, links: Index, branch_names: tuple[str, ...]
+) -> Coloring:
     """Connected components of linked nodes.
 
     Numbering is deterministic: colors follow their branches; within a branch the components
     with more vertices come first, and of equal ones that with the smallest vertex.
 
     Args:
+        nodes: (n, branches) which of them there are.
+        configurations: (n, branches, 6) in rad, for errors.
         links: (l, 2) nodes that a continuous motion joins, numbered vertex * branches + branch.
 
     Raises:
         InputError: a color has two configurations on one vertex; names vertex and
             configurations.
     """
-    valid = candidates.valid
-    branches = valid.shape[1]
-    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(valid.size,) * 2)
+    branches = nodes.shape[1]
+    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(nodes.size,) * 2)
     component = connected_components(graph, directed=False)[1]
-    nodes = np.flatnonzero(valid)
+    present = np.flatnonzero(nodes)
     _, first, inverse, count = np.unique(
-        component[nodes], return_index=True, return_inverse=True, return_counts=True
+        component[present], return_index=True, return_inverse=True, return_counts=True
     )
-    branch_of = nodes[first] % branches
+    branch_of = present[first] % branches
     order = np.lexsort((first, -count, branch_of))
-    node_color = np.full(valid.size, -1, dtype=np.int64)
-    node_color[nodes] = np.argsort(order)[inverse]
+    node_color = np.full(nodes.size, -1, dtype=np.int64)
+    node_color[present] = np.argsort(order)[inverse]
     of_branch = branch_of[order]
     names = []
     for branch, size in enumerate(np.bincount(of_branch, minlength=branches)):
         name = branch_names[branch]
         names += [name] if size == 1 else [f"{name} {k}" for k in range(1, size + 1)]
-    table = node_color.reshape(valid.shape)
-    _check_injective(table, candidates.configurations, names)
+    table = node_color.reshape(nodes.shape)
+    _check_injective(table, configurations, names)
     return Coloring(tuple(names), tuple(of_branch.tolist()), table)
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.frontend.continuity import Coloring
+from cellcolor.frontend.slivers import SliverReport
 from cellcolor.frontend.surfaces import Surface
 from cellcolor.frontend.validity import Candidates, Reason
 
@@ -37,6 +38,7 @@ class BuildReport:
             came farthest through the tests.
         colors: see :class:`ColorReport`.
         cracks: number of mesh edges with a crack.
+        slivers: what the sliver policy did, None without one.
         seconds: wall time of each stage.
     """
 
@@ -49,6 +51,7 @@ class BuildReport:
     colors: tuple[ColorReport, ...]
     cracks: int
     seconds: dict[str, float]
+    slivers: SliverReport | None = None
 
     def __str__(self) -> str:
         share = 100 * self.reachable_area_m2 / self.area_m2
@@ -65,8 +68,17 @@ class BuildReport:
             for color in self.colors
         ]
         lines += [f"cracks  {self.cracks}"]
+        if self.slivers is not None:
+            lines += [self._slivers(self.slivers)]
         spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in self.seconds.items())
         return "\n".join([*lines, f"seconds  {sum(self.seconds.values()):.2f}: {spent}"])
+
+    def _slivers(self, slivers: SliverReport) -> str:
+        share = 100 * slivers.given_up_area_m2 / self.area_m2
+        return (
+            f"slivers  {slivers.simplified_cells} cells simplified; {slivers.given_up_cells} cells"
+            f" given up: {slivers.given_up_vertices} vertices, {share:.1f} % of the area uncovered"
+        )
 
 
 def _table(title: str, counts: dict[str, int]) -> list[str]:
@@ -80,6 +92,7 @@ def make_report(
     branch_names: tuple[str, ...],
     cracks: int,
     seconds: dict[str, float],
+    slivers: SliverReport | None = None,
 ) -> BuildReport:
     """Count what a build found."""
     areas = surface.vertex_areas()
@@ -101,4 +114,5 @@ def make_report(
         colors=tuple(colors),
         cracks=cracks,
         seconds=seconds,
+        slivers=slivers,
     )

@@ -29,6 +29,7 @@ __all__ = [
     "RobotFiles",
     "Scene",
     "Setup",
+    "Slivers",
     "SphereObstacle",
     "Task",
     "Thresholds",
@@ -168,13 +169,24 @@ class Continuity(_Table):
     probe_spacing_m: Positive
 
 
+Share = Annotated[FiniteFloat, Field(ge=0, lt=1)]
+
+
+class Slivers(_Table):
+    """What happens to small cells; both thresholds are shares of the surface's area."""
+
+    simplify_below_share: Share = 0.0
+    uncover_below_share: Share = 0.0
+
+
 class Setup(_Table):
-    """Robot, task, thresholds and continuity, shared by scenes."""
+    """Robot, task, thresholds, continuity and sliver policy, shared by scenes."""
 
     robot: RobotFiles
     task: Task
     thresholds: Thresholds
     continuity: Continuity
+    slivers: Slivers | None = None
 
 
 _Model = TypeVar("_Model", bound=BaseModel)

@@ -1,4 +1,4 @@
-"""Where the shipped robot and the wok are, and how to change keys of a TOML text."""
+"""Where the shipped robot and scenes are, and how to change keys of a TOML text."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from pathlib import Path
 
 TOP = Path(__file__).parents[2]
 ROBOTS = TOP / "models" / "robots"
-WOK = TOP / "instances" / "scenes" / "wok.toml"
+SCENES = TOP / "instances" / "scenes"
+WOK = SCENES / "wok.toml"
 
 
 def edited(text: str, **values: object) -> str:

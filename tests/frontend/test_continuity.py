@@ -14,7 +14,7 @@ from shipped import ROBOTS, WOK, edited
 from cellcolor.data.surface import Crack
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.continuity import color, find_cracks, joint_step, link, node_links
+from cellcolor.frontend.continuity import Coloring, color, find_cracks, joint_step, link, node_links
 from cellcolor.frontend.generators import disc_mesh
 from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Continuity
@@ -72,6 +72,9 @@ class Plane:
         self.asked += len(points)
         q = self.joints(points, branch)
         return q, ~np.isnan(q[:, 0])
+
+    def colored(self, links: Array, names: tuple[str, ...]) -> Coloring:
+        return color(self.candidates.valid, self.candidates.configurations, links, names)
 
     def linked(self, policy: Continuity = POLICY) -> Array:
         return link(self.surface, self.edges, self.candidates, policy, self.probe)
@@ -143,7 +146,7 @@ def spiral(p: Array) -> float:
 def test_holonomy_makes_a_crack_and_no_second_color() -> None:
     plane = Plane(spiral)
     linked = plane.linked()
-    coloring = color(plane.candidates, node_links(plane.edges, linked), ("turning",))
+    coloring = plane.colored(node_links(plane.edges, linked), ("turning",))
     assert coloring.names == ("turning",)
     assert coloring.node_color[:, 0].tolist() == [-1, 0, 0, 0, 0, 0, 0]
     # arctan2 jumps between the vertices at 180 and at 240 degrees.
@@ -158,7 +161,7 @@ def test_names_and_numbers() -> None:
         lambda p: 0.0 if abs(p[1]) < 0.1 else np.nan,
     )
     links = node_links(plane.edges, plane.linked())
-    coloring = color(plane.candidates, links, ("a", "b", "c"))
+    coloring = plane.colored(links, ("a", "b", "c"))
     left = np.flatnonzero(plane.surface.vertices[:, 0] < -0.3)
     assert coloring.names == ("a 1", "a 2", "a 3", "c")
     assert coloring.branch == (0, 0, 0, 2)
@@ -173,7 +176,7 @@ def test_two_configurations_of_one_color_are_reported() -> None:
     # What joint distance alone would do: the branches grow together at vertex 3.
     merged = np.vstack([links, [[3 * 2, 3 * 2 + 1]]])
     with pytest.raises(InputError, match=r"2 configurations: \[.*\] and \[") as caught:
-        color(plane.candidates, merged, ("a", "b"))
+        plane.colored(merged, ("a", "b"))
     assert caught.value.field == "vertices[0]"
 
 

@@ -40,7 +40,7 @@ MESH = '[object]\nkind = "mesh"\nfile = "none.stl"\nmeters_per_unit = 1.0\n[plac
         (SCENE, r"half_angle_rad = 1\.", "half_angle_rad = 65.", SCENE, "object.half_angle_rad",
          "less"),
         (SCENE, r"jitter = 0.15", "jitter = 0.6", SCENE, "object.jitter", "less"),
-        (SCENE, r"target_vertices = 2000", "target_vertices = 20.5", SCENE,
+        (SCENE, r"target_vertices = 1000", "target_vertices = 20.5", SCENE,
          "object.target_vertices", "integer"),
         (SCENE, r'kind = "spherical-cap"', 'kind = "torus"', SCENE, "object", "torus"),
         (SCENE, r"rpy_rad = .*?\]", "rpy_rad = [0.0, 0.0]", SCENE, "placement.rpy_rad[2]",

@@ -1,0 +1,125 @@
+"""The six scenes as shipped, with one setup: the paper's lift-offs at two resolutions each."""
+
+from __future__ import annotations
+
+import itertools
+from pathlib import Path
+
+import pytest
+from shipped import ROBOTS, SCENES, edited
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend.scene import load_scene
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.run import solve
+
+# Section VI of the paper; the square is not in it.
+LIFT_OFFS = {
+    "hemisphere_flat": 3,
+    "hemisphere_tilted": 2,
+    "half_pipe": 1,
+    "wok": 1,
+    "wok_obstacle": 2,
+    "square": 0,
+}
+
+
+def built(name: str, folder: Path, vertices: int) -> BuildResult:
+    text = edited(
+        (SCENES / f"{name}.toml").read_text(),
+        setup=f'"{(ROBOTS / "ur5_polishing.toml").as_posix()}"',
+        target_vertices=vertices,
+    )
+    (folder / "scene.toml").write_text(text)
+    return build_surface(folder / "scene.toml")
+
+
+def covers(surface: LabelledSurface, count: int) -> list[set[str]]:
+    """All choices of so many colors that together reach every reachable vertex."""
+    needs = {frozenset(colors) for colors in surface.vertex_colors if colors}
+    chosen = itertools.combinations(range(len(surface.colors)), count)
+    return [
+        {surface.colors[color] for color in colors}
+        for colors in chosen
+        if all(need & set(colors) for need in needs)
+    ]
+
+
+def test_one_setup_for_all() -> None:
+    scenes = {file.stem: load_scene(file) for file in SCENES.glob("*.toml")}
+    assert scenes.keys() == LIFT_OFFS.keys()
+    assert len({scene.setup for scene in scenes.values()}) == 1
+
+
+@pytest.mark.parametrize("name", LIFT_OFFS)
+def test_lift_offs(name: str, tmp_path: Path) -> None:
+    result = built(name, tmp_path, 500)
+    solution = solve(decompose(result.surface), Options(time_limit=60, workers=2))
+    assert solution.status == "optimal" and solution.proved_for_surface
+    assert solution.lift_offs == LIFT_OFFS[name]
+
+
+@pytest.mark.parametrize("name", LIFT_OFFS)
+def test_files_as_built(name: str) -> None:
+    """The stored instance is what the stored surface gives, and has the lift-offs as well."""
+    instance = Instance.read(SCENES / f"{name}.json")
+    surface = LabelledSurface.read(SCENES / f"{name}.surface.json")
+    assert decompose(surface, f"{name}.surface.json").to_json() == instance.to_json()
+    assert surface.meta["scene"] == load_scene(SCENES / f"{name}.toml").model_dump(mode="json")
+    assert len(surface.vertices) > 800
+    solution = solve(instance, Options(time_limit=60, workers=2))
+    assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
+
+
+@pytest.mark.parametrize("name", LIFT_OFFS)
+def test_stored_surface_is_what_the_scene_gives(name: str) -> None:
+    stored = LabelledSurface.read(SCENES / f"{name}.surface.json")
+    again = build_surface(SCENES / f"{name}.toml").surface
+    assert (stored.colors, stored.vertex_colors, stored.cracks) == (
+        again.colors,
+        again.vertex_colors,
+        again.cracks,
+    )
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", LIFT_OFFS)
+@pytest.mark.parametrize("vertices", [2000, 4000])
+def test_lift_offs_at_higher_resolutions(name: str, vertices: int, tmp_path: Path) -> None:
+    surface = built(name, tmp_path, vertices).surface
+    solution = solve(decompose(surface), Options(time_limit=300, workers=2))
+    assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
+
+
+def test_flat_hemisphere_is_not_fully_reachable(tmp_path: Path) -> None:
+    report = built("hemisphere_flat", tmp_path, 500).report
+    assert report.reachable_area_m2 < 0.9 * report.area_m2
+
+
+def test_tilted_hemisphere_is_reachable_and_covered(tmp_path: Path) -> None:
+    report = built("hemisphere_tilted", tmp_path, 500).report
+    assert report.slivers is not None
+    covered = report.reachable_area_m2 - report.slivers.given_up_area_m2
+    assert covered >= 0.98 * report.area_m2
+
+
+def test_trap_of_the_half_pipe(tmp_path: Path) -> None:
+    """A color of most of the area that no two segments can contain."""
+    result = built("half_pipe", tmp_path, 500)
+    trap = "shoulder-left elbow-up wrist-unflipped"
+    share = {c.name: c.area_m2 / result.report.area_m2 for c in result.report.colors}
+    assert share[trap] > 0.7
+    pairs = covers(result.surface, 2)
+    assert pairs and not any(trap in pair for pair in pairs)
+    # Optima consist of such pairs, since no color suffices alone.
+    assert not covers(result.surface, 1)
+
+
+def test_two_colors_cover_the_square_alone(tmp_path: Path) -> None:
+    assert covers(built("square", tmp_path, 500).surface, 1) == [
+        {"shoulder-left elbow-up wrist-unflipped"},
+        {"shoulder-left elbow-up wrist-flipped"},
+    ]
