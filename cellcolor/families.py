@@ -16,7 +16,7 @@ from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, Known, KnownR
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.errors import InputError
 
-__all__ = ["blobs", "hub", "hub_minimum", "planar_graph"]
+__all__ = ["blobs", "hub", "hub_grid", "hub_minimum", "planar_graph"]
 
 
 def blobs(
@@ -208,6 +208,80 @@ def hub_minimum(petal_colors: Sequence[int]) -> int:
         return best
 
     return len(petal_colors) - joined(0, len(petal_colors) - 1)
+
+
+def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> Instance:
+    """Hubs in a grid that share the petals between them.
+
+    A hub is a square cell with all colors and ``side`` single-colored petals on each of its four
+    sides. A petal between two hubs has a live edge to both, one at the rim of the grid to one; no
+    two successive petals of a side are equal. What lies between four hubs is unreachable. Bounds
+    that count colors say nothing here, and unlike a single hub it has no recursion for its minimum.
+
+    Args:
+        seed: of the petals' colors.
+        rows: of hubs, one or more.
+        columns: of hubs, one or more.
+        colors: how many, two or more.
+        side: petals on each side of a hub, one or more.
+
+    Raises:
+        InputError: there is no such grid.
+    """
+    if rows < 1 or columns < 1 or colors < 2 or side < 1:
+        raise InputError(
+            None,
+            None,
+            f"no grid has {rows} x {columns} hubs, {side} petals a side, {colors} colors",
+        )
+    rng = random.Random(f"hub grid {seed} {rows} {columns} {colors} {side}")
+    sets: list[tuple[int, ...]] = [tuple(range(colors))] * (rows * columns)
+    loops: list[tuple[int, ...]] = [()] * (rows * columns)
+    edges: list[Edge] = []
+
+    def border(left: int, right: int) -> int:
+        edges.append(Edge(len(edges) + 1, left, right))
+        return len(edges)
+
+    def strip(near: int, far: int) -> tuple[list[int], list[int]]:
+        """Petals between two areas, as walks round each of the two meet them.
+
+        Looking from the near area to the far one they follow each other from right to left.
+        """
+        nears, fars = [], []
+        behind = None
+        for number in range(side):
+            petal = len(sets)
+            last = sets[-1] if number else ()
+            sets.append((rng.choice([color for color in range(colors) if color not in last]),))
+            right = border(petal, OUTSIDE) if behind is None else -behind
+            nears.append(border(near, petal))
+            fars.insert(0, -border(petal, far))
+            behind = border(petal, petal + 1 if number < side - 1 else OUTSIDE)
+            loops.append((right, -fars[0], behind, -nears[-1]))
+        return nears, fars
+
+    # Row by row from the bottom, so that the strips below and to the left of a hub are known.
+    above: dict[tuple[int, int], list[int]] = {}
+    beside: dict[tuple[int, int], list[int]] = {}
+    for row in range(rows):
+        for column in range(columns):
+            hub_id = row * columns + column
+            bottom = above[row - 1, column] if row else strip(OUTSIDE, hub_id)[1]
+            left = beside[row, column - 1] if column else strip(OUTSIDE, hub_id)[1]
+            right_hub = hub_id + 1 if column < columns - 1 else OUTSIDE
+            right, beside[row, column] = strip(hub_id, right_hub)
+            top, above[row, column] = strip(hub_id, hub_id + columns if row < rows - 1 else OUTSIDE)
+            loop: list[int] = []
+            for darts in (bottom, right, top, left):
+                loop += [*darts, border(hub_id, OUTSIDE)]
+            loops[hub_id] = tuple(loop)
+    return Instance(
+        f"hub_grid_{seed}_{rows}x{columns}x{side}",
+        tuple(f"c{color}" for color in range(colors)),
+        tuple(Cell(i, own, (loop,)) for i, (own, loop) in enumerate(zip(sets, loops, strict=True))),
+        tuple(edges),
+    )
 
 
 def planar_graph(

@@ -6,12 +6,14 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from bruteforce import noncrossing
+from bruteforce import minimum, noncrossing
 
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.families import blobs, hub, hub_minimum, planar_graph
+from cellcolor.families import blobs, hub, hub_grid, hub_minimum, planar_graph
+from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.interface import Options
 
 
 def test_blobs_are_a_function_of_their_seed() -> None:
@@ -112,6 +114,65 @@ def test_hub_minimum_is_that_over_all_partitions() -> None:
         assert hub_minimum(ring) == best
 
 
+@pytest.mark.parametrize(("rows", "columns", "side"), [(1, 1, 2), (1, 3, 1), (2, 2, 3), (3, 2, 1)])
+def test_hub_grid_is_a_grid_of_hubs_that_share_petals(rows: int, columns: int, side: int) -> None:
+    instance = hub_grid(4, rows, columns, 3, side)
+    hubs = [cell for cell in instance.cells if len(cell.colors) == 3]
+    petals = [cell for cell in instance.cells if len(cell.colors) == 1]
+    strips = rows * (columns + 1) + columns * (rows + 1)
+    assert len(hubs) == rows * columns and len(petals) == strips * side
+    assert len(hubs) + len(petals) == len(instance.cells)
+    live = {c.id: [d for d in c.loops[0] if instance.joinable(d)] for c in instance.cells}
+    assert all(len(cell.loops) == 1 for cell in instance.cells)
+    assert all(len(live[hub.id]) == 4 * side for hub in hubs)
+    shared = [petal for petal in petals if len(live[petal.id]) == 2]
+    assert len(shared) == (rows * (columns - 1) + columns * (rows - 1)) * side
+    neighbors = {frozenset(instance.across(dart) for dart in live[petal.id]) for petal in shared}
+    assert neighbors == {
+        frozenset({one.id, other.id})
+        for one in hubs
+        for other in hubs
+        if other.id - one.id == columns
+        or (other.id - one.id == 1 and one.id % columns < columns - 1)
+    }
+    # Successive petals of a side touch, across an edge that no color can cross.
+    for edge in instance.edges:
+        if {edge.left, edge.right} <= {petal.id for petal in petals}:
+            assert not instance.joinable(edge.id)
+    assert hub_grid(4, rows, columns, 3, side).to_json() == instance.to_json()
+    assert hub_grid(5, rows, columns, 3, side).cells != instance.cells
+
+
+@pytest.mark.parametrize(("rows", "columns", "side"), [(1, 1, 2), (1, 3, 1), (2, 2, 3), (3, 2, 1)])
+def test_hub_grid_is_planar(rows: int, columns: int, side: int) -> None:
+    """Unreachable are the areas between four hubs each, and the one all around."""
+    instance = hub_grid(0, rows, columns, 3, side)
+    points, outer_loops = _points_and_outer_loops(instance)
+    assert outer_loops == 1 + (rows - 1) * (columns - 1)
+    assert points - len(instance.edges) + len(instance.cells) + outer_loops == 2
+
+
+def test_one_hub_has_the_minimum_of_the_recursion() -> None:
+    for seed in range(5):
+        instance = hub_grid(seed, 1, 1, 3, 2)
+        ring = [
+            instance.cells[instance.across(dart)].colors[0]
+            for dart in instance.cells[0].loops[0]
+            if instance.joinable(dart)
+        ]
+        assert minimum(instance) == hub_minimum(ring)
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns", "colors", "side"), [(1, 2, 2, 2), (1, 3, 3, 1), (2, 2, 2, 1), (2, 2, 3, 1)]
+)
+def test_hub_grid_against_brute_force(rows: int, columns: int, colors: int, side: int) -> None:
+    for seed in range(3):
+        instance = hub_grid(seed, rows, columns, colors, side)
+        answer = CpSatSolver().minimize(instance, Options(workers=1))
+        assert answer.lower_bound == minimum(instance)
+
+
 @pytest.mark.parametrize("self_edges", [False, True])
 def test_planar_graphs_are_planar_and_connected(self_edges: bool) -> None:
     kinds: Counter[str] = Counter()
@@ -157,6 +218,51 @@ def _points(instance: Instance) -> int:
     return points
 
 
+def _points_and_outer_loops(instance: Instance) -> tuple[int, int]:
+    """The points where areas meet, and the border loops of what is unreachable.
+
+    A walk round a point that the outside touches goes from one edge of the outside to the one that
+    follows it on the outside's border, since the outside touches each point at most once here.
+    """
+    place = {
+        d: (loop, i) for cell in instance.cells for loop in cell.loops for i, d in enumerate(loop)
+    }
+    outer = [
+        dart
+        for edge in instance.edges
+        for dart, side in ((edge.id, edge.left), (-edge.id, edge.right))
+        if side == OUTSIDE
+    ]
+    follows: dict[int, int] = {}
+    walked: set[int] = set()
+    for dart in outer:
+        here = -dart  # starts where the outside's dart ends
+        while True:
+            walked.add(here)
+            loop, i = place[here]
+            before = loop[i - 1]
+            if -before not in place:
+                follows[dart] = -before
+                break
+            here = -before
+    assert sorted(follows.values()) == sorted(outer)
+    points = len(outer)
+    for first in place:
+        points += first not in walked
+        dart = first
+        while dart not in walked:
+            walked.add(dart)
+            loop, i = place[dart]
+            dart = -loop[i - 1]
+    loops, seen = 0, set[int]()
+    for dart in outer:
+        loops += dart not in seen
+        while dart not in seen:
+            seen.add(dart)
+            dart = follows[dart]
+    return points, loops
+
+
 @pytest.mark.parametrize(
     "make",
     [
@@ -164,6 +270,9 @@ def _points(instance: Instance) -> int:
         lambda: blobs(0, 5, 0),
         lambda: hub(0, 1, 3),
         lambda: hub(0, 5, 2),
+        lambda: hub_grid(0, 0, 2, 3),
+        lambda: hub_grid(0, 2, 2, 1),
+        lambda: hub_grid(0, 1, 1, 2, 0),
         lambda: planar_graph(0, 0, 3, 2),
         lambda: planar_graph(0, 4, 2, 2),
         lambda: planar_graph(0, 2, 2, 0),
