@@ -248,7 +248,8 @@ def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> 
 
         Looking from the near area to the far one they follow each other from right to left.
         """
-        nears, fars = [], []
+        nears: list[int] = []
+        fars: list[int] = []
         behind = None
         for number in range(side):
             petal = len(sets)
