@@ -163,3 +163,43 @@ def bench(files: tuple[Path, ...], time_limit: float) -> int:
     from cellcolor.cli.bench import bench_files
 
     return bench_files(files, time_limit)
+
+
+@cellcolor.command()
+@click.argument("files", metavar="FILE [SOLUTION.json]", nargs=-1, required=True, type=_PATH)
+@click.option("-o", "--output", metavar="OUT.(html|png|svg)", required=True, type=_PATH)
+@click.option("--color", metavar="NAME|ID", help="The domain of one color.")
+@click.option("--reason", is_flag=True, help="Why points are out of reach; with --branch, of it.")
+@click.option("--graph", is_flag=True, help="The topological graph.")
+@click.option(
+    "--vertex", metavar="N", type=click.IntRange(min=0), help="The arm on a vertex, in a --branch."
+)
+@click.option("--branch", metavar="NAME|ID", help="An inverse-kinematic branch.")
+def show(
+    files: tuple[Path, ...],
+    output: Path,
+    color: str | None,
+    reason: bool,
+    graph: bool,
+    vertex: int | None,
+    branch: str | None,
+) -> int:
+    """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
+
+    With a solution after its instance: by segment.
+    """
+    asked = [color is not None, reason, graph, vertex is not None, len(files) > 1]
+    if len(files) > 2:
+        raise click.UsageError("one file to show, or an instance and its solution")
+    if sum(asked) > 1:
+        raise click.UsageError(
+            "one of --color, --reason, --graph, --vertex and a solution at a time"
+        )
+    if vertex is not None and branch is None:
+        raise click.UsageError("--vertex needs --branch")
+    if branch is not None and vertex is None and not reason:
+        raise click.UsageError("--branch goes with --vertex or --reason")
+
+    from cellcolor.cli.show import View, show_files
+
+    return show_files(files, output, View(color, reason, graph, vertex, branch))
