@@ -203,3 +203,45 @@ def show(
     from cellcolor.cli.show import View, show_files
 
     return show_files(files, output, View(color, reason, graph, vertex, branch))
+
+
+@cellcolor.command()
+@click.option(
+    "--count",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=500,
+    show_default=True,
+    help="Random instances.",
+)
+@click.option("--seed", metavar="N", type=click.IntRange(0, 2**31 - 1), default=0)
+@click.option(
+    "--time-limit",
+    metavar="S",
+    type=_SECONDS,
+    default=20.0,
+    show_default=True,
+    help="Seconds for each solve.",
+)
+@click.option(
+    "--jobs",
+    metavar="N",
+    type=click.IntRange(min=1),
+    default=2,
+    show_default=True,
+    help="Processes.",
+)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    type=_PATH,
+    default=Path("disagreements"),
+    show_default=True,
+    help="Where disagreements are kept.",
+)
+def campaign(count: int, seed: int, time_limit: float, jobs: int, output: Path) -> int:
+    """Hold the solvers to each other on random instances; exit code 1 if they disagree."""
+    from cellcolor.cli.campaign import run_campaign
+
+    return run_campaign(count, seed, time_limit, jobs, output)
