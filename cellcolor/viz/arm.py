@@ -15,6 +15,7 @@ from cellcolor.frontend.scene import (
     BoxObstacle,
     CylinderObstacle,
     Obstacle,
+    SphereObstacle,
     load_scene,
     load_setup,
 )
@@ -28,6 +29,7 @@ __all__ = ["arm_at"]
 _AROUND = 20
 _ALONG = 10
 _GRID = 13
+_LINKS = (*LINES[:-1], "#888888")  # shading does not show on black
 Triangles = NDArray[np.int64]
 Mesh = tuple[Array, Triangles]
 
@@ -55,7 +57,7 @@ def arm_at(scene_path: Path, result: BuildResult, vertex: int, branch: int) -> P
     for body in robot.bodies:
         links.setdefault(body.link, []).append(_placed(body, poses))
     layers = [
-        _layer(link, LINES[number % len(LINES)], _joined(meshes))
+        _layer(link, _LINKS[number % len(_LINKS)], _joined(meshes))
         for number, (link, meshes) in enumerate(links.items())
     ]
     mesh = (result.surface.vertices, result.surface.faces)
@@ -156,7 +158,7 @@ def _obstacle(obstacle: Obstacle) -> Mesh:
         case CylinderObstacle():
             half = up * obstacle.height_m / 2
             points, triangles = _cylinder(-half, half, obstacle.radius_m)
-        case _:
+        case SphereObstacle():
             points, triangles = _capsule(0 * up, 0 * up, obstacle.radius_m)
     turn = rotation_from_rpy(*obstacle.rpy_rad)
     return points @ turn.T + np.array(obstacle.position_m), triangles

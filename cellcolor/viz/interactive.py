@@ -19,7 +19,7 @@ def render(picture: Picture2D | Picture3D) -> bytes:
     figure.update_layout(
         title={"text": picture.title},
         template="plotly_white",
-        margin={"l": 10, "r": 10, "t": 50, "b": 30 + 16 * len(picture.notes)},
+        margin={"l": 10, "r": 10, "t": 50, "b": 10},
         legend={"itemsizing": "constant"},
         annotations=[
             {
@@ -29,8 +29,9 @@ def render(picture: Picture2D | Picture3D) -> bytes:
                 "x": 0,
                 "y": 0,
                 "xanchor": "left",
-                "yanchor": "top",
+                "yanchor": "bottom",
                 "align": "left",
+                "bgcolor": "rgba(255, 255, 255, 0.7)",
                 "showarrow": False,
             }
         ],
@@ -55,7 +56,9 @@ def _space(picture: Picture3D) -> list[Any]:
     traces = [_mesh(layer) for layer in picture.layers]
     traces += [_pieces(line) for line in picture.segments]
     if picture.texts:
-        x, y, z = np.array([text.at for text in picture.texts]).T
+        # A little before the surface, which would cut through the letters otherwise.
+        size = max(float(np.ptp(layer.points, axis=0).max()) for layer in picture.layers)
+        x, y, z = np.array([text.at + 0.02 * size * text.outward for text in picture.texts]).T
         traces.append(
             go.Scatter3d(
                 x=x,
@@ -63,6 +66,7 @@ def _space(picture: Picture3D) -> list[Any]:
                 z=z,
                 text=[text.text for text in picture.texts],
                 mode="text",
+                textposition="middle center",
                 textfont={"color": INK, "size": 14},
                 name="numbers",
                 hoverinfo="skip",

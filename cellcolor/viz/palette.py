@@ -21,8 +21,8 @@ AREAS = (
 )
 """Light enough for black text (Paul Tol, Colour Schemes, 2021: "light", without its grey)."""
 
-LINES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")
-"""For lines and small pieces (Okabe and Ito, Color Universal Design, 2008, black made grey)."""
+LINES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#000000")
+"""For lines and small pieces (Okabe and Ito, Color Universal Design, 2008)."""
 
 REASONS = (
     "#CC6677",

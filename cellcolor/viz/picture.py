@@ -42,11 +42,11 @@ class Segments:
 
 @dataclass(frozen=True)
 class Text:
-    """A short text at a place; ``outward`` (3,) says from where it is seen (None: always)."""
+    """A short text on a surface, at a place (3,) with an outward unit normal (3,)."""
 
     text: str
     at: Array
-    outward: Array | None = None
+    outward: Array
 
 
 @dataclass(frozen=True)

@@ -60,7 +60,8 @@ def read_verdicts(surface: LabelledSurface, path: Path) -> Verdicts:
                 archive["node_color"].astype(np.int64),
             )
     except OSError as error:
-        raise InputError(str(side), None, error.strerror or "cannot be read") from error
+        reason = error.strerror or "cannot be read"
+        raise InputError(str(side), None, f"{reason}; build the scene again or give it") from error
     except (KeyError, ValueError, EOFError, AttributeError, zipfile.BadZipFile) as error:
         raise InputError(str(side), None, f"is no side file: {error}") from error
     shape = (len(surface.vertices), len(verdicts.branches))

@@ -87,7 +87,7 @@ def _space(figure: Figure, picture: Picture3D) -> list[Patch | Line2D]:
     _frame(axes, points, picture.towards)
     for text in picture.texts:
         # Text is always drawn on top: leave out what lies on the far side.
-        if text.outward is None or float(text.outward @ picture.towards) > 0:
+        if float(text.outward @ picture.towards) > 0:
             axes.text(*text.at.tolist(), text.text, fontsize=8, ha="center", va="center")
     handles: list[Patch | Line2D] = [
         Patch(color=layer.color, label=layer.name) for layer in picture.layers
@@ -109,7 +109,7 @@ def _frame(axes: Axes3D, points: Array, towards: Array) -> None:
     axes.set_box_aspect(tuple((high - low).tolist()), zoom=0.9)
     axes.set_proj_type("ortho")
     for axis, share in zip("xyz", (high - low) / (high - low).max(), strict=True):
-        axes.locator_params(axis=axis, nbins=max(2, round(6 * float(share))))
+        axes.locator_params(axis=axis, nbins=max(1, round(6 * float(share))))
     elevation = np.degrees(np.arcsin(towards[2]))
     axes.view_init(
         elev=float(elevation), azim=float(np.degrees(np.arctan2(towards[1], towards[0])))

@@ -136,7 +136,7 @@ def _lines(
     """Borders and cracks, lifted off the surface by a little so that they stay visible."""
     ends: dict[str, list[Array]] = {"border": [], "crack": []}
     edge = float(np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1).mean())
-    lifted = vertices + 0.1 * edge * normals
+    lifted = vertices + 0.03 * edge * normals
     centers = lifted[faces].mean(axis=1)
     for start in range(3):
         a, b = faces[:, start], faces[:, (start + 1) % 3]
