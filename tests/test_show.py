@@ -249,6 +249,24 @@ class TestSolution:
         assert all(painted[b] == whole[a] for a, b in touching)
         assert "Divided: cell 2. Each vertex there" in (tmp_path / "x.html").read_text()
 
+    def test_strands_share_their_edge(self, tmp_path: Path) -> None:
+        """Two corridors side by side cross the border between the two large cells."""
+        path = PAPER / "parallel-corridors.surface.json"
+        surface = LabelledSurface.read(path)
+        file, solution = self.solved(path, tmp_path, "--search-space", "surface")
+        show(path, file, "-o", tmp_path / "x.html")
+        painted = self.segments(tmp_path / "x.html", surface)
+        assert solution.cells is not None
+        assert solution.segments == 2
+        reference = decompose(surface, path.name).surface
+        assert reference is not None
+        cells = reference.vertex_cell
+        first, second = (cell.id for cell in solution.cells if len(cell.subcells) == 2)
+        crossing = [(a, b) for a, b in surface.left_of if (cells[a], cells[b]) == (first, second)]
+        assert {painted[a] for a, _ in crossing} == {0, 1} == {painted[b] for _, b in crossing}
+        # Where one corridor ends and the other begins a vertex may have a neighbor in each.
+        assert sum(painted[a] != painted[b] for a, b in crossing) <= 2
+
     def test_a_graph_made_elsewhere_leaves_divided_cells_unpainted(self, tmp_path: Path) -> None:
         """Where its edges lie on the mesh is not known."""
         text = (PAPER / "split-cell.surface.json").read_text()

@@ -108,8 +108,12 @@ def _frame(axes: Axes3D, points: Array, towards: Array) -> None:
     axes.set(xlabel="x [m]", ylabel="y [m]", zlabel="z [m]")
     axes.set_box_aspect(tuple((high - low).tolist()), zoom=0.9)
     axes.set_proj_type("ortho")
-    for axis, share in zip("xyz", (high - low) / (high - low).max(), strict=True):
-        axes.locator_params(axis=axis, nbins=max(1, round(6 * float(share))))
+    shares = (high - low) / (high - low).max()
+    for axis, share, middle in zip("xyz", shares.tolist(), (low + high) / 2, strict=True):
+        if share < 0.1:  # two labels would lie on each other
+            axes.set(**{f"{axis}ticks": [round(float(middle), 3)]})
+        else:
+            axes.locator_params(axis=axis, nbins=max(2, round(6 * share)))
     elevation = np.degrees(np.arcsin(towards[2]))
     axes.view_init(
         elev=float(elevation), azim=float(np.degrees(np.arctan2(towards[1], towards[0])))
