@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
 from cellcolor.data.files import parse_json
@@ -12,7 +13,7 @@ from cellcolor.data.instance import Cell, Instance
 from cellcolor.errors import CellcolorError
 from cellcolor.solvers.interface import Options
 
-__all__ = ["SOLVERS", "Contradiction", "Run", "compare", "max_live_darts", "measure"]
+__all__ = ["SOLVERS", "Contradiction", "Run", "compare", "max_live_darts", "measure", "run_apart"]
 
 SOLVERS = ("dfs", "cp-sat")
 _GRACE = 60.0
@@ -53,6 +54,21 @@ def measure(instance: Instance, solver: str, time_limit: float) -> Run:
         CellcolorError: the process failed; with the last line that it printed.
     """
     command = [sys.executable, "-m", "cellcolor.bench", solver, str(time_limit)]
+    return run_apart(solver, command, instance, time_limit)
+
+
+def run_apart(solver: str, command: Sequence[str], instance: Instance, time_limit: float) -> Run:
+    """Run a command that reads an instance and prints a :class:`Run` as JSON.
+
+    Args:
+        solver: its name, for errors.
+        command: what to run; it keeps to the time limit itself.
+        instance: its standard input.
+        time_limit: seconds; a command that overruns it by far counts as not coming back.
+
+    Raises:
+        CellcolorError: the process failed; with the last line that it printed.
+    """
     try:
         done = subprocess.run(
             command,
