@@ -14,21 +14,29 @@ from numpy.typing import NDArray
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
+from cellcolor.frontend.between import at_domain_border, remains_valid
 from cellcolor.frontend.collision import Mask
-from cellcolor.frontend.continuity import Coloring, color, find_cracks, link, node_links
-from cellcolor.frontend.generators import make_surface
+from cellcolor.frontend.continuity import (
+    Coloring,
+    color,
+    find_cracks,
+    link,
+    node_links,
+    stays_in_limits,
+)
 from cellcolor.frontend.kinematics import (
     forward,
     manipulability,
     task_determinant,
     tip_jacobian,
 )
+from cellcolor.frontend.prepare import Stage, prepare
 from cellcolor.frontend.report import BuildReport, make_report
-from cellcolor.frontend.robot import Array, Robot, load_robot
-from cellcolor.frontend.scene import Scene, Setup, load_scene, load_setup
+from cellcolor.frontend.robot import Array, Robot
+from cellcolor.frontend.scene import Scene, Setup
 from cellcolor.frontend.slivers import SliverReport, clean
-from cellcolor.frontend.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
-from cellcolor.frontend.validity import judge
+from cellcolor.frontend.ur import BRANCHES
+from cellcolor.frontend.validity import Candidates, Reason
 
 __all__ = ["BuildResult", "build_surface"]
 
@@ -63,75 +71,72 @@ def build_surface(scene_path: Path) -> BuildResult:
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
     """
     scene_path = Path(scene_path)
-    scene = load_scene(scene_path)
-    setup_path = scene_path.parent / scene.setup
-    setup = load_setup(setup_path)
-    robot = _load_robot(setup, setup_path)
-    geometry = ur_geometry(robot)
+    started = time.perf_counter()
+    stage = prepare(scene_path)
     try:
-        return _build(scene, setup, robot, geometry, scene_path)
+        return _build(stage, {"preparation": time.perf_counter() - started})
     except InputError as error:
         if error.file:
             raise
         raise error.in_file(str(scene_path)) from error
 
 
-def _load_robot(setup: Setup, setup_path: Path) -> Robot:
-    files = setup.robot
-    folder = setup_path.parent
-    robot = load_robot(
-        folder / files.arm_urdf, files.flange_link, folder / files.tool_urdf, files.tip_link
+def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
+    scene, setup, robot, surface, judge = (
+        stage.scene,
+        stage.setup,
+        stage.robot,
+        stage.surface,
+        stage.judge,
     )
-    if not robot.lower[5] <= files.locked_joint_6_rad <= robot.upper[5]:
-        raise InputError(
-            str(setup_path), "robot.locked_joint_6_rad", "outside the limits of the sixth joint"
-        )
-    unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
-    if unknown:
-        raise InputError(
-            str(setup_path), "robot.may_touch_ground", f"no solid link {min(unknown)!r}"
-        )
-    return robot
-
-
-def _build(
-    scene: Scene, setup: Setup, robot: Robot, geometry: UrGeometry, scene_path: Path
-) -> BuildResult:
-    seconds: dict[str, float] = {}
-    locked = setup.robot.locked_joint_6_rad
-
-    def lap(stage: str, started: float) -> None:
-        seconds[stage] = time.perf_counter() - started
-
     started = time.perf_counter()
-    surface = make_surface(scene.object, scene_path.parent).placed(scene.placement)
-    lap("surface", started)
 
-    started = time.perf_counter()
-    solutions = solve_inverse(geometry, surface.vertices, -surface.normals, locked)
-    lap("inverse kinematics", started)
+    def lap(name: str) -> None:
+        nonlocal started
+        now = time.perf_counter()
+        seconds[name] = now - started
+        started = now
 
-    candidates = judge(robot, setup, scene, surface, solutions)
-    seconds |= candidates.seconds
+    solutions = stage.inverse(surface.vertices, -surface.normals)
+    lap("inverse kinematics")
+    edges = surface.edges()
+    verdicts = judge(solutions.reshape(-1, solutions.shape[2]))
+    seconds |= judge.seconds  # a copy: the judge goes on being asked
+    candidates = Candidates(
+        verdicts.configurations.reshape(solutions.shape),
+        verdicts.reasons.reshape(solutions.shape[:2]),
+        verdicts.determinants.reshape(solutions.shape[:2]),
+    )
+    valid, configurations = candidates.valid, candidates.configurations
 
     def probe(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Array, Mask]:
-        solutions = solve_inverse(geometry, points, directions, locked)
-        between = solutions[np.arange(len(branch)), branch]
+        between = stage.follow(points, directions, branch)
         return between, _well_conditioned(robot, setup, between)
 
+    def test(points: Array, directions: Array, branch: NDArray[np.intp]) -> Mask:
+        reasons = judge(stage.follow(points, directions, branch)).reasons
+        return np.asarray(reasons == Reason.VALID)
+
     started = time.perf_counter()
-    edges = surface.edges()
     linked = link(surface, edges, candidates, setup.continuity, probe)
-    valid, configurations = candidates.valid, candidates.configurations
+    i, j = edges.T
+    if setup.constraints.collision:
+        linked &= stays_in_limits(robot.lower, robot.upper, configurations[i], configurations[j])
+    lap("continuity")
+    spacing = setup.continuity.validity_spacing_m
+    if spacing is not None:
+        rows, branches = np.nonzero(linked & at_domain_border(edges, valid))
+        linked[rows, branches] &= remains_valid(surface, edges[rows], branches, spacing, test)
+        lap("validity between vertices")
     coloring = color(valid, configurations, node_links(edges, linked), BRANCHES)
     slivers = None
     if setup.slivers is not None:
         areas = surface.vertex_areas()
         kept, slivers = clean(edges, linked, coloring, areas, setup.slivers)
-        linked &= kept[edges[:, 0]] & kept[edges[:, 1]]
+        linked &= kept[i] & kept[j]
         coloring = color(kept, configurations, node_links(edges, linked), BRANCHES)
     cracks = find_cracks(edges, linked, coloring)
-    lap("continuity", started)
+    lap("colors and cracks")
 
     labelled = LabelledSurface(
         name=scene.name,
@@ -159,6 +164,8 @@ def _well_conditioned(robot: Robot, setup: Setup, configurations: Array) -> Mask
     poses = forward(robot, configurations[good])
     linear, angular = tip_jacobian(poses)
     determinant = task_determinant(linear, angular, poses.tool_axis)
+    if not setup.constraints.conditioning:
+        return good
     good[good] = (manipulability(linear) >= setup.thresholds.min_manipulability_m3) & (
         determinant >= setup.thresholds.min_task_determinant_m3
     )

@@ -19,14 +19,24 @@ from scipy.sparse.csgraph import connected_components
 
 from cellcolor.data.surface import Crack
 from cellcolor.errors import InputError
+from cellcolor.frontend.between import along_edges
 from cellcolor.frontend.collision import Mask
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.scene import Continuity
 from cellcolor.frontend.surfaces import Surface
 from cellcolor.frontend.validity import Candidates
 
-__all__ = ["Coloring", "color", "find_cracks", "joint_step", "link", "node_links"]
+__all__ = [
+    "Coloring",
+    "color",
+    "find_cracks",
+    "joint_step",
+    "link",
+    "node_links",
+    "stays_in_limits",
+]
 
+_ROUNDING = 1e-9  # rad; an angle on its limit is inside
 _PROBES_AT_ONCE = 20_000  # a matter of memory: some kilobytes each
 
 Index = NDArray[np.int64]
@@ -56,6 +66,19 @@ def joint_step(first: Array, second: Array) -> Array:
     return np.asarray(difference.max(axis=-1))
 
 
+def stays_in_limits(lower: Array, upper: Array, first: Array, second: Array) -> Mask:
+    """Whether the shorter way between configurations (..., 6) fits into the joint limits (6,).
+
+    Both ends may be turned by full circles, together: with limits of -3 and 3 rad there is no
+    short way from 2.9 to -2.9, with limits of -3 and 4 rad there is one, from 2.9 to 3.38.
+    """
+    circle = 2 * np.pi
+    step = np.remainder(second - first + np.pi, circle) - np.pi
+    lowest, highest = np.minimum(first, first + step), np.maximum(first, first + step)
+    turns = np.ceil((lower - lowest) / circle - _ROUNDING)
+    return np.asarray((highest + circle * turns <= upper + _ROUNDING).all(axis=-1))
+
+
 def link(
     surface: Surface, edges: Index, candidates: Candidates, policy: Continuity, probe: Probe
 ) -> Mask:
@@ -74,7 +97,7 @@ def link(
     """
     i, j = edges.T
     both = candidates.valid[i] & candidates.valid[j]
-    length = np.linalg.norm(surface.vertices[i] - surface.vertices[j], axis=1)
+    length = surface.lengths(edges)
     bound = _bound(policy, length)[:, None]
     with np.errstate(invalid="ignore"):
         step = joint_step(candidates.configurations[i], candidates.configurations[j])
@@ -109,19 +132,14 @@ def _probed(
 ) -> Mask:
     """Follow a branch along each edge: straight, the normal turning with it."""
     i, j = edges.T
-    way = np.linspace(0.0, 1.0, pieces + 1)[None, 1:-1, None]
-    points = (1 - way) * surface.vertices[i][:, None] + way * surface.vertices[j][:, None]
-    normals = (1 - way) * surface.normals[i][:, None] + way * surface.normals[j][:, None]
-    with np.errstate(invalid="ignore"):  # between opposite normals there is none: NaN
-        normals /= np.linalg.norm(normals, axis=2, keepdims=True)
-    between, conditioned = probe(
-        points.reshape(-1, 3), -normals.reshape(-1, 3), np.repeat(branches, pieces - 1)
-    )
+    way = np.tile(np.linspace(0.0, 1.0, pieces + 1)[1:-1], len(edges))
+    points, directions = along_edges(surface, np.repeat(edges, pieces - 1, axis=0), way)
+    between, conditioned = probe(points, directions, np.repeat(branches, pieces - 1))
     between = between.reshape(len(edges), pieces - 1, -1)
     conditioned = conditioned.reshape(len(edges), pieces - 1)
     start, end = (candidates.configurations[ends, branches] for ends in (i, j))
     path = np.concatenate([start[:, None], between, end[:, None]], axis=1)
-    length = np.linalg.norm(surface.vertices[i] - surface.vertices[j], axis=1)
+    length = surface.lengths(edges)
     bound = _bound(policy, length / pieces)
     # A missing configuration is NaN, and a comparison with NaN is false.
     smooth = np.all(joint_step(path[:, :-1], path[:, 1:]) <= bound[:, None], axis=1)

@@ -18,7 +18,7 @@ def make_surface(spec: Object, base: Path) -> Surface:
     """The object of a scene in its own frame; mesh files are relative to the folder ``base``."""
     match spec:
         case MeshObject():
-            return load_mesh(base / spec.file, spec.meters_per_unit)
+            return load_mesh(base / spec.file, spec.meters_per_unit, spec.max_edge_m, spec.repair)
         case CapObject(radius_m=radius, half_angle_rad=half_angle):
             disc = disc_mesh(spec.target_vertices, spec.jitter, spec.seed)
             return spherical_cap(radius, half_angle, *disc)

@@ -1,4 +1,4 @@
-"""Surfaces from mesh files: checked, never repaired."""
+"""Surfaces from mesh files: checked, repaired on request only."""
 
 from __future__ import annotations
 
@@ -9,17 +9,25 @@ import trimesh
 
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
+from cellcolor.frontend.remesh import refine, repair
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.surfaces import Faces, Surface, face_normals
 
 __all__ = ["load_mesh"]
 
 
-def load_mesh(file: Path, meters_per_unit: float) -> Surface:
-    """A mesh file as it is: checked, never repaired.
+def load_mesh(
+    file: Path, meters_per_unit: float, max_edge_m: float | None = None, mend: bool = False
+) -> Surface:
+    """A mesh file as it is, checked; refined or repaired on request.
 
     STL has no shared vertices, so there the corners with equal coordinates are one vertex.
     Normals are those of the adjoining faces, weighted with their angles.
+
+    Args:
+        meters_per_unit: of the file's coordinates.
+        max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
+        mend: see :func:`~cellcolor.frontend.remesh.repair`.
 
     Raises:
         InputError: missing or unreadable file, no triangles, coordinates that are not finite,
@@ -28,6 +36,9 @@ def load_mesh(file: Path, meters_per_unit: float) -> Surface:
             names the element.
     """
     vertices, faces = _read_mesh(file)
+    if mend:
+        finite = np.isfinite(vertices).all()
+        vertices, faces = repair(vertices, faces) if finite else (vertices, faces)
     if not len(faces):
         raise InputError(str(file), "faces", "there are none")
     try:
@@ -40,6 +51,8 @@ def load_mesh(file: Path, meters_per_unit: float) -> Surface:
         corners = vertices[faces]
         if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
             raise InputError(str(file), "faces", "closed mesh inside out: its volume is negative")
+    if max_edge_m is not None:
+        vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit)
     normals = _vertex_normals(vertices, faces)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:

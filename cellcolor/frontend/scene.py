@@ -17,10 +17,12 @@ from cellcolor.errors import InputError
 __all__ = [
     "BoxObstacle",
     "CapObject",
+    "Constraints",
     "Continuity",
     "CylinderObstacle",
     "Ground",
     "MeshObject",
+    "MeshObstacle",
     "Object",
     "Obstacle",
     "PipeObject",
@@ -83,6 +85,8 @@ class MeshObject(_Table):
     kind: Literal["mesh"]
     file: str
     meters_per_unit: Positive
+    max_edge_m: Positive | None = None
+    repair: bool = False
 
 
 class Placement(_Table):
@@ -120,16 +124,29 @@ class SphereObstacle(Placement):
     radius_m: Positive
 
 
+class MeshObstacle(Placement):
+    """A mesh file as a shell, its origin on the position."""
+
+    kind: Literal["mesh"]
+    file: str
+    meters_per_unit: Positive
+
+
 Object = CapObject | PipeObject | RectangleObject | MeshObject
-Obstacle = BoxObstacle | CylinderObstacle | SphereObstacle
+Obstacle = BoxObstacle | CylinderObstacle | SphereObstacle | MeshObstacle
 
 
 class Scene(_Table):
-    """An object, where it stands, and what else is there: ground and obstacles."""
+    """An object, where it stands, and what else is there: ground and obstacles.
+
+    ``object`` is what has to be covered. It is what must not be hit as well, unless
+    ``collision_object`` is given, in the same frame.
+    """
 
     name: Annotated[str, Field(min_length=1)]
     setup: str
     object: Annotated[Object, Field(discriminator="kind")]
+    collision_object: Annotated[Object, Field(discriminator="kind")] | None = None
     placement: Placement
     ground: Ground | None = None
     obstacle: tuple[Annotated[Obstacle, Field(discriminator="kind")], ...] = ()
@@ -167,9 +184,18 @@ class Continuity(_Table):
     step_per_length_rad_per_m: NotNegative
     near_singular_determinant_m3: NotNegative
     probe_spacing_m: Positive
+    validity_spacing_m: Positive | None = None
 
 
 Share = Annotated[FiniteFloat, Field(ge=0, lt=1)]
+
+
+class Constraints(_Table):
+    """The paper's three constraints (section III-A); each can be left out."""
+
+    collision: bool = True
+    force: bool = True
+    conditioning: bool = True
 
 
 class Slivers(_Table):
@@ -186,6 +212,7 @@ class Setup(_Table):
     task: Task
     thresholds: Thresholds
     continuity: Continuity
+    constraints: Constraints = Constraints()
     slivers: Slivers | None = None
 
 

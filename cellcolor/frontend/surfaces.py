@@ -43,6 +43,12 @@ class Surface:
         )
         return np.unique(np.sort(pairs, axis=1), axis=0)
 
+    def lengths(self, edges: Faces) -> Array:
+        """Lengths (k,) of mesh edges (k, 2), m."""
+        i, j = edges.T
+        lengths: Array = np.linalg.norm(self.vertices[i] - self.vertices[j], axis=1)
+        return lengths
+
 
 def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> Array:
     """Rotation matrix of extrinsic x, y, z angles, as in URDF."""

@@ -14,9 +14,14 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.errors import InputError
-from cellcolor.frontend.collision import Collider, Mask, hits_ground, hits_itself
+from cellcolor.frontend.collision import (
+    Mask,
+    body_ends,
+    hits_ground,
+    hits_itself,
+)
 from cellcolor.frontend.kinematics import (
+    Poses,
     forward,
     manipulability,
     static_torques,
@@ -25,11 +30,12 @@ from cellcolor.frontend.kinematics import (
 )
 from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Scene, Setup
-from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.solids import Solid
 
-__all__ = ["Candidates", "Reason", "judge", "within_limits"]
+__all__ = ["Candidates", "Judge", "Reason", "Verdicts", "within_limits"]
 
 Rows = NDArray[np.intp]
+Test = Callable[[Rows], Mask]
 
 
 class Reason(IntEnum):
@@ -60,19 +66,32 @@ class Candidates:
         configurations: (n, 8, 6) in rad, inside the limits where possible; NaN without solution.
         reasons: (n, 8) uint8, see :class:`Reason`.
         determinants: (n, 8) task determinant in m^3, NaN where the tests ended before it.
-        seconds: time spent on each test.
     """
 
     configurations: Array
     reasons: NDArray[np.uint8]
     determinants: Array
-    seconds: dict[str, float]
 
     @property
     def valid(self) -> Mask:
         """(n, 8)."""
         valid: Mask = self.reasons == Reason.VALID
         return valid
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """What became of configurations.
+
+    Attributes:
+        configurations: (k, 6) in rad, turned into the limits where possible.
+        reasons: (k,) uint8, see :class:`Reason`.
+        determinants: (k,) task determinant in m^3, NaN where the tests ended before it.
+    """
+
+    configurations: Array
+    reasons: NDArray[np.uint8]
+    determinants: Array
 
 
 def within_limits(robot: Robot, configurations: Array) -> tuple[Array, Mask]:
@@ -92,84 +111,87 @@ def within_limits(robot: Robot, configurations: Array) -> tuple[Array, Mask]:
     return moved, reachable
 
 
-def judge(
-    robot: Robot, setup: Setup, scene: Scene, surface: Surface, solutions: Array
-) -> Candidates:
-    """Test all inverse-kinematic solutions (n, 8, 6) of a surface's vertices.
+class Judge:
+    """The tests of one robot, setup and scene."""
 
-    Raises:
-        InputError: the object stands in a link that cannot move.
-    """
-    n, branches, joints = solutions.shape
-    flat = solutions.reshape(-1, joints).copy()
-    reasons = np.full(len(flat), Reason.VALID, dtype=np.uint8)
-    determinants = np.full(len(flat), np.nan)
-    seconds: dict[str, float] = {}
-    collider = Collider.of_mesh(robot, surface.vertices, surface.faces)
-    obstacles = [Collider.of_obstacle(robot, obstacle) for obstacle in scene.obstacle]
-    blocked = collider.hits_fixed()
-    if blocked is not None:
-        raise InputError(None, "placement", f"the object stands in the robot's {blocked!r}")
+    def __init__(
+        self, robot: Robot, setup: Setup, scene: Scene, obstacles: list[Solid], target: Solid
+    ) -> None:
+        """``obstacles`` and ``target``, the object, stand in the world."""
+        self._robot, self._setup, self._scene = robot, setup, scene
+        self._obstacles, self._target = obstacles, target
+        self.seconds: dict[str, float] = {}
 
-    reasons[np.isnan(flat[:, 0])] = Reason.NO_SOLUTION
-    solved = np.flatnonzero(reasons == Reason.VALID)
-    flat[solved], inside = within_limits(robot, flat[solved])
-    reasons[solved[~inside]] = Reason.JOINT_LIMITS
+    def __call__(self, configurations: Array) -> Verdicts:
+        """Test configurations (k, 6) in rad, NaN where there is none."""
+        robot, on, limits = self._robot, self._setup.constraints, self._setup.thresholds
+        reasons = np.full(len(configurations), Reason.VALID, dtype=np.uint8)
+        reasons[np.isnan(configurations[:, 0])] = Reason.NO_SOLUTION
+        moved = configurations.copy()
+        solved = np.flatnonzero(reasons == Reason.VALID)
+        moved[solved], inside = within_limits(robot, moved[solved])
+        if on.collision:
+            reasons[solved[~inside]] = Reason.JOINT_LIMITS
+        posed = np.flatnonzero(reasons == Reason.VALID)
 
-    posed = np.flatnonzero(reasons == Reason.VALID)
-    started = time.perf_counter()
-    poses = forward(robot, flat[posed])
-    linear, angular = tip_jacobian(poses)
-    determinant = task_determinant(linear, angular, poses.tool_axis)
-    determinants[posed] = determinant
-    seconds["forward kinematics"] = time.perf_counter() - started
+        started = time.perf_counter()
+        poses = forward(robot, moved[posed])
+        linear, angular = tip_jacobian(poses)
+        determinant = task_determinant(linear, angular, poses.tool_axis)
+        determinants = np.full(len(reasons), np.nan)
+        determinants[posed] = determinant
+        ends = body_ends(robot, poses)
+        self._lap("forward kinematics", started)
 
-    force, gravity = setup.task.normal_force_n, np.array(setup.task.gravity_m_per_s2)
-    limits = setup.thresholds
+        # Each test sees the rows of `poses` that have passed the ones before it.
+        tests: list[tuple[Reason, Test]] = []
+        if on.force:
+            tests += [(Reason.TORQUE, lambda rows: self._too_weak(poses.take(rows), linear[rows]))]
+        if on.conditioning:
+            tests += [
+                (
+                    Reason.MANIPULABILITY,
+                    lambda rows: manipulability(linear[rows]) < limits.min_manipulability_m3,
+                ),
+                (
+                    Reason.TASK_DETERMINANT,
+                    lambda rows: determinant[rows] < limits.min_task_determinant_m3,
+                ),
+            ]
+        if on.collision:
+            tests += [
+                (Reason.GROUND, lambda rows: self._in_ground(ends[:, :, rows])),
+                (Reason.SELF_COLLISION, lambda rows: hits_itself(robot, ends[:, :, rows])),
+                (Reason.OBSTACLE_COLLISION, lambda rows: self._in_obstacle(ends[:, :, rows])),
+                (Reason.OBJECT_COLLISION, lambda rows: self._target.hits(robot, ends[:, :, rows])),
+            ]
+        passed = np.arange(len(posed))
+        for reason, test in tests:
+            started = time.perf_counter()
+            failed = test(passed)
+            reasons[posed[passed[failed]]] = reason
+            passed = passed[~failed]
+            self._lap(reason.text, started)
+        return Verdicts(moved, reasons, determinants)
 
-    def too_weak(rows: Rows) -> Mask:
-        torques = static_torques(robot, poses.take(rows), linear[rows], gravity, force)
-        weak: Mask = np.any(np.abs(torques) > robot.effort, axis=1)
+    def _too_weak(self, poses: Poses, linear: Array) -> Mask:
+        task = self._setup.task
+        gravity = np.array(task.gravity_m_per_s2)
+        torques = static_torques(self._robot, poses, linear, gravity, task.normal_force_n)
+        weak: Mask = np.any(np.abs(torques) > self._robot.effort, axis=1)
         return weak
 
-    def in_ground(rows: Rows) -> Mask:
-        if scene.ground is None:
-            return np.zeros(len(rows), dtype=bool)
-        exempt = setup.robot.may_touch_ground
-        return hits_ground(robot, poses.take(rows), scene.ground.height_m, exempt)
+    def _in_ground(self, ends: Array) -> Mask:
+        ground, exempt = self._scene.ground, self._setup.robot.may_touch_ground
+        if ground is None:
+            return np.zeros(ends.shape[2], dtype=bool)
+        return hits_ground(self._robot, ends, ground.height_m, exempt)
 
-    def in_obstacle(rows: Rows) -> Mask:
-        hit = np.zeros(len(rows), dtype=bool)
-        for obstacle in obstacles:
-            hit[~hit] = obstacle.hits(poses.take(rows[~hit]))
+    def _in_obstacle(self, ends: Array) -> Mask:
+        hit = np.zeros(ends.shape[2], dtype=bool)
+        for obstacle in self._obstacles:
+            hit[~hit] = obstacle.hits(self._robot, ends[:, :, ~hit])
         return hit
 
-    # Each test sees the rows of `poses` that have passed the ones before it.
-    tests: tuple[tuple[Reason, Callable[[Rows], Mask]], ...] = (
-        (Reason.TORQUE, too_weak),
-        (
-            Reason.MANIPULABILITY,
-            lambda rows: manipulability(linear[rows]) < limits.min_manipulability_m3,
-        ),
-        (
-            Reason.TASK_DETERMINANT,
-            lambda rows: determinant[rows] < limits.min_task_determinant_m3,
-        ),
-        (Reason.GROUND, in_ground),
-        (Reason.SELF_COLLISION, lambda rows: hits_itself(robot, poses.take(rows))),
-        (Reason.OBSTACLE_COLLISION, in_obstacle),
-        (Reason.OBJECT_COLLISION, lambda rows: collider.hits(poses.take(rows))),
-    )
-    passed = np.arange(len(posed))
-    for reason, test in tests:
-        started = time.perf_counter()
-        failed = test(passed)
-        reasons[posed[passed[failed]]] = reason
-        passed = passed[~failed]
-        seconds[reason.text] = time.perf_counter() - started
-    return Candidates(
-        flat.reshape(n, branches, joints),
-        reasons.reshape(n, branches),
-        determinants.reshape(n, branches),
-        seconds,
-    )
+    def _lap(self, stage: str, started: float) -> None:
+        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - started

@@ -16,7 +16,7 @@ from world import PAIRS, World
 from cellcolor.errors import InputError
 from cellcolor.frontend import Reason, build_surface
 from cellcolor.frontend.collision import (
-    Collider,
+    body_ends,
     hits_ground,
     hits_itself,
     segment_distance,
@@ -31,6 +31,7 @@ from cellcolor.frontend.scene import (
     Placement,
     SphereObstacle,
 )
+from cellcolor.frontend.solids import mesh_solid, primitive_solid
 from cellcolor.frontend.surfaces import Surface
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
@@ -49,6 +50,10 @@ def joints() -> Array:
     return np.random.default_rng(21).uniform(-np.pi, np.pi, (1500, 6))
 
 
+def placed(robot: Robot, joints: Array) -> Array:
+    return body_ends(robot, forward(robot, joints))
+
+
 def agree(verdicts: Array, distances: Array) -> None:
     assert 0.05 < np.mean(verdicts) < 0.95  # both answers are asked for
     clear = np.abs(distances) > CONTACT
@@ -62,7 +67,7 @@ def test_self_collision_agrees_with_coal(robot: Robot, wok: Surface, joints: Arr
     for q in joints:
         world.place(q)
         distances.append(world.to_itself(PAIRS))
-    agree(hits_itself(robot, forward(robot, joints)), np.array(distances))
+    agree(hits_itself(robot, placed(robot, joints)), np.array(distances))
 
 
 def test_ground_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
@@ -71,12 +76,12 @@ def test_ground_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> N
     for q in joints:
         world.place(q)
         distances.append(world.to_ground(-0.02, EXEMPT))
-    agree(hits_ground(robot, forward(robot, joints), -0.02, EXEMPT), np.array(distances))
+    agree(hits_ground(robot, placed(robot, joints), -0.02, EXEMPT), np.array(distances))
 
 
 def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
     world = World(robot, wok.vertices, wok.faces)
-    found = Collider.of_mesh(robot, wok.vertices, wok.faces).hits(forward(robot, joints))
+    found = mesh_solid(wok.vertices, wok.faces).hits(robot, placed(robot, joints))
     assert 0.05 < found.mean() < 0.95
     near = 0
     for q, verdict in zip(joints, found, strict=True):
@@ -109,7 +114,7 @@ def test_obstacles_agree_with_coal(
     for q in joints[:600]:
         world.place(q)
         distances.append(world.to_solid(shape, pose))
-    found = Collider.of_obstacle(robot, obstacle).hits(forward(robot, joints[:600]))
+    found = primitive_solid(obstacle).hits(robot, placed(robot, joints[:600]))
     agree(found, np.array(distances))
 
 
@@ -150,8 +155,8 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
     poses = forward(robot, tool_down(0.0))
     assert poses.tool_axis[0, 2] == pytest.approx(-1)
     tip, arm = poses.tip[0, 2], (*EXEMPT, "upper_arm_link")
-    assert not hits_ground(robot, poses, tip + 0.0099, arm)[0]
-    assert hits_ground(robot, poses, tip + 0.0101, arm)[0]
+    assert not hits_ground(robot, body_ends(robot, poses), tip + 0.0099, arm)[0]
+    assert hits_ground(robot, body_ends(robot, poses), tip + 0.0101, arm)[0]
 
 
 def test_only_the_tip_touches(robot: Robot) -> None:
@@ -160,7 +165,7 @@ def test_only_the_tip_touches(robot: Robot) -> None:
     plate = spherical_cap(5.0, 0.01, *disc_mesh(300, 0.0, 0))
     for height, expected in ((0.009, False), (0.011, True)):
         vertices = plate.vertices - [0, 0, 5.0] + poses.tip[0] + [0, 0, height]
-        assert Collider.of_mesh(robot, vertices, plate.faces).hits(poses)[0] == expected
+        assert mesh_solid(vertices, plate.faces).hits(robot, body_ends(robot, poses))[0] == expected
 
 
 def test_object_in_the_base_is_refused(scene: Callable[..., Path]) -> None:

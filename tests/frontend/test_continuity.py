@@ -14,7 +14,15 @@ from shipped import ROBOTS, WOK, edited
 from cellcolor.data.surface import Crack
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.continuity import Coloring, color, find_cracks, joint_step, link, node_links
+from cellcolor.frontend.continuity import (
+    Coloring,
+    color,
+    find_cracks,
+    joint_step,
+    link,
+    node_links,
+    stays_in_limits,
+)
 from cellcolor.frontend.generators import disc_mesh
 from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Continuity
@@ -60,7 +68,6 @@ class Plane:
                 np.uint8
             ),
             np.full((7, len(branches)), determinant),
-            {},
         )
         self.asked = 0
 
@@ -267,3 +274,23 @@ def test_the_bound_on_speed_is_kept_between_probes() -> None:
     strict = POLICY.model_copy(update={"base_step_rad": 1e-3, "step_per_length_rad_per_m": 0.1})
     moving = np.abs(np.diff(plane.surface.vertices[plane.edges][:, :, 0], axis=1))[:, 0] > 0.1
     assert (plane.linked(strict)[:, 0] == ~moving).all()
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "first", "second", "fits"),
+    [
+        (-3.0, 3.0, 2.9, -2.9, False),  # the short way leads through pi
+        (-3.0, 4.0, 2.9, -2.9, True),  # it ends at 3.38
+        (-3.0, 3.0, -0.2, 0.3, True),
+        (-7.0, -5.0, 0.1, 0.4, True),  # both turned back once
+        (-6.3, 6.3, 3.1, -3.1, True),
+        (0.0, 6.2, 0.1, 6.1, False),  # the short way leads through 0
+    ],
+)
+def test_way_between_limits(
+    lower: float, upper: float, first: float, second: float, fits: bool
+) -> None:
+    low, high, still = np.full(6, lower), np.full(6, upper), (lower + upper) / 2
+    a, b = np.full(6, still), np.full(6, still)
+    a[3], b[3] = first, second
+    assert stays_in_limits(low, high, a, b) == fits

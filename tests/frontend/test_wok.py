@@ -89,15 +89,15 @@ def test_shipped_scene() -> None:
     assert len(unreached) and (unreached[:, 0] < PLACE[0] - 0.15).all()
 
 
-@pytest.mark.parametrize("vertices", [500, 1000, 4000])
+@pytest.mark.parametrize("vertices", [500, 2000])
 def test_other_resolutions(tmp_path: Path, vertices: int) -> None:
     assert minimum(variant(tmp_path, vertices, 0)) == 2
 
 
 def test_moved_a_little(tmp_path: Path, record_property: pytest.RecordProperty) -> None:
-    found = Counter(minimum(variant(tmp_path, 500, seed)) for seed in range(1, 21))
+    found = Counter(minimum(variant(tmp_path, 500, seed)) for seed in range(1, 6))
     record_property("minima at 500 vertices", dict(found))
-    assert found == {2: 20}
+    assert found == {2: 5}
 
 
 @pytest.mark.slow

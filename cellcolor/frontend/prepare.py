@@ -1,0 +1,114 @@
+"""All that a scene's files say, read and put in place: robot, surface, solids, tests."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.errors import InputError
+from cellcolor.frontend.collision import body_ends
+from cellcolor.frontend.generators import make_surface
+from cellcolor.frontend.kinematics import forward
+from cellcolor.frontend.meshfile import load_mesh
+from cellcolor.frontend.robot import Array, Robot, load_robot
+from cellcolor.frontend.scene import MeshObstacle, Scene, Setup, load_scene, load_setup
+from cellcolor.frontend.solids import mesh_solid, primitive_solid
+from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.ur import UrGeometry, solve_inverse, ur_geometry
+from cellcolor.frontend.validity import Judge
+
+__all__ = ["Stage", "prepare"]
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A scene, ready for questions about configurations.
+
+    Attributes:
+        surface: what has to be covered, in the world.
+        judge: the tests.
+    """
+
+    scene: Scene
+    setup: Setup
+    robot: Robot
+    geometry: UrGeometry
+    surface: Surface
+    judge: Judge
+
+    def inverse(self, points: Array, directions: Array) -> Array:
+        """All branches (n, 8, 6) in rad; see :func:`~cellcolor.frontend.ur.solve_inverse`."""
+        return solve_inverse(self.geometry, points, directions, self.setup.robot.locked_joint_6_rad)
+
+    def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
+        """One branch for each point, (n, 6) in rad, NaN where it has no solution."""
+        followed: Array = self.inverse(points, directions)[np.arange(len(branches)), branches]
+        return followed
+
+
+def prepare(scene_path: Path) -> Stage:
+    """Read a scene, its setup and all that they name.
+
+    Raises:
+        InputError: a file cannot be used, or the object stands in a link that cannot move;
+            names file and field.
+    """
+    scene = load_scene(scene_path)
+    setup_path = scene_path.parent / scene.setup
+    setup = load_setup(setup_path)
+    robot = _load_robot(setup, setup_path)
+    geometry = ur_geometry(robot)
+    if geometry.reach > abs(geometry.a2) + abs(geometry.a3):
+        raise InputError(
+            str(robot.files[1]),
+            f"link[{setup.robot.tip_link}]",
+            f"the tool is longer than the arm: tip {geometry.reach:.3f} m from the wrist",
+        )
+    try:
+        surface = make_surface(scene.object, scene_path.parent).placed(scene.placement)
+        judge = _judge(robot, setup, scene, surface, scene_path.parent)
+    except InputError as error:
+        if error.file:
+            raise
+        raise error.in_file(str(scene_path)) from error
+    return Stage(scene, setup, robot, geometry, surface, judge)
+
+
+def _load_robot(setup: Setup, setup_path: Path) -> Robot:
+    files = setup.robot
+    folder = setup_path.parent
+    robot = load_robot(
+        folder / files.arm_urdf, files.flange_link, folder / files.tool_urdf, files.tip_link
+    )
+    if not robot.lower[5] <= files.locked_joint_6_rad <= robot.upper[5]:
+        raise InputError(
+            str(setup_path), "robot.locked_joint_6_rad", "outside the limits of the sixth joint"
+        )
+    unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
+    if unknown:
+        raise InputError(
+            str(setup_path), "robot.may_touch_ground", f"no solid link {min(unknown)!r}"
+        )
+    return robot
+
+
+def _judge(robot: Robot, setup: Setup, scene: Scene, surface: Surface, base: Path) -> Judge:
+    obstacles = []
+    for obstacle in scene.obstacle:
+        if isinstance(obstacle, MeshObstacle):
+            mesh = load_mesh(base / obstacle.file, obstacle.meters_per_unit).placed(obstacle)
+            obstacles.append(mesh_solid(mesh.vertices, mesh.faces))
+        else:
+            obstacles.append(primitive_solid(obstacle))
+    body = surface
+    if scene.collision_object is not None:
+        body = make_surface(scene.collision_object, base).placed(scene.placement)
+    target = mesh_solid(body.vertices, body.faces)
+    at_zero = body_ends(robot, forward(robot, np.zeros((1, len(robot.axis)))))
+    blocked = target.touched_by_fixed(robot, at_zero)
+    if blocked is not None and setup.constraints.collision:
+        raise InputError(None, "placement", f"the object stands in the robot's {blocked!r}")
+    return Judge(robot, setup, scene, obstacles, target)

@@ -1,0 +1,178 @@
+"""What stands still: the object and the obstacles, prepared for many queries.
+
+A body is settled by distances of points on its axis, all configurations at once: a piece of the
+axis that is farther from the solid than its own half length and the body's radius is clear, a
+point nearer than the radius is a hit, and what lies between is halved. The distance to a mesh is
+looked up in a grid; only what its spacing leaves open reaches fcl.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import fcl
+import numpy as np
+from scipy.ndimage import distance_transform_edt
+
+from cellcolor.frontend.collision import Mask, body_poses, body_shape
+from cellcolor.frontend.robot import Array, Body, Robot
+from cellcolor.frontend.scene import BoxObstacle, CylinderObstacle, SphereObstacle
+from cellcolor.frontend.surfaces import Faces, rotation_from_rpy
+
+__all__ = ["Solid", "mesh_solid", "primitive_solid"]
+
+_FINEST = 0.01  # m; half a piece of axis that is left to fcl rather than halved again
+_SPACING = 0.003  # m; wanted distance of a mesh's points to the nearest sample
+_SAMPLES = 500_000  # at most about so many; large objects are sampled more coarsely
+_PITCH, _PARTS = 0.006, 80  # of the grid: m, or parts of the longest side of a large object
+_AROUND = 0.06  # m; by so much the grid is larger than the object
+
+Distances = Callable[[Array], tuple[Array, Array]]
+"""Points (k, 3) to a lower and an upper bound (k,) of their distance from the solid in m."""
+
+
+class Solid:
+    """A thing in the world, for fcl and as bounds of distances from points.
+
+    A mesh is a shell: a body wholly inside a closed one does not touch it. That cannot happen
+    unnoticed to an arm whose bodies touch one another in a row and of which a part is outside.
+    """
+
+    def __init__(self, shape: fcl.CollisionObject, distances: Distances) -> None:
+        self._shape, self._distances = shape, distances
+        self._request = fcl.CollisionRequest()
+
+    def hits(self, robot: Robot, ends: Array) -> Mask:
+        """Whether any moving body touches the solid, (n,).
+
+        Args:
+            ends: (bodies, 2, n, 3), see :func:`~cellcolor.frontend.collision.body_ends`.
+        """
+        hit = np.zeros(ends.shape[2], dtype=bool)
+        # From the tool to the base: what is near the object is asked first.
+        for index, body in reversed(list(enumerate(robot.bodies))):
+            if body.joint == 0:
+                continue
+            rows = np.flatnonzero(~hit)
+            touching, open_ = self._sweep(body, ends[index][:, rows])
+            asked = np.flatnonzero(open_)
+            touching[asked] = self._touches(body, ends[index][:, rows[asked]])
+            hit[rows] = touching
+        return hit
+
+    def touched_by_fixed(self, robot: Robot, ends: Array) -> str | None:
+        """The link of the robot that cannot move and touches the solid, if there is one."""
+        for body, both in zip(robot.bodies, ends, strict=True):
+            if body.joint == 0 and self._touches(body, both).any():
+                return body.link
+        return None
+
+    def _sweep(self, body: Body, ends: Array) -> tuple[Mask, Mask]:
+        """Sure hits (n,), and what is left open (n,); the others are clear."""
+        start, along = ends[0], ends[1] - ends[0]
+        hit, left_open = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=bool)
+        rows, place, half = np.arange(len(start)), np.full(len(start), 0.5), body.length / 2
+        while len(rows):
+            near, far = self._distances(start[rows] + place[:, None] * along[rows])
+            # A ball about a point of the axis lies in the body if it does not leave its ends.
+            ball = np.full(len(rows), body.radius)
+            if body.flat:
+                ball = np.minimum(ball, body.length * np.minimum(place, 1 - place))
+            hit[rows[far <= ball]] = True
+            doubtful = (near <= half + body.radius) & ~hit[rows]
+            if half <= _FINEST:
+                left_open[rows[doubtful]] = True
+                break
+            half /= 2
+            step = half / body.length
+            rows = np.repeat(rows[doubtful], 2)
+            place = (place[doubtful][:, None] + [-step, step]).ravel()
+        return hit, left_open & ~hit
+
+    def _touches(self, body: Body, ends: Array) -> Mask:
+        """By fcl, one after the other: ends (2, n, 3) to (n,)."""
+        other = fcl.CollisionObject(body_shape(body), fcl.Transform())
+        touching = np.zeros(ends.shape[1], dtype=bool)
+        for row, (turn, center) in enumerate(zip(*body_poses(body, ends), strict=True)):
+            other.setTransform(fcl.Transform(turn, center))
+            touching[row] = fcl.collide(self._shape, other, self._request, fcl.CollisionResult())
+        return touching
+
+
+def mesh_solid(vertices: Array, faces: Faces) -> Solid:
+    """A triangle mesh in the world."""
+    model = fcl.BVHModel()
+    model.beginModel(len(faces), len(vertices))
+    model.addSubModel(vertices, faces)
+    model.endModel()
+    samples, slack = _samples(vertices[faces])
+    lowest, highest = vertices.min(axis=0), vertices.max(axis=0)
+    extent = highest - lowest
+    pitch = max(_PITCH, float(extent.max()) / _PARTS)
+    origin = lowest - _AROUND
+    counts = np.ceil((extent + 2 * _AROUND) / pitch).astype(int) + 1
+    empty = np.ones(counts, dtype=bool)
+    empty[tuple(np.rint((samples - origin) / pitch).astype(int).T)] = False
+    grid = pitch * distance_transform_edt(empty)
+    # A sample is at most half a diagonal from the middle of its cell.
+    half_diagonal = pitch * np.sqrt(3) / 2
+
+    def distances(points: Array) -> tuple[Array, Array]:
+        beyond = np.maximum(np.maximum(lowest - points, points - highest), 0.0)
+        place = (points - origin) / pitch
+        index = np.clip(np.rint(place).astype(int), 0, counts - 1)
+        off = place - index
+        off_by = pitch * np.sqrt(np.einsum("ij,ij->i", off, off)) + half_diagonal
+        stored = grid[index[:, 0], index[:, 1], index[:, 2]]
+        outside = np.sqrt(np.einsum("ij,ij->i", beyond, beyond))
+        return np.maximum(outside, stored - slack - off_by), stored + off_by
+
+    return Solid(fcl.CollisionObject(model, fcl.Transform()), distances)
+
+
+def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -> Solid:
+    """A box, cylinder or sphere; unlike a mesh it is filled."""
+    turn, center = rotation_from_rpy(*obstacle.rpy_rad), np.array(obstacle.position_m)
+    match obstacle:
+        case BoxObstacle(size_m=size):
+            shape = fcl.Box(*size)
+
+            def outside(local: Array) -> Array:
+                return np.asarray(np.abs(local) - np.array(size) / 2)
+
+        case CylinderObstacle(radius_m=radius, height_m=height):
+            shape = fcl.Cylinder(radius, height)
+
+            def outside(local: Array) -> Array:
+                across = np.hypot(local[:, 0], local[:, 1]) - radius
+                return np.column_stack([across, np.abs(local[:, 2]) - height / 2])
+
+        case SphereObstacle(radius_m=radius):
+            shape = fcl.Sphere(radius)
+
+            def outside(local: Array) -> Array:
+                return np.asarray(np.linalg.norm(local, axis=1)[:, None] - radius)
+
+    def distances(points: Array) -> tuple[Array, Array]:
+        beyond = outside((points - center) @ turn)
+        distance = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
+        return distance, distance
+
+    return Solid(fcl.CollisionObject(shape, fcl.Transform(turn, center)), distances)
+
+
+def _samples(corners: Array) -> tuple[Array, float]:
+    """Points on triangles (m, 3, 3), and how far a point of them can be from the nearest one."""
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
+    area = np.linalg.norm(
+        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
+    )
+    spacing = max(_SPACING, float(np.sqrt(area.sum() / _SAMPLES)))
+    # No point of a triangle is farther from its nearest corner than the longest side / sqrt(3).
+    parts = np.maximum(np.ceil(longest / (np.sqrt(3) * spacing)).astype(int), 1)
+    samples = []
+    for count in np.unique(parts):
+        u, v = np.mgrid[0 : count + 1, 0 : count + 1] / count
+        weights = np.stack([1 - u - v, u, v], axis=-1)[u + v <= 1 + 1e-9]
+        samples.append((weights @ corners[parts == count]).reshape(-1, 3))
+    return np.unique(np.concatenate(samples), axis=0), float((longest / parts).max() / np.sqrt(3))
