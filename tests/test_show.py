@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
-import base64
-import importlib.util
-import json
 import re
-import sys
 import xml.etree.ElementTree as ET
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from documents import Document
 from library import INSTANCES, PAPER
-from meshes import drawn, finer, octahedron
+from meshes import finer, octahedron
 from meshes import surface as labelled
 from numpy.typing import NDArray
+from pages import (
+    DRAWN,
+    area_of,
+    meshes,
+    needs_frontend,
+    points,
+    saved,
+    show,
+    side_file,
+    small_wok,
+    traces,
+    vertices_in,
+)
 
 from cellcolor.cli import main
-from cellcolor.data.instance import OUTSIDE, Instance, SurfaceReference
+from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
@@ -29,64 +36,6 @@ from cellcolor.viz.palette import AREAS, assign
 
 pytest.importorskip("matplotlib")
 pytest.importorskip("plotly")
-
-Capture = pytest.CaptureFixture[str]
-WOK = INSTANCES / "scenes" / "wok.toml"
-needs_frontend = pytest.mark.skipif(
-    importlib.util.find_spec("pinocchio") is None, reason="the extra 'frontend' is not installed"
-)
-
-DRAWN = drawn(
-    "aaaabb aacabb aaaab. ddd... ddd...",
-    {"a": [0], "b": [0, 1], "c": [1, 2], "d": [2], ".": []},
-    cracks=[(0, 1, 0), (7, 13, 0), (4, 5, 1)],
-)
-
-
-def show(*arguments: object) -> None:
-    assert main(["show", *map(str, arguments)]) == 0
-
-
-def saved(surface: LabelledSurface, folder: Path) -> Path:
-    path = folder / "drawn.surface.json"
-    path.write_text(surface.to_json(), encoding="utf-8")
-    return path
-
-
-def traces(path: Path) -> list[Document]:
-    """The traces of a page, arrays decoded."""
-    page = path.read_text(encoding="utf-8")
-    start = page.rindex("Plotly.newPlot(")
-    found, _ = json.JSONDecoder().raw_decode(page, page.index("[", start))
-    return [{name: decoded(value) for name, value in trace.items()} for trace in found]
-
-
-def decoded(value: Any) -> Any:
-    if isinstance(value, dict) and "bdata" in value:
-        return np.frombuffer(base64.b64decode(value["bdata"]), np.dtype(value["dtype"]))
-    return value
-
-
-def meshes(path: Path) -> dict[str, Document]:
-    """The areas of a page, by the first words of their names."""
-    found = [trace for trace in traces(path) if trace["type"] == "mesh3d"]
-    return {re.split(r"  |: | \{", trace["name"])[0]: trace for trace in found}
-
-
-def points(trace: Document) -> NDArray[np.float64]:
-    return np.stack([np.asarray(trace[axis], dtype=float) for axis in "xyz"], axis=1)
-
-
-def vertices_in(trace: Document, surface: LabelledSurface) -> set[int]:
-    """The vertices of the surface that are corners of an area."""
-    corners = {tuple(point) for point in points(trace).tolist()}
-    return {v for v, place in enumerate(surface.vertices.tolist()) if tuple(place) in corners}
-
-
-def area_of(trace: Document) -> float:
-    corners = points(trace)[np.stack([trace[corner] for corner in "ijk"], axis=1)]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    return float(np.linalg.norm(doubled, axis=1).sum() / 2)
 
 
 def holding(instance: Instance) -> dict[str, set[int]]:
@@ -97,6 +46,10 @@ def holding(instance: Instance) -> dict[str, set[int]]:
         name = "unreachable" if cell == OUTSIDE else f"cell {cell}"
         found.setdefault(name, set()).add(vertex)
     return found
+
+
+def is_text(element: ET.Element) -> bool:
+    return element.tag.endswith("}text")
 
 
 class TestCells:
@@ -363,6 +316,27 @@ class TestFiles:
         drawn_paths = [e for e in faces.iter() if e.tag.endswith(("}path", "}use"))]
         assert len(drawn_paths) == pieces
 
+    def test_names_are_written_as_they_are(self, tmp_path: Path) -> None:
+        surface = replace(DRAWN, name="a $part$", colors=("_red", "$x_1^2$", "<b>"))
+        show(saved(surface, tmp_path), "--color", "_red", "-o", tmp_path / "x.svg")
+        show(saved(surface, tmp_path), "-o", tmp_path / "y.svg")
+        texts = [
+            "".join(element.itertext()).strip()
+            for name in ("x.svg", "y.svg")
+            for element in ET.parse(tmp_path / name).getroot().iter()
+            if is_text(element)
+        ]
+        assert any(text.startswith("_red ") for text in texts)
+        assert {"a $part$: 4 cells", "1: $x_1^2$", "2: <b>"} <= set(texts)
+        show(saved(surface, tmp_path), "--color", "<b>", "-o", tmp_path / "x.html")
+        assert "&lt;b&gt;" in meshes(tmp_path / "x.html")
+
+    def test_nothing_reachable(self, tmp_path: Path) -> None:
+        surface = replace(DRAWN, vertex_colors=((),) * 30, cracks=())
+        for kind in ("html", "svg", "png"):
+            show(saved(surface, tmp_path), "-o", tmp_path / f"x.{kind}")
+        assert set(meshes(tmp_path / "x.html")) == {"unreachable"}
+
     def test_png_has_the_colors_of_its_legend(self, tmp_path: Path) -> None:
         from matplotlib.image import imread
 
@@ -398,29 +372,6 @@ class TestFiles:
         assert sorted(tmp_path.iterdir()) == [path, tmp_path / "x.png"]
 
 
-def is_text(element: ET.Element) -> bool:
-    return element.tag.endswith("}text")
-
-
-def side_file(folder: Path, change: dict[str, Any] | None = None) -> tuple[Path, Document]:
-    """A surface with hand-made reasons beside it: two branches, one color a branch."""
-    count = len(DRAWN.vertices)
-    colors = [set(own) for own in DRAWN.vertex_colors]
-    node_color = np.array([[0 if 0 in own else -1, 1 if 1 in own else -1] for own in colors])
-    reasons = np.where(node_color >= 0, 0, np.array([[1, 3]] * count)).astype(np.uint8)
-    reasons[29] = [0, 2]  # valid, but no color: a sliver policy took it
-    arrays: Document = {
-        "branches": np.array(["left arm", "right arm"]),
-        "reason_names": np.array(["valid", "no solution", "torque", "ground"]),
-        "reasons": reasons,
-        "configurations": np.zeros((count, 2, 6)),
-        "node_color": node_color.astype(np.int16),
-    } | (change or {})
-    np.savez(folder / "side.npz", **arrays)
-    surface = replace(DRAWN, meta={"side_file": "side.npz"})
-    return saved(surface, folder), arrays
-
-
 class TestReasons:
     def test_of_a_side_file(self, tmp_path: Path) -> None:
         path, arrays = side_file(tmp_path)
@@ -441,18 +392,6 @@ class TestReasons:
         codes = arrays["reasons"][:, 1]
         names = {"valid": 0, "torque": 2, "ground": 3}
         assert found == {n: set(np.flatnonzero(codes == c).tolist()) for n, c in names.items()}
-
-
-def small_wok(folder: Path) -> Path:
-    text = WOK.read_text(encoding="utf-8")
-    text = text.replace("../../models", (INSTANCES.parent / "models").as_posix())
-    text = re.sub(r"target_vertices = \d+", "target_vertices = 91", text)
-    text += (
-        '\n[[obstacle]]\nkind = "box"\nsize_m = [0.1, 0.2, 0.3]\nposition_m = [-0.5, 0.0, 0.2]\n'
-    )
-    path = folder / "wok.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
 
 
 @needs_frontend
@@ -520,136 +459,3 @@ class TestScene:
         np.testing.assert_allclose(np.ptp(found["obstacles"], axis=0), [0.1, 0.2, 0.3])
         np.testing.assert_allclose(found["obstacles"].mean(axis=0), [-0.5, 0.0, 0.2], atol=1e-12)
         assert found["object"].shape == result.surface.vertices.shape
-
-    def test_refused(self, tmp_path: Path, capsys: Capture) -> None:
-        from cellcolor.frontend import Reason, build_surface
-
-        scene = small_wok(tmp_path)
-        result = build_surface(scene)
-        vertex, branch = (int(k) for k in np.argwhere(result.reasons == Reason.GROUND)[0])
-        name = result.branches[branch]
-        arm = [scene, "-o", tmp_path / "x.png", "--vertex"]
-        refused([*arm, vertex, "--branch", name], capsys, name, "not valid", "ground")
-        refused([*arm, 91, "--branch", name], capsys, "--vertex", "0 to 90")
-        refused([*arm, 0, "--branch", "elbow"], capsys, "--branch", "'elbow'", name)
-        refused([*arm, 0, "--branch", "8"], capsys, "--branch", "'8'")
-        refused([scene, "-o", tmp_path / "x.png", "--color", "red"], capsys, "'red'")
-        assert list(tmp_path.iterdir()) == [scene]
-
-
-def refused(arguments: list[object], capsys: Capture, *named: str) -> None:
-    capsys.readouterr()
-    assert main(["show", *map(str, arguments)]) == 2
-    captured = capsys.readouterr()
-    assert captured.out == ""
-    (line,) = captured.err.splitlines()
-    for text in named:
-        assert text in line
-
-
-class TestBadInput:
-    def test_files(self, tmp_path: Path, capsys: Capture) -> None:
-        path = saved(DRAWN, tmp_path)
-        out = tmp_path / "x.png"
-        refused([tmp_path / "none.json", "-o", out], capsys, "none.json", "No such file")
-        refused([path, "-o", tmp_path / "x.pdf"], capsys, "x.pdf", ".html, .png or .svg")
-        refused([path, "-o", tmp_path / "none" / "x.png"], capsys, "folder does not exist")
-        refused([path, "-o", out, "--color", "pink"], capsys, str(path), "'pink'", "0 'red'")
-        refused([path, "-o", out, "--color", "3"], capsys, str(path), "'3'")
-        refused([path, "-o", out, "--color", "-1"], capsys, "'-1'")
-        refused([path, "-o", out, "--reason"], capsys, "meta.side_file", "missing")
-        refused([path, "-o", out, "--vertex", 0, "--branch", "0"], capsys, "scene")
-        assert list(tmp_path.iterdir()) == [path]
-
-    def test_instances(self, tmp_path: Path, capsys: Capture) -> None:
-        out = tmp_path / "x.png"
-        refused([PAPER / "ring.json", "-o", out], capsys, "ring.json: surface", "--graph")
-        instance = decompose(DRAWN, "none.surface.json")
-        path = tmp_path / "i.json"
-        path.write_text(instance.to_json())
-        refused([path, "-o", out], capsys, "none.surface.json", "No such file")
-        saved(DRAWN, tmp_path)
-        assert instance.surface is not None
-        for change, field in (
-            (instance.surface.vertex_cell[:-1], "surface.path"),
-            ((1, *instance.surface.vertex_cell[1:]), "surface.vertex_cell[0]"),
-        ):
-            reference = SurfaceReference("drawn.surface.json", change)
-            path.write_text(replace(instance, surface=reference).to_json())
-            refused([path, "-o", out], capsys, str(path), field)
-        assert not out.exists()
-
-    def test_solutions(self, tmp_path: Path, capsys: Capture) -> None:
-        path, out = saved(DRAWN, tmp_path), tmp_path / "x.png"
-        solution = tmp_path / "solution.json"
-        assert main(["solve", str(PAPER / "ring.surface.json"), "-o", str(solution)]) == 0
-        refused([path, solution, "-o", out], capsys, str(solution), "sha256")
-        assert main(["solve", str(path), "-o", str(solution)]) == 0
-        document = json.loads(solution.read_text())
-        document["cells"][0]["subcells"][0]["color"] = 2
-        solution.write_text(json.dumps(document))
-        refused([path, solution, "-o", out], capsys, str(solution), "color")
-        none = {"status": "unknown", "segments": None, "lift_offs": None, "cells": None}
-        solution.write_text(json.dumps(document | none | {"proved_for_surface": False}))
-        refused([path, solution, "-o", out], capsys, str(solution), "no division")
-        assert not out.exists()
-
-    @pytest.mark.parametrize(
-        ("change", "text"),
-        [
-            ({"reasons": np.zeros((3, 2), np.uint8)}, "another surface"),
-            ({"reasons": np.full((30, 2), 9, np.uint8)}, "unknown code 9"),
-            ({"branches": np.array([{}])}, "is no side file"),
-        ],
-        ids=["shape", "code", "pickle"],
-    )
-    def test_side_files(self, change: Document, text: str, tmp_path: Path, capsys: Capture) -> None:
-        path, _ = side_file(tmp_path, change)
-        refused([path, "--reason", "-o", tmp_path / "x.png"], capsys, "side.npz", text)
-
-    def test_side_file_that_is_none(self, tmp_path: Path, capsys: Capture) -> None:
-        path, _ = side_file(tmp_path)
-        arguments = [path, "--reason", "-o", tmp_path / "x.png"]
-        refused([*arguments, "--branch", "middle arm"], capsys, "--branch", "'left arm'")
-        (tmp_path / "side.npz").write_text("nothing")
-        refused(arguments, capsys, "side.npz", "is no side file")
-        (tmp_path / "side.npz").unlink()
-        refused(arguments, capsys, "side.npz", "No such file")
-
-    @pytest.mark.parametrize(
-        "arguments",
-        [
-            ["a.json"],
-            ["-o", "x.png"],
-            ["a.json", "b.json", "c.json", "-o", "x.png"],
-            ["a.json", "b.json", "--graph", "-o", "x.png"],
-            ["a.json", "--graph", "--reason", "-o", "x.png"],
-            ["a.toml", "--vertex", "1", "-o", "x.png"],
-            ["a.toml", "--vertex", "-1", "--branch", "0", "-o", "x.png"],
-            ["a.toml", "--branch", "0", "-o", "x.png"],
-            ["a.toml", "b.json", "-o", "x.png"],
-        ],
-        ids=" ".join,
-    )
-    def test_usage(self, arguments: list[object], capsys: Capture) -> None:
-        refused(arguments, capsys, "cellcolor show: ")
-
-    @pytest.mark.parametrize(("library", "kind"), [("matplotlib", "svg"), ("plotly", "html")])
-    def test_library_not_installed(
-        self,
-        library: str,
-        kind: str,
-        tmp_path: Path,
-        capsys: Capture,
-        monkeypatch: pytest.MonkeyPatch,
-    ) -> None:
-        path = saved(DRAWN, tmp_path)
-        for module in [name for name in sys.modules if name.partition(".")[0] == library]:
-            monkeypatch.setitem(sys.modules, module, None)
-        monkeypatch.setitem(sys.modules, library, None)
-        for module in ("static", "interactive"):
-            monkeypatch.delitem(sys.modules, f"cellcolor.viz.{module}", raising=False)
-            monkeypatch.delattr(sys.modules["cellcolor.viz"], module, raising=False)
-        arguments: list[object] = [path, "-o", tmp_path / f"x.{kind}"]
-        refused(arguments, capsys, library, "pip install 'cellcolor[viz]'")
-        assert list(tmp_path.iterdir()) == [path]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from typing import Any
 
 import numpy as np
@@ -17,13 +18,13 @@ def render(picture: Picture2D | Picture3D) -> bytes:
     """The page; the same picture gives the same bytes."""
     figure = go.Figure(_plane(picture) if isinstance(picture, Picture2D) else _space(picture))
     figure.update_layout(
-        title={"text": picture.title},
+        title={"text": _plain(picture.title)},
         template="plotly_white",
         margin={"l": 10, "r": 10, "t": 50, "b": 10},
         legend={"itemsizing": "constant"},
         annotations=[
             {
-                "text": "<br>".join(picture.notes),
+                "text": "<br>".join(map(_plain, picture.notes)),
                 "xref": "paper",
                 "yref": "paper",
                 "x": 0,
@@ -50,6 +51,11 @@ def render(picture: Picture2D | Picture3D) -> bytes:
         config={"displaylogo": False, "responsive": True},
     )
     return page.encode()
+
+
+def _plain(text: str) -> str:
+    """Text that plotly writes as it is; it takes a few HTML tags in texts for markup."""
+    return html.escape(text, quote=False)
 
 
 def _space(picture: Picture3D) -> list[Any]:
@@ -90,7 +96,7 @@ def _mesh(layer: Layer) -> Any:
         color=layer.color,
         flatshading=True,
         lighting=solid if layer.solid else flat,
-        name=layer.name,
+        name=_plain(layer.name),
         showlegend=True,
         hoverinfo="name",
         hoverlabel={"namelength": -1},
@@ -101,7 +107,9 @@ def _pieces(line: Segments) -> Any:
     gap = np.full((len(line.ends), 1, 3), np.nan)
     x, y, z = np.concatenate([line.ends, gap], axis=1).reshape(-1, 3).T
     look = {"color": line.color, "width": 2}
-    return go.Scatter3d(x=x, y=y, z=z, mode="lines", line=look, name=line.name, hoverinfo="skip")
+    return go.Scatter3d(
+        x=x, y=y, z=z, mode="lines", line=look, name=_plain(line.name), hoverinfo="skip"
+    )
 
 
 def _plane(picture: Picture2D) -> list[Any]:
@@ -136,4 +144,6 @@ def _plane(picture: Picture2D) -> list[Any]:
 
 def _outline(points: Array, name: str, shown: bool, **look: Any) -> Any:
     x, y = points.T
-    return go.Scatter(x=x, y=y, mode="lines", name=name, showlegend=shown, hoverinfo="skip", **look)
+    return go.Scatter(
+        x=x, y=y, mode="lines", name=_plain(name), showlegend=shown, hoverinfo="skip", **look
+    )

@@ -22,7 +22,12 @@ from cellcolor.viz.picture import Array, Layer, Picture2D, Picture3D
 __all__ = ["render"]
 
 _LIGHT = np.array([0.3, -0.5, 0.81])
-_STYLE = {"svg.fonttype": "none", "svg.hashsalt": "cellcolor", "font.size": 9}
+_STYLE = {
+    "font.size": 9,
+    "svg.fonttype": "none",
+    "svg.hashsalt": "cellcolor",
+    "text.parse_math": False,  # a dollar in somebody's name is a dollar
+}
 
 
 def render(picture: Picture2D | Picture3D, kind: str) -> bytes:
@@ -49,6 +54,10 @@ def _side(figure: Figure, handles: Sequence[Patch | Line2D], notes: Sequence[str
     """Legend and notes to the right of the drawing."""
     columns = 1 + (len(handles) > 32)
     size = 8 if len(handles) <= 24 else 6
+    # Matplotlib leaves labels with an underscore in front out of its legends.
+    for handle in handles:
+        if str(handle.get_label()).startswith("_"):
+            handle.set_label(f" {handle.get_label()}")
     place = {"loc": "upper left", "bbox_to_anchor": (0.64, 0.93)}
     figure.legend(handles=handles, fontsize=size, ncols=columns, frameon=False, **place)
     figure.text(0.65, 0.03, "\n".join(notes), fontsize=7, va="bottom")

@@ -1,0 +1,109 @@
+"""Drawing with the command line, and reading pages back."""
+
+from __future__ import annotations
+
+import base64
+import importlib.util
+import json
+import re
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from documents import Document
+from library import INSTANCES
+from meshes import drawn
+from numpy.typing import NDArray
+
+from cellcolor.cli import main
+from cellcolor.data.surface import LabelledSurface
+
+WOK = INSTANCES / "scenes" / "wok.toml"
+needs_frontend = pytest.mark.skipif(
+    importlib.util.find_spec("pinocchio") is None, reason="the extra 'frontend' is not installed"
+)
+
+DRAWN = drawn(
+    "aaaabb aacabb aaaab. ddd... ddd...",
+    {"a": [0], "b": [0, 1], "c": [1, 2], "d": [2], ".": []},
+    cracks=[(0, 1, 0), (7, 13, 0), (4, 5, 1)],
+)
+
+
+def show(*arguments: object) -> None:
+    assert main(["show", *map(str, arguments)]) == 0
+
+
+def saved(surface: LabelledSurface, folder: Path) -> Path:
+    path = folder / "drawn.surface.json"
+    path.write_text(surface.to_json(), encoding="utf-8")
+    return path
+
+
+def traces(path: Path) -> list[Document]:
+    """The traces of a page, arrays decoded."""
+    page = path.read_text(encoding="utf-8")
+    start = page.rindex("Plotly.newPlot(")
+    found, _ = json.JSONDecoder().raw_decode(page, page.index("[", start))
+    return [{name: decoded(value) for name, value in trace.items()} for trace in found]
+
+
+def decoded(value: Any) -> Any:
+    if isinstance(value, dict) and "bdata" in value:
+        return np.frombuffer(base64.b64decode(value["bdata"]), np.dtype(value["dtype"]))
+    return value
+
+
+def meshes(path: Path) -> dict[str, Document]:
+    """The areas of a page, by the first words of their names."""
+    found = [trace for trace in traces(path) if trace["type"] == "mesh3d"]
+    return {re.split(r"  |: | \{", trace["name"])[0]: trace for trace in found}
+
+
+def points(trace: Document) -> NDArray[np.float64]:
+    return np.stack([np.asarray(trace[axis], dtype=float) for axis in "xyz"], axis=1)
+
+
+def vertices_in(trace: Document, surface: LabelledSurface) -> set[int]:
+    """The vertices of the surface that are corners of an area."""
+    corners = {tuple(point) for point in points(trace).tolist()}
+    return {v for v, place in enumerate(surface.vertices.tolist()) if tuple(place) in corners}
+
+
+def area_of(trace: Document) -> float:
+    corners = points(trace)[np.stack([trace[corner] for corner in "ijk"], axis=1)]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return float(np.linalg.norm(doubled, axis=1).sum() / 2)
+
+
+def side_file(folder: Path, change: dict[str, Any] | None = None) -> tuple[Path, Document]:
+    """A surface with hand-made reasons beside it: two branches, one color a branch."""
+    count = len(DRAWN.vertices)
+    colors = [set(own) for own in DRAWN.vertex_colors]
+    node_color = np.array([[0 if 0 in own else -1, 1 if 1 in own else -1] for own in colors])
+    reasons = np.where(node_color >= 0, 0, np.array([[1, 3]] * count)).astype(np.uint8)
+    reasons[29] = [0, 2]  # valid, but no color: a sliver policy took it
+    arrays: Document = {
+        "branches": np.array(["left arm", "right arm"]),
+        "reason_names": np.array(["valid", "no solution", "torque", "ground"]),
+        "reasons": reasons,
+        "configurations": np.zeros((count, 2, 6)),
+        "node_color": node_color.astype(np.int16),
+    } | (change or {})
+    np.savez(folder / "side.npz", **arrays)
+    surface = replace(DRAWN, meta={"side_file": "side.npz"})
+    return saved(surface, folder), arrays
+
+
+def small_wok(folder: Path) -> Path:
+    text = WOK.read_text(encoding="utf-8")
+    text = text.replace("../../models", (INSTANCES.parent / "models").as_posix())
+    text = re.sub(r"target_vertices = \d+", "target_vertices = 91", text)
+    text += (
+        '\n[[obstacle]]\nkind = "box"\nsize_m = [0.1, 0.2, 0.3]\nposition_m = [-0.5, 0.0, 0.2]\n'
+    )
+    path = folder / "wok.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
