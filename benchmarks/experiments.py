@@ -1,0 +1,112 @@
+"""The six scenes at a resolution, raw and with the sliver policy, as shipped or displaced.
+
+    python benchmarks/experiments.py VERTICES [SEEDS] [--raw-only | --policy-only] [SCENE ...]
+
+Without SEEDS: one line a scene and policy. With SEEDS: the object moved by up to 5 mm and
+2 degrees an axis, once for each seed from 1 on, and how often each number of lift-offs came out.
+"a-b" stands for a minimum that the time limit of 20 seconds left between a and b.
+The figures of docs/experiments.md were made with this.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import tempfile
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+
+from cellcolor.decomposition import decompose
+from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend.scene import load_scene
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.run import solve
+
+TOP = Path(__file__).parents[1]
+SCENES, ROBOTS = TOP / "instances" / "scenes", TOP / "models" / "robots"
+NAMES = ("hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square")
+SHIFT_M, TURN_RAD = 0.005, np.deg2rad(2.0)
+
+
+def build(name: str, vertices: int, seed: int, raw: bool, folder: Path) -> BuildResult:
+    """A variant of a shipped scene; seed 0 leaves it where it is."""
+    file = SCENES / f"{name}.toml"
+    place = load_scene(file).placement
+    random = np.random.default_rng(seed)
+    shift = random.uniform(-SHIFT_M, SHIFT_M, 3) if seed else np.zeros(3)
+    turn = random.uniform(-TURN_RAD, TURN_RAD, 3) if seed else np.zeros(3)
+    setup = (ROBOTS / "ur5_polishing.toml").read_text()
+    for urdf in ("ur5.urdf", "polishing_tool.urdf"):
+        setup = setup.replace(f'"{urdf}"', f'"{(ROBOTS / urdf).as_posix()}"')
+    (folder / "setup.toml").write_text(setup[: setup.index("[slivers]")] if raw else setup)
+    text = file.read_text()
+    head, rest = text.split("[placement]")
+    for key, value in (
+        ("position_m", (np.array(place.position_m) + shift).tolist()),
+        ("rpy_rad", (np.array(place.rpy_rad) + turn).tolist()),
+    ):
+        rest = re.sub(rf"^{key} = .*$", f"{key} = {value}", rest, count=1, flags=re.MULTILINE)
+    head = re.sub(r"^setup = .*$", 'setup = "setup.toml"', head, flags=re.MULTILINE)
+    head = re.sub(r"target_vertices = \d+", f"target_vertices = {vertices}", head)
+    (folder / "scene.toml").write_text(f"{head}[placement]{rest}")
+    return build_surface(folder / "scene.toml")
+
+
+def lift_offs(result: BuildResult) -> tuple[str, int]:
+    """Minimum as text, and number of cells."""
+    instance = decompose(result.surface)
+    solution = solve(instance, Options(time_limit=20, workers=2))
+    found = "?" if solution.lift_offs is None else str(solution.lift_offs)
+    if solution.status != "optimal":
+        found = f"{max(0, solution.lower_bound - 1)}-{found}"
+    return found, len(instance.cells)
+
+
+def shares(result: BuildResult) -> tuple[float, float]:
+    """Reachable and given up, in percent of the area."""
+    report = result.report
+    lost = report.slivers.given_up_area_m2 if report.slivers else 0.0
+    return 100 * report.reachable_area_m2 / report.area_m2, 100 * lost / report.area_m2
+
+
+def main(arguments: list[str]) -> None:
+    """Print the figures."""
+    options = {argument for argument in arguments if argument.startswith("--")}
+    numbers = [int(argument) for argument in arguments if argument.isdigit()]
+    names = [argument for argument in arguments if argument in NAMES] or NAMES
+    policies = [
+        raw for raw in (True, False) if f"--{'policy' if raw else 'raw'}-only" not in options
+    ]
+    with tempfile.TemporaryDirectory() as place:
+        for name in names:
+            for raw in policies:
+                label = f"{name} {numbers[0]} {'raw' if raw else 'policy'}:"
+                if len(numbers) == 1:
+                    result = build(name, numbers[0], 0, raw, Path(place))
+                    minimum, cells = lift_offs(result)
+                    reach, lost = shares(result)
+                    print(
+                        f"{label} {minimum} lift-offs, {cells} cells, {result.report.cracks} cracks,"
+                        f" {reach:.1f} % reachable, {lost:.2f} % given up,"
+                        f" {sum(result.report.seconds.values()):.2f} s",
+                        flush=True,
+                    )
+                    continue
+                results = [
+                    build(name, numbers[0], seed, raw, Path(place))
+                    for seed in range(1, numbers[1] + 1)
+                ]
+                minima = Counter(lift_offs(result)[0] for result in results)
+                reach, lost = zip(*map(shares, results), strict=True)
+                print(
+                    f"{label} {dict(sorted(minima.items()))},"
+                    f" {min(reach):.1f} to {max(reach):.1f} % reachable,"
+                    f" at most {max(lost):.2f} % given up",
+                    flush=True,
+                )
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
