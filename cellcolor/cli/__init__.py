@@ -1,4 +1,4 @@
-"""The command line: ``cellcolor build``, ``solve``, ``check`` and ``bench``."""
+"""The command line: ``cellcolor build``, ``solve``, ``check`` and the other commands."""
 
 from __future__ import annotations
 
