@@ -97,13 +97,45 @@ def side_file(folder: Path, change: dict[str, Any] | None = None) -> tuple[Path,
     return saved(surface, folder), arrays
 
 
-def small_wok(folder: Path) -> Path:
+OBSTACLES = """
+[[obstacle]]
+kind = "box"
+size_m = [0.1, 0.2, 0.3]
+position_m = [-0.5, 0.0, 0.2]
+
+[[obstacle]]
+kind = "mesh"
+file = "corner.ply"
+meters_per_unit = 0.001
+position_m = [-0.6, 0.5, 0.1]
+"""
+CORNER = """ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+element face 4
+property list uchar int vertex_indices
+end_header
+0 0 0
+100 0 0
+0 100 0
+0 0 100
+3 0 2 1
+3 0 1 3
+3 0 3 2
+3 1 2 3
+"""
+
+
+def small_wok(folder: Path, more: str = "") -> Path:
+    """A coarse wok with a box and a mesh far from the arm, in a folder of its own."""
     text = WOK.read_text(encoding="utf-8")
     text = text.replace("../../models", (INSTANCES.parent / "models").as_posix())
     text = re.sub(r"target_vertices = \d+", "target_vertices = 91", text)
-    text += (
-        '\n[[obstacle]]\nkind = "box"\nsize_m = [0.1, 0.2, 0.3]\nposition_m = [-0.5, 0.0, 0.2]\n'
-    )
-    path = folder / "wok.toml"
-    path.write_text(text, encoding="utf-8")
+    path = folder / "scene" / "wok.toml"
+    path.parent.mkdir()
+    path.write_text(text + OBSTACLES + more, encoding="utf-8")
+    (path.parent / "corner.ply").write_text(CORNER, encoding="utf-8")
     return path

@@ -412,6 +412,32 @@ class TestScene:
         valid = np.flatnonzero((result.reasons[:, 0] == Reason.VALID) & ~taken)
         assert vertices_in(found["valid"], result.surface) == set(valid.tolist())
 
+    def test_collision_object(self, tmp_path: Path) -> None:
+        """A smaller cap in the same frame is what must not be hit."""
+        cap = {"kind": '"spherical-cap"', "radius_m": 0.15, "half_angle_rad": 1.0}
+        keys = [f"{key} = {value}" for key, value in (cap | {"target_vertices": 61}).items()]
+        scene = small_wok(tmp_path, "\n".join(["[collision_object]", *keys]))
+        show(
+            scene,
+            "--vertex",
+            0,
+            "--branch",
+            self.valid_at_the_top(scene),
+            "-o",
+            tmp_path / "x.html",
+        )
+        found = {t["name"]: points(t) for t in traces(tmp_path / "x.html") if t["type"] == "mesh3d"}
+        center = np.array([0.465, -0.15, -0.04])
+        distances = np.linalg.norm(found["collision object"] - center, axis=1)
+        np.testing.assert_allclose(distances, 0.15, atol=1e-9)
+        assert len(found["collision object"]) == 61
+
+    def valid_at_the_top(self, scene: Path) -> str:
+        from cellcolor.frontend import build_surface
+
+        result = build_surface(scene)
+        return result.branches[int(np.flatnonzero(result.reasons[0] == 0)[0])]
+
     def test_arm(self, tmp_path: Path) -> None:
         """Every link where Pinocchio has it, on the surface of its shapes."""
         import pinocchio as pin
@@ -456,6 +482,9 @@ class TestScene:
             result.surface.vertices[vertex],
             atol=1e-3,
         )
-        np.testing.assert_allclose(np.ptp(found["obstacles"], axis=0), [0.1, 0.2, 0.3])
-        np.testing.assert_allclose(found["obstacles"].mean(axis=0), [-0.5, 0.0, 0.2], atol=1e-12)
+        box, corner = found["obstacles"][:8], found["obstacles"][8:]
+        np.testing.assert_allclose(np.ptp(box, axis=0), [0.1, 0.2, 0.3])
+        np.testing.assert_allclose(box.mean(axis=0), [-0.5, 0.0, 0.2], atol=1e-12)
+        expected = np.array([-0.6, 0.5, 0.1]) + np.vstack([np.zeros(3), 0.1 * np.eye(3)])
+        assert sorted(corner.round(9).tolist()) == sorted(expected.round(9).tolist())
         assert found["object"].shape == result.surface.vertices.shape

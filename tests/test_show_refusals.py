@@ -47,7 +47,7 @@ def test_arms(tmp_path: Path, capsys: Capture) -> None:
     refused([*arm, 0, "--branch", "elbow"], capsys, "--branch", "'elbow'", name)
     refused([*arm, 0, "--branch", "8"], capsys, "--branch", "'8'")
     refused([scene, "-o", tmp_path / "x.png", "--color", "red"], capsys, "'red'")
-    assert list(tmp_path.iterdir()) == [scene]
+    assert list(tmp_path.iterdir()) == [scene.parent]
 
 
 def test_files(tmp_path: Path, capsys: Capture) -> None:

@@ -9,11 +9,14 @@ from numpy.typing import NDArray
 
 from cellcolor.frontend import BuildResult
 from cellcolor.frontend.collision import segment_distance
+from cellcolor.frontend.generators import make_surface
 from cellcolor.frontend.kinematics import Poses, forward
+from cellcolor.frontend.meshfile import load_mesh
 from cellcolor.frontend.robot import Body, Robot, load_robot
 from cellcolor.frontend.scene import (
     BoxObstacle,
     CylinderObstacle,
+    MeshObstacle,
     Obstacle,
     SphereObstacle,
     load_scene,
@@ -62,12 +65,16 @@ def arm_at(scene_path: Path, result: BuildResult, vertex: int, branch: int) -> P
     ]
     mesh = (result.surface.vertices, result.surface.faces)
     layers.append(_layer("object", FAINT, mesh))
+    if scene.collision_object is not None:
+        solid = make_surface(scene.collision_object, scene_path.parent).placed(scene.placement)
+        layers.append(_layer("collision object", "#999933", (solid.vertices, solid.faces)))
     size = float(np.ptp(result.surface.vertices, axis=0).max())
     points, triangles = _capsule(np.zeros(3), np.zeros(3), 0.02 * size)
     target = result.surface.vertices[vertex]
     layers.append(_layer(f"vertex {vertex}", WARNING, (points + target, triangles)))
     if scene.obstacle:
-        obstacles = _joined([_obstacle(obstacle) for obstacle in scene.obstacle])
+        meshes = [_obstacle(obstacle, scene_path.parent) for obstacle in scene.obstacle]
+        obstacles = _joined(meshes)
         layers.append(_layer("obstacles", "#882255", obstacles))
     ground: tuple[Segments, ...] = ()
     if scene.ground is not None:
@@ -150,9 +157,12 @@ def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]])
     return points, triangles[np.linalg.norm(doubled, axis=1) > 1e-15]
 
 
-def _obstacle(obstacle: Obstacle) -> Mesh:
+def _obstacle(obstacle: Obstacle, folder: Path) -> Mesh:
     up = np.array([0.0, 0.0, 1.0])
     match obstacle:
+        case MeshObstacle():
+            mesh = load_mesh(folder / obstacle.file, obstacle.meters_per_unit)
+            points, triangles = mesh.vertices, mesh.faces
         case BoxObstacle():
             points, triangles = _box(np.array(obstacle.size_m))
         case CylinderObstacle():
