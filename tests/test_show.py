@@ -476,6 +476,10 @@ class TestScene:
             assert np.max(np.min(distances, axis=0)) < 1e-9, link
             assert np.min(np.abs(distances)) < 1e-9, link
             assert np.percentile(np.min(np.abs(distances), axis=0), 95) < 1e-9, link
+        for trace in traces(tmp_path / "x.html"):
+            if trace["name"] in depth:  # wound outward, or light would fall on the inside
+                a, b, c = (points(trace)[trace[corner]] for corner in "ijk")
+                assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
         assert set(found) == {*depth, "object", "obstacles", f"vertex {vertex}"}
         np.testing.assert_allclose(
             (found[f"vertex {vertex}"].min(axis=0) + found[f"vertex {vertex}"].max(axis=0)) / 2,
