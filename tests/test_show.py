@@ -289,6 +289,7 @@ class TestGraph:
             wanted += [] if colors else [("dead edge", "4px")]
         assert sorted(lines, key=str) == sorted(wanted, key=str)
         assert {dash for _, dash in lines} == {None, "4px"}
+        assert list(dict.fromkeys(lines)) == sorted(set(lines), key=str)  # the legend's order
 
     def test_a_surface_and_a_graph_without_cells(self, tmp_path: Path) -> None:
         show(saved(DRAWN, tmp_path), "--graph", "-o", tmp_path / "x.svg")

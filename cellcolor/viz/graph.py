@@ -81,6 +81,9 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
             for dart in loop:
                 at = center + 0.7 * radius * _direction(angles[dart])
                 texts.append((f"{dart:+d}", at, round(float(size), 2)))
+    # The legend has the colors in their order, dead edges last.
+    order = [f"{color}: {name}" for color, name in enumerate(instance.colors)] + [_DEAD]
+    curves.sort(key=lambda curve: order.index(curve.name))
     notes = [
         "Node: a cell; its rim: the colors available there.",
         "Small numbers: its darts in cyclic order, counter-clockwise",

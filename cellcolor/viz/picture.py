@@ -95,7 +95,7 @@ class Picture2D:
 
     Attributes:
         title: one line.
-        curves: drawn first; one legend entry for each name.
+        curves: drawn first; one legend entry for each name, in this order.
         shapes: drawn over the curves.
         texts: (text, (2,) place, size in points), drawn last.
         notes: lines under the legend.

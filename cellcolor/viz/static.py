@@ -165,8 +165,8 @@ def _plane(figure: Figure, picture: Picture2D) -> list[Patch | Line2D]:
         x, y = at.tolist()
         axes.text(x, y, text, fontsize=size, ha="center", va="center", zorder=3)
     axes.autoscale_view()
-    kinds = {curve.name: curve for curve in reversed(picture.curves)}
+    kinds = {curve.name: curve for curve in picture.curves}
     return [
         Line2D([], [], color=c.color, linestyle="--" if c.dashed else "-", label=name)
-        for name, c in sorted(kinds.items())
+        for name, c in kinds.items()
     ]
