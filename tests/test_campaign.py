@@ -233,6 +233,23 @@ def test_two_strands_too_few_are_no_disagreement(monkeypatch: pytest.MonkeyPatch
         compare_on_mesh(surface, instance, 20.0)
 
 
+@pytest.mark.parametrize("ending", ["interrupted", "not proved", "done"])
+def test_exit_code_says_whether_everything_was_compared(
+    ending: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def some(*_: object) -> Iterator[Outcome]:
+        minimum = None if ending == "not proved" else 2
+        yield Outcome(0, "hubs", 5, 4, Finding(minimum, None, None), None, (), 0.1)
+        if ending == "interrupted":
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("cellcolor.cli.campaign.campaign", some)
+    assert main(["campaign", "--count", "9"]) == (0 if ending == "done" else 3)
+    printed = capsys.readouterr()
+    assert "seed 0, 1 instances" in printed.out
+    assert ("interrupted" in printed.err) == (ending == "interrupted")
+
+
 def test_summary_counts() -> None:
     summary = Summary()
     common = {"darts": 4, "seconds": 0.5}

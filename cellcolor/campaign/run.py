@@ -68,7 +68,8 @@ def campaign(count: int, seed: int, time_limit: float, jobs: int) -> Iterator[Ou
         count: how many; the first ones are the same whatever the count.
         seed: of everything random.
         time_limit: seconds for each solve.
-        jobs: processes; with 1 everything happens in this one.
+        jobs: processes; with 1 everything happens in this one. More are started from the main
+            thread only.
     """
     work = partial(examine, seed, time_limit)
     if jobs == 1:
@@ -76,12 +77,14 @@ def campaign(count: int, seed: int, time_limit: float, jobs: int) -> Iterator[Ou
         return
     # Not forked: the parent may run threads, and OR-Tools has some of its own.
     context = multiprocessing.get_context("spawn")
-    with context.Pool(jobs, initializer=_leave_interrupts_to_the_parent) as pool:
+    # Ctrl-C goes to the whole process group; only the parent is to act on it, from the start.
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        pool = context.Pool(jobs)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    with pool:
         yield from pool.imap_unordered(work, range(count), chunksize=4)
-
-
-def _leave_interrupts_to_the_parent() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def examine(seed: int, time_limit: float, number: int) -> Outcome:

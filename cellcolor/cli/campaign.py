@@ -97,7 +97,8 @@ def _print(summary: Summary, seed: int, seconds: float) -> None:
     out.print("coarse for a corridor; seconds: of all processes")
     out.print()
     for name, bins in summary.histograms().items():
-        out.print(f"{name}: " + ", ".join(f"{values}: {count}" for values, count in bins))
+        if bins:
+            out.print(f"{name}: " + ", ".join(f"{values}: {count}" for values, count in bins))
     out.print(f"seed {seed}, {summary.total.instances} instances in {seconds:.0f} s")
 
 
