@@ -34,6 +34,8 @@ from cellcolor.frontend.solids import Solid
 
 __all__ = ["Candidates", "Judge", "Reason", "Verdicts", "within_limits"]
 
+_AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
+
 Rows = NDArray[np.intp]
 Test = Callable[[Rows], Mask]
 
@@ -124,6 +126,17 @@ class Judge:
 
     def __call__(self, configurations: Array) -> Verdicts:
         """Test configurations (k, 6) in rad, NaN where there is none."""
+        parts = [
+            self._judged(configurations[first : first + _AT_ONCE])
+            for first in range(0, max(len(configurations), 1), _AT_ONCE)
+        ]
+        return Verdicts(
+            np.concatenate([part.configurations for part in parts]),
+            np.concatenate([part.reasons for part in parts]),
+            np.concatenate([part.determinants for part in parts]),
+        )
+
+    def _judged(self, configurations: Array) -> Verdicts:
         robot, on, limits = self._robot, self._setup.constraints, self._setup.thresholds
         reasons = np.full(len(configurations), Reason.VALID, dtype=np.uint8)
         reasons[np.isnan(configurations[:, 0])] = Reason.NO_SOLUTION

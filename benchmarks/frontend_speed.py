@@ -1,0 +1,149 @@
+"""Microseconds per candidate of the front end, against a straightforward loop, in one run.
+
+    python benchmarks/frontend_speed.py [SCENE.toml] [VERTICES] [SAMPLE]
+
+The loop takes one candidate at a time: Pinocchio for kinematics, Jacobian and gravity, python-fcl
+with objects built beforehand for collisions, the tests in the front end's order, and the first
+failure ends it. Inverse kinematics is not counted there. It runs on a random SAMPLE of the
+candidates; verdicts are compared. Build times are the best of three runs.
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import fcl
+import numpy as np
+import pinocchio as pin
+
+from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend.collision import body_shape
+from cellcolor.frontend.prepare import Stage, prepare
+from cellcolor.frontend.robot import Array
+
+TOP = Path(__file__).parents[1]
+
+
+class Loop:
+    """The tests once more, one configuration at a time."""
+
+    def __init__(self, stage: Stage) -> None:
+        robot, surface = stage.robot, stage.surface
+        self.stage, self.model, self.data = stage, robot.model, robot.model.createData()
+        self.tip = self.model.getFrameId(stage.setup.robot.tip_link)
+        self.gravity = np.array(stage.setup.task.gravity_m_per_s2)
+        self.shapes = [fcl.CollisionObject(body_shape(body)) for body in robot.bodies]
+        self.local = []
+        for body in robot.bodies:
+            z = (body.end - body.start) / body.length if body.length else np.array([0.0, 0, 1])
+            x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
+            x /= np.linalg.norm(x)
+            turn = np.column_stack([x, np.cross(z, x), z])
+            self.local.append(pin.SE3(turn, (body.start + body.end) / 2))
+        mesh = fcl.BVHModel()
+        mesh.beginModel(len(surface.faces), len(surface.vertices))
+        mesh.addSubModel(surface.vertices, surface.faces)
+        mesh.endModel()
+        self.object = fcl.CollisionObject(mesh)
+        self.obstacles = []
+        for obstacle in stage.scene.obstacle:
+            assert obstacle.kind == "cylinder" and obstacle.rpy_rad == (0.0, 0.0, 0.0)
+            shape = fcl.Cylinder(obstacle.radius_m, obstacle.height_m)
+            at = fcl.Transform(np.array(obstacle.position_m))
+            self.obstacles.append(fcl.CollisionObject(shape, at))
+        self.request = fcl.CollisionRequest()
+
+    def touch(self, a: fcl.CollisionObject, b: fcl.CollisionObject) -> bool:
+        return bool(fcl.collide(a, b, self.request, fcl.CollisionResult()))
+
+    def __call__(self, q: Array) -> Reason:
+        stage, robot = self.stage, self.stage.robot
+        thresholds, task = stage.setup.thresholds, stage.setup.task
+        if (q < robot.lower).any() or (q > robot.upper).any():
+            return Reason.JOINT_LIMITS
+        jacobian = pin.computeFrameJacobian(
+            self.model, self.data, q, self.tip, pin.ReferenceFrame.LOCAL
+        )
+        torque = pin.computeGeneralizedGravity(self.model, self.data, q)
+        if (np.abs(torque + task.normal_force_n * jacobian[2]) > robot.effort).any():
+            return Reason.TORQUE
+        linear = jacobian[:3, :5]
+        if np.sqrt(max(np.linalg.det(linear @ linear.T), 0)) < thresholds.min_manipulability_m3:
+            return Reason.MANIPULABILITY
+        if abs(np.linalg.det(jacobian[:5, :5])) < thresholds.min_task_determinant_m3:
+            return Reason.TASK_DETERMINANT
+        pin.forwardKinematics(self.model, self.data, q)
+        poses = [self.data.oMi[body.joint] * at
+                 for body, at in zip(robot.bodies, self.local, strict=True)]  # fmt: skip
+        if stage.scene.ground is not None:
+            for body, pose in zip(robot.bodies, poses, strict=True):
+                if body.link in stage.setup.robot.may_touch_ground:
+                    continue
+                up = abs(pose.rotation[2, 2])
+                around = body.radius * (np.sqrt(max(1 - up**2, 0)) if body.flat else 1)
+                if (
+                    pose.translation[2] - up * body.length / 2 - around
+                    < stage.scene.ground.height_m
+                ):
+                    return Reason.GROUND
+        for shape, pose in zip(self.shapes, poses, strict=True):
+            shape.setTransform(fcl.Transform(pose.rotation, pose.translation))
+        if any(self.touch(self.shapes[i], self.shapes[j]) for i, j in robot.tested_pairs):
+            return Reason.SELF_COLLISION
+        moving = [s for s, b in zip(self.shapes, robot.bodies, strict=True) if b.joint][::-1]
+        for obstacle in self.obstacles:
+            if any(self.touch(obstacle, shape) for shape in moving):
+                return Reason.OBSTACLE_COLLISION
+        if any(self.touch(self.object, shape) for shape in moving):
+            return Reason.OBJECT_COLLISION
+        return Reason.VALID
+
+
+def main(scene: Path, vertices: int, sample: int) -> None:
+    """Print the figures."""
+    text = re.sub(r"target_vertices = \d+", f"target_vertices = {vertices}", scene.read_text())
+    setup = (scene.parent / re.search(r'setup = "(.*)"', text)[1]).resolve()  # type: ignore[index]
+    text = re.sub(r'setup = ".*"', f'setup = "{setup.as_posix()}"', text)
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "scene.toml"
+        file.write_text(text)
+        runs = []
+        for _ in range(3):
+            started = time.perf_counter()
+            result = build_surface(file)
+            runs.append((time.perf_counter() - started, result))
+        stage = prepare(file)
+    total, result = min(runs, key=lambda run: run[0])
+    candidates = result.reasons.size
+    print(f"{scene.stem}: {len(result.reasons)} vertices, {candidates} candidates, {total:.2f} s")
+    for name, seconds in result.report.seconds.items():
+        print(f"  {name:<26} {1e6 * seconds / candidates:7.2f} us a candidate  {seconds:6.2f} s")
+    later = ("preparation", "inverse kinematics", "continuity", "validity between vertices",
+             "colors and cracks")  # fmt: skip
+    tests = sum(s for name, s in result.report.seconds.items() if name not in later)
+
+    loop = Loop(stage)
+    rows = np.random.default_rng(0).choice(candidates, min(sample, candidates), replace=False)
+    joints, expected = result.configurations.reshape(-1, 6)[rows], result.reasons.flat[rows]
+    solved = expected != Reason.NO_SOLUTION
+    started = time.perf_counter()
+    found = [loop(q) for q in joints[solved]]
+    spent = (time.perf_counter() - started) / len(rows)
+    differ = sum(int(a != b) for a, b in zip(found, expected[solved], strict=True))
+    print(
+        f"  all tests {1e6 * tests / candidates:.1f} us a candidate, loop {1e6 * spent:.1f} us:"
+        f" {spent * candidates / tests:.1f} times; {differ} of {len(found)} verdicts differ"
+    )
+
+
+if __name__ == "__main__":
+    given = sys.argv[1:]
+    main(
+        Path(given[0]) if given else TOP / "instances" / "scenes" / "hemisphere_flat.toml",
+        int(given[1]) if len(given) > 1 else 8000,
+        int(given[2]) if len(given) > 2 else 6000,
+    )
