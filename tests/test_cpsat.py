@@ -34,10 +34,10 @@ RED, BLUE = 0, 1
 SEEDS = st.integers(0, 10**6)
 
 
-def graph_of(instance: Instance) -> DartGraph:
+def graph_of(instance: Instance, strands: int = 1) -> DartGraph:
     colors = [frozenset(cell.colors) for cell in instance.cells]
-    once = {edge.id: 1 for edge in instance.edges}
-    return dart_graph(instance, colors, once, seams_of(instance, colors, once, None))
+    counts = {edge.id: strands for edge in instance.edges}
+    return dart_graph(instance, colors, counts, seams_of(instance, colors, counts, None))
 
 
 def effort(instance: Instance, groups: tuple[Group, ...], limit: float) -> tuple[bool, int]:
@@ -50,10 +50,10 @@ def effort(instance: Instance, groups: tuple[Group, ...], limit: float) -> tuple
     return solver.solve(built.model) == cp_model.OPTIMAL, solver.num_conflicts
 
 
-def model_minimum(instance: Instance, groups: tuple[Group, ...]) -> int:
+def model_minimum(instance: Instance, groups: tuple[Group, ...], strands: int = 1) -> int:
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
-    built = build(graph_of(instance), color_regions(instance), groups)
+    built = build(graph_of(instance, strands), color_regions(instance), groups)
     assert solver.solve(built.model) == cp_model.OPTIMAL
     return round(solver.objective_value)
 
@@ -125,21 +125,48 @@ def test_sub_cells_are_chains() -> None:
     assert feasible(instance, rest, (2, 0), (1, 0))
 
 
-def test_redundant_groups_change_no_minimum() -> None:
-    for seed in range(12):
+@pytest.mark.parametrize("group", REDUNDANT, ids=lambda group: group.__name__)
+def test_redundant_groups_change_no_minimum(group: Group) -> None:
+    for seed in range(6):
+        instance = planar_graph(seed, 5, 7, 3)
+        assert model_minimum(instance, (*DEFINING, group)) == minimum(instance)
+
+
+def test_strands_in_turn_change_no_minimum() -> None:
+    rest = tuple(g for g in DEFINING + REDUNDANT if g.__name__ != "strands_in_turn")
+    for seed in range(6):
+        instance = planar_graph(seed, 4, 5, 3)
+        plain = model_minimum(instance, rest, 2)
+        assert model_minimum(instance, DEFINING + REDUNDANT, 2) == plain
+
+
+def test_all_redundant_groups_together_change_no_minimum() -> None:
+    for seed in range(20):
         instance = planar_graph(seed, 6, 10, 3)
-        expected = minimum(instance)
-        assert model_minimum(instance, DEFINING) == expected
-        for group in REDUNDANT:
-            assert model_minimum(instance, (*DEFINING, group)) == expected, group.__name__
+        assert model_minimum(instance, DEFINING + REDUNDANT) == minimum(instance)
 
 
-def test_cover_proves_robot_scenes() -> None:
+@pytest.mark.parametrize("name", ["cover", "forced_roots"])
+def test_bounds_on_robot_scenes(name: str) -> None:
+    """Each of the two lets one worker prove a scene that it cannot prove without both."""
     path = INSTANCES / "scenes" / "feasibility" / "hemisphere_flat_2000.surface.json"
     scene = decompose(LabelledSurface.read(path))
-    rest = tuple(g for g in DEFINING + REDUNDANT if g.__name__ != "cover")
-    assert effort(scene, DEFINING + REDUNDANT, 0.4)[0]
-    assert not effort(scene, rest, 0.4)[0]
+    group = next(g for g in REDUNDANT if g.__name__ == name)
+    assert effort(scene, (*DEFINING, group), 0.4)[0]
+    assert not effort(scene, DEFINING, 0.4)[0]
+
+
+def test_strands_are_used_in_turn() -> None:
+    """Two red corridors across one edge of two strands, or only its second strand."""
+    instance = petals(RED)
+    graph = graph_of(instance, 2)
+    for used, expected in (((1,), True), ((2,), False), ((1, 2), False)):
+        built = build(graph, color_regions(instance))
+        names = {graph.darts[edge].name[1]: edge for edge in graph.edges}
+        for strand, edge in names.items():
+            built.model.add(built.variables.joined[edge, RED] == (strand in used))
+        found = cp_model.CpSolver().solve(built.model)
+        assert (found in (cp_model.OPTIMAL, cp_model.FEASIBLE)) == expected
 
 
 def test_most_links_proves_hubs() -> None:
@@ -148,12 +175,14 @@ def test_most_links_proves_hubs() -> None:
     assert effort(instance, DEFINING + REDUNDANT, 2.0)[1] * 10 < effort(instance, rest, 2.0)[1]
 
 
-def test_only_the_first_petal_of_a_sub_cell_is_a_root() -> None:
-    """The first petal's dart then points at the second's, whose parent is its petal."""
+@pytest.mark.parametrize("name", ["first_petal", "forced_roots"])
+def test_only_the_first_petal_of_a_sub_cell_is_a_root(name: str) -> None:
+    """Without that the first petal's dart can point at the second's, whose parent is its petal."""
     instance = petals(RED, RED, BLUE, BLUE)
-    rest = tuple(g for g in DEFINING + REDUNDANT if g.__name__ != "first_petal")
-    assert not feasible(instance, DEFINING + REDUNDANT, (0, 1), (2, 3))
-    assert feasible(instance, rest, (0, 1), (2, 3))
+    group = next(g for g in REDUNDANT if g.__name__ == name)
+    assert not feasible(instance, (*DEFINING, group), (0, 1), (2, 3))
+    assert feasible(instance, (*DEFINING, group), (1, 0), (3, 2))
+    assert feasible(instance, DEFINING, (0, 1), (2, 3))
 
 
 @settings(max_examples=40, deadline=None)
@@ -227,6 +256,34 @@ def test_strangers_share_no_region(seed: int, cells: int, colors: int) -> None:
     assert apart(tuple(found)) and len(found) <= len(set_cover(instance))
     more = itertools.combinations(range(len(instance.cells)), len(found) + 1)
     assert not any(map(apart, more))
+
+
+def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:
+    """Cells 0 and 1 have red and blue, but blue goes from one to the other through cell 2 only.
+
+    There a green corridor from 3 to 4 would be in its way: red is needed for 2 segments.
+    """
+    green = 2
+    instance = Instance(
+        "way round",
+        ("red", "blue", "green"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2),)),
+            Cell(1, (RED, BLUE), ((-1, 3),)),
+            Cell(2, (BLUE, green), ((-2, 4, -3, 5),)),
+            Cell(3, (green,), ((-4,),)),
+            Cell(4, (green,), ((-5,),)),
+        ),
+        (
+            Edge(1, 0, 1, (RED,)),
+            Edge(2, 0, 2),
+            Edge(3, 1, 2),
+            Edge(4, 2, 3),
+            Edge(5, 2, 4),
+        ),
+    )
+    assert minimum(instance) == 2
+    assert solve(instance, Options()).segments == 2
 
 
 def test_a_crack_keeps_a_color_from_being_dominated() -> None:

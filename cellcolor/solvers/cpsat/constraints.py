@@ -14,7 +14,7 @@ from cellcolor.solvers.bounds import Region
 from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.variables import Variables
 
-__all__ = ["DEFINING", "REDUNDANT", "Group"]
+__all__ = ["DEFINING", "REDUNDANT", "Group", "fixed_roots"]
 
 Group = Callable[[cp_model.CpModel, DartGraph, Variables, Sequence[Region]], None]
 
@@ -152,17 +152,64 @@ def _best_merging(colors: Sequence[frozenset[int]]) -> int:
     return best[0][count - 1] if count else 0
 
 
+def fixed_roots(graph: DartGraph, regions: Sequence[Region]) -> set[int]:
+    """For each color region a cell that has no other color; one with many darts, if there are any.
+
+    Such a cell is never divided, so the segment that it belongs to can have its root there.
+    """
+    found = set()
+    for color, cells in regions:
+        only = [cell for cell in sorted(cells) if graph.colors[cell] == {color}]
+        if only:
+            found.add(max(only, key=lambda cell: len(graph.lists[cell])))
+    return found
+
+
+def forced_roots(
+    model: cp_model.CpModel, graph: DartGraph, v: Variables, regions: Sequence[Region]
+) -> None:
+    """A segment with one of the fixed roots has its root there."""
+    for cell in sorted(fixed_roots(graph, regions)):
+        for dart in graph.lists[cell]:
+            model.add(v.up[dart] == 0)
+
+
 def first_petal(
-    model: cp_model.CpModel, graph: DartGraph, v: Variables, _: Sequence[Region]
+    model: cp_model.CpModel, graph: DartGraph, v: Variables, regions: Sequence[Region]
 ) -> None:
     """Of the cells with one dart around a sub-cell, only the first can be the segment's root.
 
-    They are all undivided, so that the tree can be hung up at any of them instead.
+    They are all undivided, so that the tree can be hung up at any of them instead; unless its root
+    is fixed.
     """
-    single = [len(graph.lists[graph.darts[dart.twin].cell]) == 1 for dart in graph.darts]
+    fixed = fixed_roots(graph, regions)
+    petal = [graph.darts[dart.twin].cell for dart in graph.darts]
+    single = [len(graph.lists[cell]) == 1 for cell in petal]
     for (one, other), link in v.forward.items():
-        if single[one] and single[other]:
+        if single[one] and single[other] and petal[other] not in fixed:
             model.add_implication(link, ~v.up[other])
+
+
+def strands_in_turn(
+    model: cp_model.CpModel, graph: DartGraph, v: Variables, _: Sequence[Region]
+) -> None:
+    """The lower strands of an edge are joined first, successive ones in different colors.
+
+    Which strands the corridors take is all the same; why their colors differ stands in
+    docs/solver.md, "Crossing an edge twice".
+    """
+    seams = {seam.id for seam in graph.seams}
+    index = {dart.name: number for number, dart in enumerate(graph.darts)}
+    for edge in graph.edges:
+        signed, strand = graph.darts[edge].name
+        higher = index.get((signed, strand + 1))
+        if higher is None or abs(signed) in seams:
+            continue
+        twin, higher_twin = graph.darts[edge].twin, graph.darts[higher].twin
+        model.add(v.up[higher] + v.up[higher_twin] <= v.up[edge] + v.up[twin])
+        for color in sorted(graph.darts[edge].colors):
+            both = (v.joined[edge, color], v.joined[min(higher, higher_twin), color])
+            model.add_at_most_one(both)
 
 
 DEFINING: tuple[Group, ...] = (
@@ -174,4 +221,4 @@ DEFINING: tuple[Group, ...] = (
     roots,
     no_circles,
 )
-REDUNDANT: tuple[Group, ...] = (cover, most_links, first_petal)
+REDUNDANT: tuple[Group, ...] = (cover, most_links, forced_roots, first_petal, strands_in_turn)

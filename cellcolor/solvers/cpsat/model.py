@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from ortools.sat.python import cp_model
 
 from cellcolor.solvers.bounds import Region
-from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
+from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group, fixed_roots
 from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
 from cellcolor.solvers.cpsat.variables import Variables, make_variables
@@ -19,10 +19,17 @@ __all__ = ["Model", "add_hint", "build", "cut_paths", "read_painting"]
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A model with its variables."""
+    """A model with its variables.
+
+    Attributes:
+        model: the model.
+        variables: its variables.
+        fixed_roots: cells that are the root of their segment in it.
+    """
 
     model: cp_model.CpModel
     variables: Variables
+    fixed_roots: set[int]
 
 
 def build(
@@ -42,7 +49,7 @@ def build(
     for group in groups:
         group(model, graph, variables, regions)
     model.minimize(sum(variables.root) + sum(variables.alone))
-    return Model(model, variables)
+    return Model(model, variables, fixed_roots(graph, regions))
 
 
 def cut_paths(built: Model, segments: int) -> None:
@@ -87,7 +94,7 @@ def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
     A segment in which every cell is divided has no root that the model allows; then nothing is
     hinted, since half a hint only misleads.
     """
-    forest = _forest(graph, painting)
+    forest = _forest(graph, painting, built.fixed_roots)
     if forest is None:
         return
     model, v = built.model, built.variables
@@ -149,16 +156,21 @@ class _Forest:
     depth: dict[int, int]
 
 
-def _forest(graph: DartGraph, painting: Painting) -> _Forest | None:
+def _forest(graph: DartGraph, painting: Painting, fixed: set[int]) -> _Forest | None:
     blocks = [block for cell in painting for block in cell]
     block_of = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     forest = _Forest(blocks, block_of, {}, {})
     undivided = [len(cell) == 1 for cell in painting for _ in cell]
-    # Roots with many darts first: a cell with one dart may be a root only if it is the first of
-    # its kind, which the last in line are not asked to be.
+    at_fixed = [number in fixed for number, cell in enumerate(painting) for _ in cell]
+    # Where the root is fixed, there; else at a cell with many darts: a cell with one dart may be a
+    # root only if it is the first of its kind.
     order = sorted(
         (number for number in range(len(blocks)) if undivided[number]),
-        key=lambda number: (len(blocks[number].darts) == 1, min(blocks[number].darts, default=0)),
+        key=lambda number: (
+            not at_fixed[number],
+            len(blocks[number].darts) == 1,
+            min(blocks[number].darts, default=0),
+        ),
     )
     for root in order:
         if root in forest.parent:
