@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bruteforce import live_darts, minimum, optimal_schemes, vertex_minimum
+from bruteforce import literal_minimum, live_darts, minimum, optimal_schemes, vertex_minimum
 from library import PAPER
 
 from cellcolor.check.solution import check_division
@@ -245,3 +245,10 @@ def test_random_surfaces_are_not_trivial(capsys: pytest.CaptureFixture[str]) -> 
     assert traits["one or the other"] >= 0.3 * traits["surfaces"]
     for name in ("cut in every optimum", "5 optima or more", "cracks", "live self-edges"):
         assert traits[name] >= 10, name
+
+
+@pytest.mark.parametrize("seed", range(30))
+def test_brute_force_against_the_product_of_all_choices(seed: int) -> None:
+    """The sweep over the cells that the solvers are held to, against trying everything at once."""
+    instance = planar_graph(seed, 3, 5, 2, self_edges=seed % 2 == 1)
+    assert minimum(instance) == literal_minimum(instance)
