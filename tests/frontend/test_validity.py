@@ -3,25 +3,35 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import coal
 import numpy as np
 import pinocchio as pin
 import pytest
+from shipped import SCENES
 from world import PAIRS, World
 
 from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend.prepare import prepare
 from cellcolor.frontend.robot import Array, Robot, load_robot
-from cellcolor.frontend.scene import Setup
+from cellcolor.frontend.scene import CylinderObstacle, Setup
 from cellcolor.frontend.validity import within_limits
 
 CONTACT = 0.0005
 Scene = Callable[..., Path]
 
 
-def first_failure(robot: Robot, setup: Setup, world: World, ground: float, q: Array) -> set[Reason]:
+def first_failure(
+    robot: Robot,
+    setup: Setup,
+    world: World,
+    ground: float,
+    q: Array,
+    obstacles: Sequence[tuple[coal.ShapeBase, coal.Transform3s]] = (),
+) -> set[Reason]:
     """The first test that a configuration fails; two answers where a contact is too close."""
     model, data = robot.model, robot.model.createData()
     if np.isnan(q).any():
@@ -45,6 +55,7 @@ def first_failure(robot: Robot, setup: Setup, world: World, ground: float, q: Ar
     for reason, distance in (
         (Reason.GROUND, world.to_ground(ground, setup.robot.may_touch_ground)),
         (Reason.SELF_COLLISION, world.to_itself(PAIRS)),
+        *((Reason.OBSTACLE_COLLISION, world.to_solid(*obstacle)) for obstacle in obstacles),
         (Reason.OBJECT_COLLISION, world.to_object()),
     ):
         if abs(distance) <= CONTACT and not (reason is Reason.OBJECT_COLLISION and distance <= 0):
@@ -183,3 +194,30 @@ def test_limits_count_full_circles(robot: Robot) -> None:
     assert inside.tolist() == [True, True, False, False]
     assert moved[0].tolist() == pytest.approx([2 * np.pi - 1, 3.5, 0, 0, 0, 0])
     assert moved[1, 0] == pytest.approx(2 * np.pi + 0.5)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name",
+    ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"],
+)
+def test_five_thousand_candidates_of_each_scene(name: str) -> None:
+    """As above on the shipped scenes, obstacles included: Pinocchio and coal, one by one."""
+    stage, result = prepare(SCENES / f"{name}.toml"), build_surface(SCENES / f"{name}.toml")
+    world = World(stage.robot, stage.surface.vertices, stage.surface.faces)
+    obstacles = []
+    for obstacle in stage.scene.obstacle:
+        assert isinstance(obstacle, CylinderObstacle) and obstacle.rpy_rad == (0.0, 0.0, 0.0)
+        pose = coal.Transform3s(np.eye(3), np.array(obstacle.position_m))
+        obstacles.append((coal.Cylinder(obstacle.radius_m, obstacle.height_m), pose))
+    assert stage.scene.ground is not None
+    joints, codes = result.configurations.reshape(-1, 6), result.reasons.reshape(-1)
+    unclear = 0
+    rows = np.random.default_rng(3).choice(len(codes), 5000, replace=False)
+    for q, code in zip(joints[rows], codes[rows], strict=True):
+        expected = first_failure(
+            stage.robot, stage.setup, world, stage.scene.ground.height_m, q, obstacles
+        )
+        assert Reason(code) in expected
+        unclear += len(expected) > 1
+    assert unclear < 50
