@@ -171,7 +171,7 @@ def _compare(instance: Instance) -> tuple[int, Run, Run]:
 def _ratio(slow: Run, fast: Run) -> str:
     if slow.seconds is None or not fast.seconds or not fast.optimal:
         return "?"
-    return f"{'' if slow.optimal else '> '}{slow.seconds / fast.seconds:.2g}"
+    return f"{'' if slow.optimal else '> '}{slow.seconds / fast.seconds:.3g}"
 
 
 def spent(run: Run) -> str:
