@@ -244,8 +244,8 @@ def test_what_is_linked_can_be_followed(
     ]
     steps = [joint_step(q[i, b], q[j, b]) for i, j, b in joined]
     # The fastest ones, and some from everywhere.
-    fastest = np.argsort(steps)[-40:].tolist()
-    others = np.random.default_rng(2).choice(len(joined), 80, replace=False).tolist()
+    fastest = np.argsort(steps)[-20:].tolist()
+    others = np.random.default_rng(2).choice(len(joined), 30, replace=False).tolist()
     for i, j, branch in (joined[row] for row in fastest + others):
         way = np.linspace(0, 1, 400)[1:, None]
         points = (1 - way) * surface.vertices[i] + way * surface.vertices[j]
