@@ -108,7 +108,7 @@ class _Search:
         ]
         for number, (strands, seams) in enumerate(stages):
             if not self._done and stages.index((strands, seams)) == number:
-                self._minimize(strands, seams, final=(strands, seams) == stages[-1])
+                self._minimize(strands, seams, self._colors, final=(strands, seams) == stages[-1])
         if self._options.fewest_cuts and self._segments == self._bound and not self._over:
             self._fewest_cuts(*stages[-1])
 
@@ -138,11 +138,24 @@ class _Search:
         first = paint_whole_cells(graph, self._cover, self._solver(WHOLE_EFFORT), self._solve)
         if first is not None:
             self._offer(graph, first)
+        if not self._done:
+            # With cutting paths, but still in the cover's colors: a much smaller model.
+            colors = tuple(
+                frozenset(color for color, cells in self._cover if number in cells)
+                for number in range(len(self._instance.cells))
+            )
+            self._minimize(dict.fromkeys(self._enough, 1), graph.seams, colors, final=False)
 
-    def _minimize(self, strands: dict[int, int], seams: tuple[Seam, ...], final: bool) -> None:
+    def _minimize(
+        self,
+        strands: dict[int, int],
+        seams: tuple[Seam, ...],
+        colors: tuple[frozenset[int], ...],
+        final: bool,
+    ) -> None:
         """Solve one model; only the final one, the widest, proves a bound of its own."""
-        graph = self._graph(strands, seams)
-        built = build(graph, self._regions)
+        graph = dart_graph(self._instance, colors, strands, seams)
+        built = build(graph, color_regions(self._instance, colors))
         self._hint(built, graph)
         solver = self._solver(None if final else TRIAL_EFFORT)
         if final:
@@ -174,11 +187,16 @@ class _Search:
                 self._best = graph, painting
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
-        """Hint the best division, if it has no more strands than the model."""
+        """Hint the best division, if it has no strands and no colors beyond the model's."""
         if self._best is None:
             return
         known, painting = self._best
-        if {dart.name for dart in known.darts} <= {dart.name for dart in graph.darts}:
+        fits = all(
+            block.color in graph.colors[cell]
+            for cell, blocks in enumerate(painting)
+            for block in blocks
+        )
+        if fits and {dart.name for dart in known.darts} <= {dart.name for dart in graph.darts}:
             add_hint(built, graph, canonical(graph, moved(known, painting, graph)))
 
     def _graph(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> DartGraph:
