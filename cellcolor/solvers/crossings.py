@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from cellcolor.data.instance import Instance
 
 __all__ = ["enough_crossings"]
 
 
-def enough_crossings(instance: Instance, colors: Sequence[frozenset[int]]) -> dict[int, float]:
+def enough_crossings(
+    instance: Instance,
+    colors: Sequence[frozenset[int]],
+    most: Mapping[int, int] | None = None,
+) -> dict[int, float]:
     """Strands of each live edge that are enough for a minimum over all divisions.
 
     Of all divisions of the surface with the fewest segments take one with the fewest sub-cells,
@@ -28,12 +32,13 @@ def enough_crossings(instance: Instance, colors: Sequence[frozenset[int]]) -> di
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
+        most: how often each edge may be crossed at all, if that is limited.
 
     Returns:
         A number for every live edge; infinity where nothing is known.
     """
     enough = {
-        edge.id: math.inf
+        edge.id: (math.inf if most is None else most[edge.id])
         if len(colors[edge.left] & colors[edge.right] & set(instance.joinable(edge.id))) > 1
         else 1
         for edge in instance.edges

@@ -13,11 +13,12 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 from cellcolor.errors import InputError
-from cellcolor.solvers.bounds import color_regions, set_cover
+from cellcolor.solvers.bounds import color_regions, set_cover, smallest_covers
 from cellcolor.solvers.cpsat.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model import Model, add_hint, build, cut_paths, read_painting
 from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, moved, painting_of
+from cellcolor.solvers.cpsat.refutation import cover_colors, is_refuted
 from cellcolor.solvers.cpsat.whole import paint_whole_cells
 from cellcolor.solvers.crossings import enough_crossings
 from cellcolor.solvers.interface import PORTFOLIO, Answer, Options, OutOfTime, Progress
@@ -28,11 +29,17 @@ __all__ = ["CpSatSolver"]
 FEW_STRANDS = 2
 """Seams are tried this narrow first, which is enough when the result meets the cover bound."""
 
-WHOLE_EFFORT = 0.2
+WHOLE_EFFORT = 0.3
 """Deterministic seconds a worker for undivided cells: in vain where cutting paths are needed."""
 
 TRIAL_EFFORT = 2.0
 """Deterministic seconds a worker for a model that is not the widest: its bound proves nothing."""
+
+REFUTATION_EFFORT = 0.3
+"""Deterministic seconds a worker for each cover; what is refuted at all is refuted quickly."""
+
+MOST_COVERS = 8
+"""With more smallest covers than that, some of them is likely to be paintable."""
 
 
 class CpSatSolver:
@@ -138,13 +145,23 @@ class _Search:
         first = paint_whole_cells(graph, self._cover, self._solver(WHOLE_EFFORT), self._solve)
         if first is not None:
             self._offer(graph, first)
+        if not self._done and self._options.strands == 1:
+            self._refute()
         if not self._done:
             # With cutting paths, but still in the cover's colors: a much smaller model.
-            colors = tuple(
-                frozenset(color for color, cells in self._cover if number in cells)
-                for number in range(len(self._instance.cells))
-            )
+            colors = cover_colors(self._instance, self._cover)
             self._minimize(dict.fromkeys(self._enough, 1), graph.seams, colors, final=False)
+
+    def _refute(self) -> None:
+        """Raise the bound if no smallest cover can be painted with a segment a region."""
+        covers = smallest_covers(self._instance, self._colors, self._bound, MOST_COVERS)
+        for cover in covers:
+            solver = self._solver(REFUTATION_EFFORT)
+            if self._over or not is_refuted(self._instance, cover, solver, self._solve):
+                return
+        if covers:
+            self._bound += 1
+            self._report(None, None)
 
     def _minimize(
         self,
