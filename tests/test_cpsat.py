@@ -327,6 +327,31 @@ def test_a_closed_surface_of_one_cell() -> None:
     }
 
 
+@pytest.mark.parametrize(("edges", "catalan"), [(1, 1), (2, 2), (3, 5), (4, 14), (5, 42), (6, 132)])
+def test_divisions_of_a_lone_cell(edges: int, catalan: int) -> None:
+    """Colors ignored there are Catalan(n) + n: the paper's eight for three edges.
+
+    Three colors are enough for all of them; the petals can be painted in any, so that a state is
+    never forced. Every number of segments is asked for, not just the fewest.
+    """
+    every = (0, 1, 2)
+    instance = Instance(
+        "lone",
+        ("red", "blue", "green"),
+        (
+            Cell(0, every, (tuple(range(1, edges + 1)),)),
+            *(Cell(i, every, ((-i,),)) for i in range(1, edges + 1)),
+        ),
+        tuple(Edge(i, 0, i) for i in range(1, edges + 1)),
+    )
+    divisions = {
+        frozenset(frozenset(sub.darts) for sub in division[0].subcells)
+        for segments in range(1, edges + 2)
+        for division in CpSatSolver().optimal_schemes(instance, Options(), segments)
+    }
+    assert len(divisions) == catalan + edges
+
+
 def test_enumeration_stops_when_its_time_is_over() -> None:
     # Forty cells of two free colors each have 2**40 optimal schemes.
     cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
