@@ -80,7 +80,6 @@ class _Search:
         self._regions = color_regions(instance, self._colors)
         self._cover = set_cover(instance, self._colors)
         self._bound = len(self._cover)
-        self._surface_bound = self._bound
         self._cuts_bound = 0
         self._enough = enough_crossings(instance, self._colors)
         self._best: tuple[DartGraph, Painting] | None = None
@@ -99,7 +98,10 @@ class _Search:
             painting = canonical(full, moved(graph, painting, full))
             division = division_of(full, painting, strands)
         cuts = self._cuts_bound if self._options.fewest_cuts else None
-        return Answer(division, seams, self._bound, self._surface_bound, cuts)
+        # Where more corridors across an edge are never needed, the bound is one for the surface.
+        wide = all(enough <= self._options.strands for enough in self._enough.values())
+        surface_bound = self._bound if wide else len(self._cover)
+        return Answer(division, seams, self._bound, surface_bound, cuts)
 
     def run(self) -> None:
         """Solve until the best division is proved, or there is no time left."""
@@ -180,9 +182,6 @@ class _Search:
         status = self._solve(solver, built.model)
         if final and isfinite(solver.best_objective_bound):
             self._bound = max(self._bound, ceil(solver.best_objective_bound - 1e-6))
-            # Where more corridors across an edge are never needed, neither is a wider model.
-            if all(enough <= self._options.strands for enough in self._enough.values()):
-                self._surface_bound = self._bound
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             self._offer(graph, read_painting(graph, built.variables, solver))
 
