@@ -10,16 +10,14 @@ from bruteforce import minimum, vertex_minimum
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import PAPER
-from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.decomposition import decompose
 from cellcolor.families import blobs, planar_graph
-from cellcolor.solvers.bounds import color_regions, set_cover, smallest_covers, strangers
-from cellcolor.solvers.cpsat.refutation import cover_colors, is_refuted
+from cellcolor.solvers.bounds import color_regions, set_cover, strangers
 from cellcolor.solvers.crossings import enough_crossings
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.merging import bundled, merged, simplified
+from cellcolor.solvers.merging import merge_cells
 from cellcolor.solvers.reductions import drop_dominated
 from cellcolor.solvers.run import solve
 
@@ -158,30 +156,17 @@ def test_the_surface_bound_holds_for_vertex_colorings(seed: int, colors: int, cr
     assert found.surface_lower_bound <= vertex_minimum(surface)
 
 
-@settings(max_examples=12, deadline=None)
-@given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(1, 3))
-def test_a_simplified_graph_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
-    """Every bundle crossed as often as it has edges; against brute force on the whole graph."""
-    instance = planar_graph(seed, cells, cells + 5, colors)
-    own = tuple(frozenset(cell.colors) for cell in instance.cells)
-    smaller, parallel = simplified(instance, own)
-    assert sum(parallel.values()) <= sum(bool(instance.joinable(e.id)) for e in instance.edges)
-    assert len(smaller.cells) <= len(instance.cells)
-    most = max(parallel.values(), default=1)
-    assume(most <= 2)
-    options = Options(search_space="surface", strands=most)
-    assert solve(smaller, options, "dfs").segments <= minimum(instance)  # type: ignore[operator]
-
-
 def test_two_cells_that_nothing_separates_become_one() -> None:
     """A row of three cells of red and blue; the crack on the last edge lets only red through."""
     cells = tuple(
         Cell(i, (RED, BLUE), loops) for i, loops in enumerate((((1,),), ((-1, 2),), ((-2,),)))
     )
     instance = Instance("row", ("red", "blue"), cells, (Edge(1, 0, 1), Edge(2, 1, 2, (RED,))))
-    smaller = merged(instance, [frozenset({RED, BLUE})] * 3)
-    assert [cell.loops for cell in smaller.cells] == [((2,),), ((-2,),)]
-    assert [(edge.left, edge.right, edge.colors) for edge in smaller.edges] == [(0, 1, (RED,))]
+    found = merge_cells(instance, [frozenset({RED, BLUE})] * 3)
+    assert found.part_of == [0, 0, 2]
+    assert found.loops == {0: [[2]], 2: [[-2]]}
+    assert found.sides == {2: [0, 2]}
+    assert found.joinable == {2: frozenset({RED})}
 
 
 def test_merging_around_a_cell_leaves_a_hole() -> None:
@@ -197,69 +182,6 @@ def test_merging_around_a_cell_leaves_a_hole() -> None:
         ),
         (Edge(1, 0, 1), Edge(2, 0, 2), Edge(3, 0, 1), Edge(4, 1, 2), Edge(5, 0, 3), Edge(6, 1, 3)),
     )
-    smaller = merged(instance, [frozenset(cell.colors) for cell in instance.cells])
-    loops = {frozenset(loop) for loop in smaller.cells[0].loops}
-    assert loops == {frozenset({2, 4}), frozenset({5, 6})}
-
-
-def test_parallel_edges_become_one() -> None:
-    cells = (Cell(0, (RED,), ((1, 2, 3),)), Cell(1, (RED, BLUE), ((-3, -2, -1),)))
-    instance = Instance(
-        "pair", ("red", "blue"), cells, (Edge(1, 0, 1), Edge(2, 0, 1), Edge(3, 0, 1))
-    )
-    smaller, count = bundled(instance)
-    assert list(count.values()) == [3]
-    (edge,) = count
-    assert [cell.loops for cell in smaller.cells] == [((edge,),), ((-edge,),)]
-    # In the same order on both sides they are not parallel: the surface between them is twisted.
-    twisted = replace(instance, cells=(cells[0], replace(cells[1], loops=((-1, -2, -3),))))
-    assert len(bundled(twisted)[1]) > 1
-
-
-@settings(max_examples=40, deadline=None)
-@given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
-def test_smallest_covers(seed: int, cells: int, colors: int) -> None:
-    """Against trying all sets of regions."""
-    instance = planar_graph(seed, cells, cells + 3, colors)
-    own = [frozenset(cell.colors) for cell in instance.cells]
-    size = len(set_cover(instance))
-    every = [
-        frozenset(chosen)
-        for chosen in itertools.combinations(color_regions(instance), size)
-        if len(set().union(*(touched for _, touched in chosen))) == cells
-    ]
-    found = smallest_covers(instance, own, size, 10**6)
-    assert sorted(map(hash, map(frozenset, found))) == sorted(map(hash, every))
-    assert smallest_covers(instance, own, size, 0) == []
-
-
-@settings(max_examples=60, deadline=None)
-@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(1, 3))
-def test_only_covers_that_cannot_be_painted_are_refuted(seed: int, cells: int, colors: int) -> None:
-    """Against brute force with the cover's colors alone."""
-    instance = planar_graph(seed, cells, cells + 4, colors)
-    own = [frozenset(cell.colors) for cell in instance.cells]
-    size = len(set_cover(instance))
-    for cover in smallest_covers(instance, own, size, 20):
-        solver = cp_model.CpSolver()
-        refuted = is_refuted(instance, cover, solver, lambda s, m: s.solve(m))
-        fewest = minimum(with_colors(instance, cover_colors(instance, cover)))
-        assert fewest > size if refuted else fewest >= size
-
-
-def test_a_cover_is_refuted() -> None:
-    """Red and blue petals in turn: the colors cover the hub, but only one can cross it."""
-    petals = (RED, BLUE, RED, BLUE)
-    instance = Instance(
-        "hub",
-        ("red", "blue"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2, 3, 4),)),
-            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(petals, start=1)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, 5)),
-    )
-    # Petals of one color lie in one region, through the hub.
-    (cover,) = smallest_covers(instance, [frozenset(c.colors) for c in instance.cells], 2, 9)
-    assert is_refuted(instance, cover, cp_model.CpSolver(), lambda s, m: s.solve(m))
-    assert solve(instance, Options()).lower_bound == 3
+    found = merge_cells(instance, [frozenset(cell.colors) for cell in instance.cells])
+    assert found.part_of == [0, 0, 2, 3]
+    assert {frozenset(loop) for loop in found.loops[0]} == {frozenset({2, 4}), frozenset({5, 6})}

@@ -375,3 +375,14 @@ def test_progress_reports_the_best_and_the_bound() -> None:
     instance = Instance.read(PAPER / "split-cell.json")
     CpSatSolver().minimize(instance, Options(), lambda best, bound: seen.append((best, bound)))
     assert seen[0] == (None, 2) and seen[-1] == (2, 2)
+
+
+def test_progress_comes_closer_and_never_passes_the_minimum() -> None:
+    seen: list[tuple[int | None, int]] = []
+    instance = hub(3, 12, 3)
+    minimum = hub_minimum([cell.colors[0] for cell in instance.cells[1:]])
+    CpSatSolver().minimize(instance, Options(), lambda best, bound: seen.append((best, bound)))
+    assert seen[-1] == (minimum, minimum)
+    assert all(bound <= minimum for _, bound in seen)
+    best = [found for found, _ in seen if found is not None]
+    assert best == sorted(best, reverse=True) and best[-1] == minimum

@@ -12,7 +12,7 @@ from cellcolor.data.instance import Instance
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
 
-__all__ = ["Region", "color_regions", "set_cover", "smallest_covers", "strangers"]
+__all__ = ["Region", "color_regions", "set_cover", "strangers"]
 
 Region = tuple[int, frozenset[int]]
 """A color, and the cells of one connected component of the part of the surface it reaches."""
@@ -63,35 +63,6 @@ def set_cover(instance: Instance, colors: Sequence[frozenset[int]] | None = None
         )
     model.minimize(sum(chosen))
     return [regions[number] for number in _solve(model, chosen)]
-
-
-def smallest_covers(
-    instance: Instance, colors: Sequence[frozenset[int]], size: int, most: int
-) -> list[list[Region]]:
-    """All covers of that size, or nothing if there are more than so many.
-
-    Args:
-        instance: the topological graph.
-        colors: the colors each cell may be painted in, all or some of its own.
-        size: of a smallest cover.
-        most: how many covers are still worth looking at.
-    """
-    regions = color_regions(instance, colors)
-    covers: list[list[Region]] = []
-
-    def choose(chosen: list[Region], missing: frozenset[int]) -> None:
-        if not missing:
-            covers.append(chosen)
-        elif len(chosen) < size and len(covers) <= most:
-            # Whatever covers this cell comes next; no other order of the same regions does.
-            cell = min(missing, key=lambda c: (sum(c in cells for _, cells in regions), c))
-            for region in regions:
-                if cell in region[1]:
-                    choose([*chosen, region], missing - region[1])
-
-    choose([], frozenset(range(len(instance.cells))))
-    distinct = list({frozenset(cover): cover for cover in covers}.values())
-    return distinct if len(covers) <= most else []
 
 
 def strangers(instance: Instance) -> list[int]:

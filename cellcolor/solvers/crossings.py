@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from cellcolor.data.instance import Instance
 
@@ -13,7 +13,6 @@ __all__ = ["enough_crossings"]
 def enough_crossings(
     instance: Instance,
     colors: Sequence[frozenset[int]],
-    most: Mapping[int, int] | None = None,
 ) -> dict[int, float]:
     """Strands of each live edge that are enough for a minimum over all divisions.
 
@@ -32,13 +31,12 @@ def enough_crossings(
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
-        most: how often each edge may be crossed at all, if that is limited.
 
     Returns:
         A number for every live edge; infinity where nothing is known.
     """
     enough = {
-        edge.id: (math.inf if most is None else most[edge.id])
+        edge.id: math.inf
         if len(colors[edge.left] & colors[edge.right] & set(instance.joinable(edge.id))) > 1
         else 1
         for edge in instance.edges

@@ -13,13 +13,14 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 from cellcolor.errors import InputError
-from cellcolor.solvers.bounds import color_regions, set_cover, smallest_covers
+from cellcolor.solvers.bounds import color_regions, set_cover
 from cellcolor.solvers.cpsat.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model import Model, add_hint, build, cut_paths, read_painting
 from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, moved, painting_of
-from cellcolor.solvers.cpsat.refutation import cover_colors, is_refuted
-from cellcolor.solvers.cpsat.whole import paint_whole_cells
+from cellcolor.solvers.cpsat.plans import Plan, Planner, Undecided
+from cellcolor.solvers.cpsat.refined import refined
+from cellcolor.solvers.cpsat.routing import route
 from cellcolor.solvers.crossings import enough_crossings
 from cellcolor.solvers.interface import PORTFOLIO, Answer, Options, OutOfTime, Progress
 from cellcolor.solvers.reductions import drop_dominated
@@ -29,17 +30,17 @@ __all__ = ["CpSatSolver"]
 FEW_STRANDS = 2
 """Seams are tried this narrow first, which is enough when the result meets the cover bound."""
 
-WHOLE_EFFORT = 0.3
-"""Deterministic seconds a worker for undivided cells: in vain where cutting paths are needed."""
+PLAN_EFFORT = 0.05
+"""Deterministic seconds for a plan; most take a hundredth of that."""
+
+FIRST_ROUNDS, ROUNDS = 20, 60
+"""Of routing: before conflicts are looked for, and after. What can be routed takes a few."""
+
+ATTEMPTS = 3
+"""Plans to route before the full model has to decide."""
 
 TRIAL_EFFORT = 2.0
 """Deterministic seconds a worker for a model that is not the widest: its bound proves nothing."""
-
-REFUTATION_EFFORT = 0.3
-"""Deterministic seconds a worker for each cover; what is refuted at all is refuted quickly."""
-
-MOST_COVERS = 8
-"""With more smallest covers than that, some of them is likely to be paintable."""
 
 
 class CpSatSolver:
@@ -78,8 +79,8 @@ class _Search:
         # A division to start from may use colors that would be dropped.
         self._colors = drop_dominated(instance) if options.start is None else own
         self._regions = color_regions(instance, self._colors)
-        self._cover = set_cover(instance, self._colors)
-        self._bound = len(self._cover)
+        self._cover = self._planned = set_cover(instance, self._colors)
+        self._bound = self._surface_bound = len(self._cover)
         self._cuts_bound = 0
         self._enough = enough_crossings(instance, self._colors)
         self._best: tuple[DartGraph, Painting] | None = None
@@ -100,7 +101,7 @@ class _Search:
         cuts = self._cuts_bound if self._options.fewest_cuts else None
         # Where more corridors across an edge are never needed, the bound is one for the surface.
         wide = all(enough <= self._options.strands for enough in self._enough.values())
-        surface_bound = self._bound if wide else len(self._cover)
+        surface_bound = self._bound if wide else self._surface_bound
         return Answer(division, seams, self._bound, surface_bound, cuts)
 
     def run(self) -> None:
@@ -130,7 +131,7 @@ class _Search:
         return self._stopped or self._left() <= 0
 
     def _begin(self) -> None:
-        """A first division: what was handed in, or whole cells in the colors of the cover."""
+        """A first division: what was handed in, or what plans lead to."""
         start = self._options.start
         if start is not None:
             strands = dict.fromkeys(self._enough, self._options.strands)
@@ -141,29 +142,59 @@ class _Search:
             self._offer(graph, painting_of(graph, start.division))
         if self._done:
             return
-        graph = self._graph(
-            dict.fromkeys(self._enough, 1), self._seams(dict.fromkeys(self._enough, 1), FEW_STRANDS)
+        self._route_plans()
+        colors = tuple(
+            frozenset(color for color, cells in self._planned if cell.id in cells)
+            for cell in self._instance.cells
         )
-        first = paint_whole_cells(graph, self._cover, self._solver(WHOLE_EFFORT), self._solve)
-        if first is not None:
-            self._offer(graph, first)
-        if not self._done and self._options.strands == 1:
-            self._refute()
-        if not self._done:
-            # With cutting paths, but still in the cover's colors: a much smaller model.
-            colors = cover_colors(self._instance, self._cover)
-            self._minimize(dict.fromkeys(self._enough, 1), graph.seams, colors, final=False)
+        if not self._done and colors != self._colors:
+            # In the colors of the last plan only: a much smaller model.
+            once = dict.fromkeys(self._enough, 1)
+            self._minimize(once, self._seams(once, FEW_STRANDS), colors, final=False)
 
-    def _refute(self) -> None:
-        """Raise the bound if no smallest cover can be painted with a segment a region."""
-        covers = smallest_covers(self._instance, self._colors, self._bound, MOST_COVERS)
-        for cover in covers:
-            solver = self._solver(REFUTATION_EFFORT)
-            if self._over or not is_refuted(self._instance, cover, solver, self._solve):
-                return
-        if covers:
-            self._bound += 1
-            self._report(None, None)
+    def _route_plans(self) -> None:
+        """Divisions by routing what is planned; where nothing can be planned the bound rises."""
+        planner = Planner(self._instance, self._regions, len(self._cover), self._solve_plan)
+        with suppress(Undecided):
+            for attempt in range(ATTEMPTS):
+                plan = self._conflict_free_plan(planner, attempt)
+                for rings in (1, 2):
+                    self._route(plan, rings, ROUNDS, attempt)
+            if not self._done:
+                plan = planner.plan(self._bound + 1, 0) or plan
+                self._route(plan, 1, ROUNDS, 0)
+
+    def _conflict_free_plan(self, planner: Planner, attempt: int) -> Plan:
+        """A plan with as many segments as the bound, if not one that could be routed before."""
+        while True:
+            plan = planner.plan(self._bound, attempt)
+            if plan is None:
+                self._bound = self._surface_bound = self._bound + 1
+                self._report(None, None)
+                continue
+            self._planned = [segment.region for segment in plan]
+            # Looking for conflicts takes longer than routing when there are none.
+            self._route(plan, 1, FIRST_ROUNDS, attempt)
+            if self._done or not planner.find_conflicts(plan):
+                return plan
+
+    def _solve_plan(
+        self, model: cp_model.CpModel, seed: int
+    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+        solver = self._solver(PLAN_EFFORT)
+        solver.parameters.num_workers = 1  # too small for a portfolio
+        solver.parameters.random_seed = self._options.seed + seed
+        return solver, self._solve(solver, model)
+
+    def _route(self, plan: Plan, rings: int, rounds: int, seed: int) -> None:
+        if self._done:
+            return
+        once = dict.fromkeys(self._enough, 1)
+        graph = self._graph(once, self._seams(once, FEW_STRANDS))
+        painting = route(
+            refined(graph, rings), plan, rounds, self._options.seed + seed, lambda: self._over
+        )
+        self._offer(graph, painting)
 
     def _minimize(
         self,
@@ -179,7 +210,7 @@ class _Search:
         solver = self._solver(None if final else TRIAL_EFFORT)
         if final:
             solver.best_bound_callback = lambda bound: self._report(None, ceil(bound - 1e-6))
-        status = self._solve(solver, built.model)
+        status = self._solve(solver, built.model, _Watcher(self._report))
         if final and isfinite(solver.best_objective_bound):
             self._bound = max(self._bound, ceil(solver.best_objective_bound - 1e-6))
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
@@ -221,14 +252,16 @@ class _Search:
     def _seams(self, strands: dict[int, int], most: int | None) -> tuple[Seam, ...]:
         return seams_of(self._instance, self._colors, strands, most)
 
-    def _solve(self, solver: cp_model.CpSolver, model: cp_model.CpModel) -> cp_model.CpSolverStatus:
+    def _solve(
+        self, solver: cp_model.CpSolver, model: cp_model.CpModel, watcher: _Watcher | None = None
+    ) -> cp_model.CpSolverStatus:
         """Solve in a thread, so that an interrupt here ends the search with its best."""
         found: list[cp_model.CpSolverStatus] = []
         finished = Event()
 
         def work() -> None:
             try:
-                found.append(solver.solve(model, _Watcher(self._report)))
+                found.append(solver.solve(model, watcher))
             finally:
                 finished.set()
 
