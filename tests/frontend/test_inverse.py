@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
-import pinocchio as pin
 import pytest
-from eaik.IK_HP import HPRobot
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from independent import Eaik, regular, set_distance, wrapped
 from shipped import ROBOTS
 
 from cellcolor.frontend.kinematics import forward
@@ -19,40 +18,14 @@ from cellcolor.frontend.ur import BRANCHES, UrGeometry, solve_inverse, ur_geomet
 LOCKED = 0.4
 
 
-def wrapped(angle: Array) -> Array:
-    return np.abs(np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
-
-
 @pytest.fixture(scope="module")
-def oracle(robot: Robot) -> tuple[HPRobot, Array]:
-    """EAIK's robot from Pinocchio's joint axes at zero, and the last frame's attitude there."""
-    data = robot.model.createData()
-    jacobian = pin.computeJointJacobians(robot.model, data, np.zeros(6))
-    origins = np.array([data.oMi[i].translation for i in range(1, 7)])
-    steps = np.diff(origins, axis=0, prepend=np.zeros((1, 3)))
-    return HPRobot(jacobian[3:].T, np.vstack([steps, np.zeros((1, 3))])), data.oMi[6].rotation
-
-
-def solutions_of_eaik(
-    oracle: tuple[HPRobot, Array], robot: Robot, point: Array, direction: Array, roll: float
-) -> Array:
-    """Joints 1 to 5 of EAIK's solutions; any roll about the tool must give the same."""
-    z = direction
-    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
-    x /= np.linalg.norm(x)
-    x = np.cos(roll) * x + np.sin(roll) * np.cross(z, x)
-    eaik, at_zero = oracle
-    pose = np.eye(4)
-    pose[:3, :3] = np.column_stack([x, np.cross(z, x), z]) @ at_zero.T
-    pose[:3, 3] = point - robot.tip[2, 3] * z
-    answer = eaik.IK(pose)
-    exact = ~np.array(answer.is_LS, dtype=bool)
-    return np.array(answer.Q).reshape(-1, 6)[exact][:, :5]
+def eaik(robot: Robot) -> Eaik:
+    return Eaik(robot)
 
 
 @pytest.mark.parametrize("reachable", [True, False])
 def test_same_solution_sets_as_eaik(
-    oracle: tuple[HPRobot, Array], robot: Robot, geometry: UrGeometry, reachable: bool
+    eaik: Eaik, robot: Robot, geometry: UrGeometry, reachable: bool
 ) -> None:
     random = np.random.default_rng(11)
     if reachable:
@@ -66,17 +39,34 @@ def test_same_solution_sets_as_eaik(
     counts = []
     for row in range(len(points)):
         ours = found[row][~np.isnan(found[row, :, 0])][:, :5]
-        theirs = solutions_of_eaik(
-            oracle, robot, points[row], directions[row], random.uniform(0, 6)
-        )
+        theirs = eaik.solutions(points[row], directions[row], random.uniform(0, 6))
         counts.append(len(ours))
-        assert len(ours) == len(theirs)
-        if len(ours):
-            gap = wrapped(ours[:, None] - theirs[None]).max(axis=2)
-            assert gap.min(axis=0).max() < 1e-6
-            assert gap.min(axis=1).max() < 1e-6
+        assert set_distance(ours, theirs) < 1e-6
     # The sample has to hold full, partial and (where it may) empty sets.
     assert {2, 4, 8} <= set(counts) and (reachable or 0 in counts)
+
+
+@pytest.mark.parametrize("off", [1e-3, 1e-5, 1e-7, 0.0])
+@pytest.mark.parametrize("joint", [2, 4])
+def test_same_regular_solutions_at_straight_elbow_and_aligned_wrist(
+    eaik: Eaik, robot: Robot, geometry: UrGeometry, joint: int, off: float
+) -> None:
+    """Where two solutions meet, rounding says how many there are: only the others compare."""
+    random = np.random.default_rng(29)
+    left_out = compared = 0
+    for _ in range(200):
+        q = random.uniform(-np.pi, np.pi, (1, 6))
+        q[0, joint] = off
+        poses = forward(robot, q)
+        point, direction = poses.tip, poses.tool_axis
+        found = solve_inverse(geometry, point, direction, LOCKED)[0]
+        ours = found[~np.isnan(found[:, 0])][:, :5]
+        theirs = eaik.solutions(point[0], direction[0], random.uniform(0, 6))
+        assert set_distance(regular(robot, ours), regular(robot, theirs)) < 1e-6
+        compared += len(regular(robot, ours))
+        left_out += len(ours) - len(regular(robot, ours))
+    assert compared > 400
+    assert off > 1e-4 or left_out > 200
 
 
 @given(
