@@ -1,9 +1,10 @@
 """What stands still: the object and the obstacles, prepared for many queries.
 
-A body is settled by distances of points on its axis, all configurations at once: a piece of the
-axis that is farther from the solid than its own half length and the body's radius is clear, a
-point nearer than the radius is a hit, and what lies between is halved. The distance to a mesh is
-looked up in a grid; only what its spacing leaves open reaches fcl.
+A body is settled by distances of points on its axis, all configurations at once: a slice of the
+body is clear if a ball around it is, a ball in the body that reaches the solid is a hit, and what
+lies between is halved. The distance to a mesh is looked up in a grid, and where its spacing leaves
+a doubt it is taken to the nearest of many samples. What is left, within some tenths of a
+millimeter of a contact, reaches fcl.
 """
 
 from __future__ import annotations
@@ -12,7 +13,9 @@ from collections.abc import Callable
 
 import fcl
 import numpy as np
+from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
+from scipy.spatial import cKDTree
 
 from cellcolor.frontend.collision import Mask, body_poses, body_shape
 from cellcolor.frontend.robot import Array, Body, Robot
@@ -21,14 +24,19 @@ from cellcolor.frontend.surfaces import Faces, rotation_from_rpy
 
 __all__ = ["Solid", "mesh_solid", "primitive_solid"]
 
-_FINEST = 0.01  # m; half a piece of axis that is left to fcl rather than halved again
+_FINEST = 0.002  # m; half a slice that is left to fcl rather than halved again
+_CLOSE = 0.025  # m; half a slice from which on the nearest sample is worth its price
 _SPACING = 0.003  # m; wanted distance of a mesh's points to the nearest sample
 _SAMPLES = 500_000  # at most about so many; large objects are sampled more coarsely
 _PITCH, _PARTS = 0.006, 80  # of the grid: m, or parts of the longest side of a large object
+_ROUNDING = 1e-9  # m
 _AROUND = 0.06  # m; by so much the grid is larger than the object
 
+Rows = NDArray[np.intp]
 Distances = Callable[[Array], tuple[Array, Array]]
 """Points (k, 3) to a lower and an upper bound (k,) of their distance from the solid in m."""
+Near = Callable[[Array, float], tuple[Array, Array]]
+"""The same with closer bounds, as far as a distance is below a given one; others are infinite."""
 
 
 class Solid:
@@ -38,8 +46,10 @@ class Solid:
     unnoticed to an arm whose bodies touch one another in a row and of which a part is outside.
     """
 
-    def __init__(self, shape: fcl.CollisionObject, distances: Distances) -> None:
-        self._shape, self._distances = shape, distances
+    def __init__(
+        self, shape: fcl.CollisionObject, distances: Distances, near: Near | None = None
+    ) -> None:
+        self._shape, self._distances, self._near = shape, distances, near
         self._request = fcl.CollisionRequest()
 
     def hits(self, robot: Robot, ends: Array) -> Mask:
@@ -68,18 +78,48 @@ class Solid:
         return None
 
     def _sweep(self, body: Body, ends: Array) -> tuple[Mask, Mask]:
-        """Sure hits (n,), and what is left open (n,); the others are clear."""
+        """Sure hits (n,), and what is left open (n,); the others are clear.
+
+        A body is made of slices across its axis and, if its ends are round, of two balls there.
+        """
         start, along = ends[0], ends[1] - ends[0]
         hit, left_open = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=bool)
-        rows, place, half = np.arange(len(start)), np.full(len(start), 0.5), body.length / 2
-        while len(rows):
-            near, far = self._distances(start[rows] + place[:, None] * along[rows])
+
+        def ask(rows: Rows, place: Array, half: float, around: float) -> Mask:
+            """Are balls of the radius ``around`` about points of the axis in doubt?"""
             # A ball about a point of the axis lies in the body if it does not leave its ends.
-            ball = np.full(len(rows), body.radius)
+            inside = np.full(len(rows), body.radius)
             if body.flat:
-                ball = np.minimum(ball, body.length * np.minimum(place, 1 - place))
-            hit[rows[far <= ball]] = True
-            doubtful = (near <= half + body.radius) & ~hit[rows]
+                inside = np.minimum(inside, body.length * np.minimum(place, 1 - place))
+            points = start[rows] + place[:, None] * along[rows]
+            near, far = self._distances(points)
+            hit[rows[far <= inside]] = True
+            doubtful: Mask = (near <= around) & ~hit[rows]
+            if self._near is not None and half <= _CLOSE:
+                again = np.flatnonzero(doubtful)
+                near, far = self._near(points[again], around)
+                hit[rows[again[far <= inside[again]]]] = True
+                doubtful[again] = (near <= around) & ~hit[rows[again]]
+            return doubtful
+
+        half = body.length / 2
+        rows, place = np.arange(len(start)), np.full(len(start), 0.5)
+        whole = np.hypot(half, body.radius) if body.flat else half + body.radius
+        rows = rows[ask(rows, place, half, whole)]
+        if body.length == 0:
+            left_open[rows] = True
+            return hit, left_open
+        if not body.flat:
+            for end in (0.0, 1.0):
+                asked = rows[~hit[rows]]
+                doubt = ask(asked, np.full(len(asked), end), 0.0, body.radius)
+                left_open[asked[doubt]] = True
+        # One hit or one open end is enough: the rest of that body is not looked at.
+        rows = rows[~(hit | left_open)[rows]]
+        place = np.full(len(rows), 0.5)
+        while len(rows):
+            doubtful = ask(rows, place, half, float(np.hypot(half, body.radius)))
+            doubtful &= ~hit[rows]
             if half <= _FINEST:
                 left_open[rows[doubtful]] = True
                 break
@@ -125,9 +165,24 @@ def mesh_solid(vertices: Array, faces: Faces) -> Solid:
         off_by = pitch * np.sqrt(np.einsum("ij,ij->i", off, off)) + half_diagonal
         stored = grid[index[:, 0], index[:, 1], index[:, 2]]
         outside = np.sqrt(np.einsum("ij,ij->i", beyond, beyond))
-        return np.maximum(outside, stored - slack - off_by), stored + off_by
+        return np.maximum(outside, to_mesh(stored - off_by)), stored + off_by
 
-    return Solid(fcl.CollisionObject(model, fcl.Transform()), distances)
+    tree = cKDTree(samples, balanced_tree=False, compact_nodes=False)
+
+    def near(points: Array, reach: float) -> tuple[Array, Array]:
+        to_sample, _ = tree.query(points, distance_upper_bound=np.hypot(reach, slack) + _ROUNDING)
+        return to_mesh(to_sample), to_sample
+
+    def to_mesh(to_sample: Array) -> Array:
+        """A lower bound of distances from the mesh, from one of those to the nearest sample.
+
+        The way from a point to the nearest one of the mesh is at right angles to the face or the
+        edge that this lies on, and a sample on these is at most ``slack`` aside of it; corners
+        are samples.
+        """
+        return np.sqrt(np.maximum(np.maximum(to_sample, 0.0) ** 2 - slack**2, 0.0))
+
+    return Solid(fcl.CollisionObject(model, fcl.Transform()), distances, near)
 
 
 def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -> Solid:
