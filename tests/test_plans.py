@@ -92,6 +92,56 @@ def test_corridors_side_by_side_are_no_conflict() -> None:
         assert conflicts(instance, first, second) == []
 
 
+def test_a_handle_leads_past() -> None:
+    """Petals in turn, but the hub's edge 1 leads from between two of them to a second border."""
+    petals = (RED, BLUE, RED, BLUE)
+    instance = Instance(
+        "handle",
+        ("red", "blue"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2, 3, 4, 5), (-1,))),
+            *(Cell(i, (color,), ((-i - 1,),)) for i, color in enumerate(petals, start=1)),
+        ),
+        (Edge(1, 0, 0), *(Edge(i + 1, 0, i) for i in range(1, 5))),
+    )
+    red, blue = color_regions(instance)
+    assert conflicts(instance, red, blue) == []
+    found = solve(instance, Options())
+    assert (found.segments, found.lower_bound) == (2, 2)
+
+
+def test_a_conflict_is_proved_for_any_division() -> None:
+    """Red from top to bottom and blue from left to right, over two cells of both colors.
+
+    Nothing limits how often the edge between these two is crossed, and one strand is tried.
+    """
+    instance = Instance(
+        "crossing",
+        ("red", "blue"),
+        (
+            Cell(0, (RED,), ((1, 2),)),
+            Cell(1, (RED,), ((3, 4),)),
+            Cell(2, (RED, BLUE), ((-1, 5, -3, 6),)),
+            Cell(3, (RED, BLUE), ((-2, -6, -4, 7),)),
+            Cell(4, (BLUE,), ((-5,),)),
+            Cell(5, (BLUE,), ((-7,),)),
+        ),
+        (
+            Edge(1, 0, 2),
+            Edge(2, 0, 3),
+            Edge(3, 1, 2),
+            Edge(4, 1, 3),
+            Edge(5, 2, 4),
+            Edge(6, 2, 3),
+            Edge(7, 3, 5),
+        ),
+    )
+    assert len(set_cover(instance)) == 2
+    found = solve(instance, Options())
+    assert (found.segments, found.surface_lower_bound) == (3, 3)
+    assert found.proved_for_surface
+
+
 @st.composite
 def framed(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
     """Single-colored pieces of frame around an inside of two or three blocks with islands."""
@@ -291,6 +341,55 @@ def test_chords_side_by_side_need_rings() -> None:
     assert minimum(instance) == 4
     assert segments_of(instance, whole_cover(instance), 1) == 5
     assert segments_of(instance, whole_cover(instance), 2) == 4
+
+
+def test_a_crack_is_routed_around() -> None:
+    """Blue cannot go from cell 1 to cell 2 directly; in cell 4 there is room beside red."""
+    instance = Instance(
+        "crack",
+        ("red", "blue"),
+        (
+            Cell(0, (BLUE,), ((1,),)),
+            Cell(1, (RED, BLUE), ((-1, 2, 3),)),
+            Cell(2, (RED, BLUE), ((-2, 4, 5),)),
+            Cell(3, (BLUE,), ((-5,),)),
+            Cell(4, (RED, BLUE), ((-3, 6, -4),)),
+            Cell(5, (RED,), ((-6,),)),
+        ),
+        (
+            Edge(1, 0, 1),
+            Edge(2, 1, 2, (RED,)),
+            Edge(3, 1, 4),
+            Edge(4, 2, 4),
+            Edge(5, 2, 3),
+            Edge(6, 4, 5),
+        ),
+    )
+    assert segments_of(instance, whole_cover(instance), 1) == 2
+
+
+def test_what_no_route_touches_is_connected_next() -> None:
+    """Cell 0, of red and blue, lies behind cells that green and gray flood at first."""
+    gray = 3
+    instance = Instance(
+        "behind",
+        ("red", "blue", "green", "gray"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2),)),
+            Cell(1, (RED, GREEN), ((3, -1, 4, 5),)),
+            Cell(2, (BLUE, gray), ((6, -2, 7, 8),)),
+            *(Cell(i, (c,), ((-i,),)) for i, c in ((3, RED), (4, GREEN), (5, GREEN))),
+            *(Cell(i, (c,), ((-i,),)) for i, c in ((6, BLUE), (7, gray), (8, gray))),
+        ),
+        (
+            Edge(1, 0, 1),
+            Edge(2, 0, 2),
+            *(Edge(i, 1, i) for i in (3, 4, 5)),
+            *(Edge(i, 2, i) for i in (6, 7, 8)),
+        ),
+    )
+    assert segments_of(instance, whole_cover(instance), 1, rounds=1) == 5
+    assert segments_of(instance, whole_cover(instance), 1) == 4
 
 
 def test_the_cell_that_must_be_split_is_routed() -> None:

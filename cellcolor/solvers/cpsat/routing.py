@@ -130,7 +130,7 @@ class _Router:
 
     def _path(self, net: int, route: set[int], targets: set[int]) -> list[int]:
         """The cheapest way from any of the target cells to a route (Dijkstra)."""
-        color, region = self._plan[net].region
+        color = self._plan[net].region[0]
         graph = self._graph
         distance = dict.fromkeys(route, 0.0)
         before: dict[int, int] = {}
@@ -144,7 +144,7 @@ class _Router:
             if graph.cell[node] in targets:
                 break
             for other in self._next_to(node, color):
-                if other not in done and graph.cell[other] in region:
+                if other not in done:
                     longer = length + self._cost(other, net)
                     if longer < distance.get(other, float("inf")):
                         distance[other] = longer
@@ -166,6 +166,7 @@ class _Router:
         return self._graph.nodes[cell] if len(self._nets_of[cell]) == 1 else (node,)
 
     def _next_to(self, node: int, color: int) -> Iterable[int]:
+        """Neighbors that can have the node's color; they never lead out of its color region."""
         yield from self._graph.beside[node]
         if color in self._graph.joinable.get(node, ()):
             yield self._graph.across[node]
@@ -180,9 +181,8 @@ class _Router:
         for node in reached:
             its = owner[node]
             assert its is not None
-            color, region = self._plan[its].region
-            for other in self._next_to(node, color):
-                if owner[other] is None and self._graph.cell[other] in region:
+            for other in self._next_to(node, self._plan[its].region[0]):
+                if owner[other] is None:
                     owner[other] = its
                     reached.append(other)
         return owner

@@ -85,6 +85,7 @@ class _Search:
         self._enough = enough_crossings(instance, self._colors)
         self._best: tuple[DartGraph, Painting] | None = None
         self._segments: int | None = None
+        self._known: int | None = None
         self._report(None, None)
 
     def answer(self) -> Answer:
@@ -304,9 +305,11 @@ class _Search:
             self._report(segments, None)
 
     def _report(self, segments: int | None, bound: int | None) -> None:
+        # What the running model has found is not offered before it ends, but stays known.
+        known = [n for n in (segments, self._known) if n is not None]
+        self._known = min(known, default=None)
         if self._progress is not None:
-            known = [n for n in (segments, self._segments) if n is not None]
-            self._progress(min(known, default=None), max(bound or 0, self._bound))
+            self._progress(self._known, max(bound or 0, self._bound))
 
 
 def _sub_cells(painting: Painting) -> int:
