@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import combinations
+from pathlib import Path
 
 import networkx as nx
 import pytest
@@ -317,7 +318,7 @@ def segments_of(instance: Instance, plan: Plan, rings: int, rounds: int = 40) ->
     seed=SEEDS,
     cells=st.integers(1, 9),
     colors=st.integers(1, 4),
-    rings=st.integers(1, 3),
+    rings=st.integers(0, 3),
     rounds=st.integers(0, 12),
 )
 def test_whatever_is_routed_is_legal(
@@ -397,9 +398,19 @@ def test_the_cell_that_must_be_split_is_routed() -> None:
     assert segments_of(instance, whole_cover(instance), 1) == 2
 
 
+@pytest.mark.parametrize("rings", [0, 1])
 @pytest.mark.parametrize("name", ["hemisphere_tilted", "half_pipe", "wok", "wok_obstacle"])
-def test_robot_scenes_are_routed_to_their_cover(name: str) -> None:
+def test_robot_scenes_are_routed_to_their_cover(name: str, rings: int) -> None:
     """Which is the minimum, since no division has fewer segments than a smallest cover."""
     instance = Instance.read(INSTANCES / "scenes" / f"{name}.json")
     plan = whole_cover(instance)
-    assert segments_of(instance, plan, 1) == len(plan)
+    assert segments_of(instance, plan, rings) == len(plan)
+
+
+@pytest.mark.parametrize("file", sorted((INSTANCES / "scenes" / "feasibility").glob("*.json")))
+def test_raw_scenes_need_no_cutting_paths(file: Path) -> None:
+    """Cells are divided only where whole ones do not do."""
+    instance = decompose(LabelledSurface.read(file))
+    found = solve(instance, Options(fewest_cuts=True))
+    assert found.segments == len(set_cover(instance))
+    assert (found.cutting_paths, found.cutting_paths_lower_bound) == (0, 0)

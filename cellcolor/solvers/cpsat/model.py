@@ -60,6 +60,7 @@ def cut_paths(built: Model, segments: int) -> None:
     """
     model, v = built.model, built.variables
     model.add(sum(v.root) + sum(v.alone) == segments)
+    model.add(sum(v.joined.values()) >= len(v.alone) - segments)
     model.minimize(sum(v.joined.values()))
 
 

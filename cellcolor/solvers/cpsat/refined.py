@@ -16,34 +16,32 @@ class RefinedGraph:
     """Small areas that are painted whole: a planar graph in which paths cannot cross.
 
     A cell with n darts has a ring of n sectors along its border, one a dart, perhaps more rings
-    within that one, and a center. Sub-cells made of sectors and center never cross, and every edge
-    is crossed once at most.
+    within that one, and a center; without rings it is all center. Sub-cells made of sectors and
+    center never cross, and every edge is crossed once at most.
 
     Attributes:
         graph: the dart graph.
         nodes: the nodes of each cell, the center last.
         cell: the cell of each node.
         beside: the nodes of the same cell next to each node.
-        across: for the sector of a dart the sector of its twin.
-        sector: the sector at each dart.
-        joinable: for the sector of a dart the colors joinable across it.
+        across: the nodes across the darts at each node, and the colors joinable there.
+        at: the node at each dart.
     """
 
     graph: DartGraph
     nodes: list[range]
     cell: list[int]
     beside: list[list[int]]
-    across: dict[int, int]
-    sector: list[int]
-    joinable: dict[int, frozenset[int]]
+    across: list[list[tuple[int, frozenset[int]]]]
+    at: list[int]
 
 
 def refined(graph: DartGraph, rings: int) -> RefinedGraph:
-    """Cut every cell into so many rings of sectors, one or more."""
+    """Cut every cell into so many rings of sectors."""
     nodes: list[range] = []
     cell_of: list[int] = []
     beside: list[list[int]] = []
-    sector = [0] * len(graph.darts)
+    at = [0] * len(graph.darts)
 
     def link(one: int, other: int) -> None:
         beside[one].append(other)
@@ -54,17 +52,19 @@ def refined(graph: DartGraph, rings: int) -> RefinedGraph:
         nodes.append(range(first, first + count * rings + 1))
         cell_of += [cell] * len(nodes[-1])
         beside += [[] for _ in nodes[-1]]
+        center = nodes[-1][-1]
         for ring in range(rings):
-            for place, dart in enumerate(darts):
+            for place in range(count):
                 node = first + ring * count + place
                 if count > 2 or (count, place) == (2, 0):
                     link(node, first + ring * count + (place + 1) % count)
-                link(node, node + count if ring + 1 < rings else nodes[-1][-1])
-                if ring == 0:
-                    sector[dart] = node
-    across = {sector[number]: sector[dart.twin] for number, dart in enumerate(graph.darts)}
-    joinable = {sector[number]: dart.colors for number, dart in enumerate(graph.darts)}
-    return RefinedGraph(graph, nodes, cell_of, beside, across, sector, joinable)
+                link(node, node + count if ring + 1 < rings else center)
+        for place, dart in enumerate(darts):
+            at[dart] = first + place if rings else center
+    across: list[list[tuple[int, frozenset[int]]]] = [[] for _ in cell_of]
+    for node, side in zip(at, graph.darts, strict=True):
+        across[node].append((at[side.twin], side.colors))
+    return RefinedGraph(graph, nodes, cell_of, beside, across, at)
 
 
 def painting_of_nodes(refined: RefinedGraph, colors: Sequence[int]) -> Painting:
@@ -87,8 +87,8 @@ def painting_of_nodes(refined: RefinedGraph, colors: Sequence[int]) -> Painting:
                         reached.append(other)
         painting.append(blocks)
     for number, dart in enumerate(graph.darts):
-        node = refined.sector[number]
+        node, beyond = refined.at[number], refined.at[dart.twin]
         color = colors[node]
-        if color == colors[refined.across[node]] and color in dart.colors:
+        if color == colors[beyond] and color in dart.colors:
             block_of[node].darts.add(number)
     return [[block for block in cell if block.darts] or cell[:1] for cell in painting]

@@ -168,8 +168,9 @@ class _Router:
     def _next_to(self, node: int, color: int) -> Iterable[int]:
         """Neighbors that can have the node's color; they never lead out of its color region."""
         yield from self._graph.beside[node]
-        if color in self._graph.joinable.get(node, ()):
-            yield self._graph.across[node]
+        for other, joinable in self._graph.across[node]:
+            if color in joinable:
+                yield other
 
     def _spread(self) -> list[int | None]:
         """The net of each node, routes grown over free nodes as far as their regions go."""

@@ -175,7 +175,8 @@ class _Search:
                 continue
             self._planned = [segment.region for segment in plan]
             # Looking for conflicts takes longer than routing when there are none.
-            self._route(plan, 1, FIRST_ROUNDS, attempt)
+            for rings in (0, 1):
+                self._route(plan, rings, FIRST_ROUNDS, attempt)
             if self._done or not planner.find_conflicts(plan):
                 return plan
 
@@ -219,6 +220,8 @@ class _Search:
 
     def _fewest_cuts(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> None:
         """Of the divisions with the fewest segments, one with the fewest cutting paths."""
+        if self._best is not None and _cuts(self._best[1]) == 0:
+            return
         graph = self._graph(strands, seams)
         built = build(graph, self._regions)
         self._hint(built, graph)
@@ -231,7 +234,7 @@ class _Search:
             self._cuts_bound = max(0, ceil(solver.best_objective_bound - 1e-6) - spare)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             painting = canonical(graph, read_painting(graph, built.variables, solver))
-            if self._best is None or _sub_cells(painting) < _sub_cells(self._best[1]):
+            if self._best is None or _cuts(painting) < _cuts(self._best[1]):
                 self._best = graph, painting
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
@@ -312,8 +315,8 @@ class _Search:
             self._progress(self._known, max(bound or 0, self._bound))
 
 
-def _sub_cells(painting: Painting) -> int:
-    return sum(len(blocks) for blocks in painting)
+def _cuts(painting: Painting) -> int:
+    return sum(len(blocks) - 1 for blocks in painting)
 
 
 class _Watcher(cp_model.CpSolverSolutionCallback):
