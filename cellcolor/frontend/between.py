@@ -49,8 +49,9 @@ def at_domain_border(edges: Index, valid: Mask) -> Mask:
     """
     i, j = edges.T
     beside = np.zeros_like(valid)
-    np.logical_or.at(beside, i, ~valid[j])
-    np.logical_or.at(beside, j, ~valid[i])
+    for here, there in ((i, j), (j, i)):
+        rows, branches = np.nonzero(~valid[there])
+        beside[here[rows], branches] = True
     border: Mask = beside[i] | beside[j]
     return border
 

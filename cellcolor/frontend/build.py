@@ -121,7 +121,9 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
     linked = link(surface, edges, candidates, setup.continuity, probe)
     i, j = edges.T
     if setup.constraints.collision:
-        linked &= stays_in_limits(robot.lower, robot.upper, configurations[i], configurations[j])
+        rows, branches = np.nonzero(linked)
+        first, second = (configurations[ends[rows], branches] for ends in (i, j))
+        linked[rows, branches] = stays_in_limits(robot.lower, robot.upper, first, second)
     lap("continuity")
     spacing = setup.continuity.validity_spacing_m
     if spacing is not None:

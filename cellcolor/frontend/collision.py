@@ -11,7 +11,7 @@ import fcl
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.frontend.kinematics import Poses
+from cellcolor.frontend.kinematics import Poses, turned
 from cellcolor.frontend.robot import Array, Body, Robot
 
 __all__ = [
@@ -32,8 +32,8 @@ def body_ends(robot: Robot, poses: Poses) -> Array:
     ends = np.empty((len(robot.bodies), 2, len(poses.tip), 3))
     for index, body in enumerate(robot.bodies):
         rotation, origin = poses.rotation[:, body.joint], poses.origin[:, body.joint]
-        ends[index, 0] = origin + rotation @ body.start
-        ends[index, 1] = origin + rotation @ body.end
+        ends[index, 0] = origin + turned(rotation, body.start)
+        ends[index, 1] = origin + turned(rotation, body.end)
     return ends
 
 
@@ -47,6 +47,8 @@ def hits_itself(robot: Robot, ends: Array) -> Mask:
         # Bounding spheres first.
         apart = _norm(centers[i] - centers[j]) > radii + (first.length + second.length) / 2
         rows = np.flatnonzero(~(apart | hit))
+        if not len(rows):
+            continue
         a, b = ends[i][:, rows], ends[j][:, rows]
         close = segment_distance(a[0], a[1], b[0], b[1]) <= radii
         if not (first.flat or second.flat):
@@ -128,6 +130,8 @@ def _inside(body: Body, ends: Array) -> tuple[Array, Array, float]:
 
 def _overlap(first: Body, first_ends: Array, second: Body, second_ends: Array) -> Mask:
     """By fcl, one after the other: ends (2, n, 3) to (n,)."""
+    if not first_ends.shape[1]:
+        return np.zeros(0, dtype=bool)
     a, b = (fcl.CollisionObject(body_shape(body), fcl.Transform()) for body in (first, second))
     request, hit = fcl.CollisionRequest(), np.zeros(first_ends.shape[1], dtype=bool)
     poses = zip(*body_poses(first, first_ends), *body_poses(second, second_ends), strict=True)

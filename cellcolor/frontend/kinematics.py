@@ -22,6 +22,7 @@ __all__ = [
     "static_torques",
     "task_determinant",
     "tip_jacobian",
+    "turned",
 ]
 
 TASK_JOINTS = 5  # the sixth turns about the tool's own axis and does not move the task
@@ -59,30 +60,37 @@ class Poses:
 def forward(robot: Robot, configurations: Array) -> Poses:
     """Poses of all frames for configurations (n, 6) in rad."""
     n = len(configurations)
-    rotation = np.empty((n, JOINTS + 1, 3, 3))
-    origin = np.empty((n, JOINTS + 1, 3))
+    # In memory joint after joint, so that one frame of all configurations is one piece.
+    rotation = np.empty((JOINTS + 1, n, 3, 3)).swapaxes(0, 1)
+    origin = np.empty((JOINTS + 1, n, 3)).swapaxes(0, 1)
     axis = np.empty((n, JOINTS, 3))
     rotation[:, 0], origin[:, 0] = np.eye(3), 0.0
     for joint in range(JOINTS):
-        fixed = robot.placement[joint]
-        before = rotation[:, joint] @ fixed[:3, :3]
-        origin[:, joint + 1] = origin[:, joint] + rotation[:, joint] @ fixed[:3, 3]
-        axis[:, joint] = before @ robot.axis[joint]
-        rotation[:, joint + 1] = before @ _about(robot.axis[joint], configurations[:, joint])
-    tip = origin[:, -1] + rotation[:, -1] @ robot.tip[:3, 3]
-    tool_axis = rotation[:, -1] @ robot.tip[:3, 2]
+        fixed, (x, y, z) = robot.placement[joint], robot.axis[joint]
+        # Rodrigues' formula, its constant matrices multiplied for all configurations at once.
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        before, once, twice = (
+            turned(rotation[:, joint], fixed[:3, :3] @ turn)
+            for turn in (np.eye(3), cross, cross @ cross)
+        )
+        sine, cosine = np.sin(configurations[:, joint]), np.cos(configurations[:, joint])
+        once *= sine[:, None, None]
+        twice *= (1.0 - cosine)[:, None, None]
+        before += once
+        before += twice
+        rotation[:, joint + 1] = before
+        origin[:, joint + 1] = origin[:, joint] + turned(rotation[:, joint], fixed[:3, 3])
+        # The axis stays where it is when the joint turns.
+        axis[:, joint] = turned(before, robot.axis[joint])
+    tip = origin[:, -1] + turned(rotation[:, -1], robot.tip[:3, 3])
+    tool_axis = turned(rotation[:, -1], robot.tip[:3, 2])
     return Poses(rotation, origin, axis, tip, tool_axis)
 
 
-def _about(axis: Array, angle: Array) -> Array:
-    """Rotation matrices (n, 3, 3) about one unit axis (Rodrigues' formula)."""
-    x, y, z = axis
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    sine, versine = np.sin(angle), 1.0 - np.cos(angle)
-    turns: Array = (
-        np.eye(3) + sine[:, None, None] * cross + versine[:, None, None] * (cross @ cross)
-    )
-    return turns
+def turned(rotation: Array, columns: Array) -> Array:
+    """Rotations (n, 3, 3) times the same vector (3,) or matrix (3, m), as one large product."""
+    product: Array = (rotation.reshape(-1, 3) @ columns).reshape(-1, 3, *columns.shape[1:])
+    return product
 
 
 def tip_jacobian(poses: Poses) -> tuple[Array, Array]:

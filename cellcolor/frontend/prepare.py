@@ -45,8 +45,8 @@ class Stage:
 
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, 6) in rad, NaN where it has no solution."""
-        followed: Array = self.inverse(points, directions)[np.arange(len(branches)), branches]
-        return followed
+        locked = self.setup.robot.locked_joint_6_rad
+        return solve_inverse(self.geometry, points, directions, locked, branches)[:, 0]
 
 
 def prepare(scene_path: Path) -> Stage:

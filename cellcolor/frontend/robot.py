@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,7 @@ class Body:
     radius: float
     flat: bool
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Distance between the ends in m."""
         return float(np.linalg.norm(self.end - self.start))

@@ -66,7 +66,8 @@ class Solid:
             rows = np.flatnonzero(~hit)
             touching, open_ = self._sweep(body, ends[index][:, rows])
             asked = np.flatnonzero(open_)
-            touching[asked] = self._touches(body, ends[index][:, rows[asked]])
+            if len(asked):
+                touching[asked] = self._touches(body, ends[index][:, rows[asked]])
             hit[rows] = touching
         return hit
 

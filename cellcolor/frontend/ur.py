@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.kinematics import forward
@@ -144,7 +145,11 @@ def _angle(start: Array, end: Array, about: Array) -> float:
 
 
 def solve_inverse(
-    geometry: UrGeometry, points: Array, directions: Array, locked_angle: float
+    geometry: UrGeometry,
+    points: Array,
+    directions: Array,
+    locked_angle: float,
+    branches: NDArray[np.intp] | None = None,
 ) -> Array:
     """All configurations that put the tip on a point with the tool along a direction.
 
@@ -152,13 +157,23 @@ def solve_inverse(
         points: (n, 3) tip positions in the world, m.
         directions: (n, 3) unit vectors from the flange to the tip.
         locked_angle: the angle of joint 6 in rad, which the task leaves free.
+        branches: (n,) the only one wanted of each point; all without it.
 
     Returns:
-        (n, 8, 6) angles in (-pi, pi], NaN where a branch has no solution. At an aligned wrist,
-        where a whole circle of solutions exists, one of them (the task determinant is zero
-        there).
+        (n, 8, 6), or (n, 1, 6) with ``branches``: angles in (-pi, pi], NaN where a branch has no
+        solution. At an aligned wrist, where a whole circle of solutions exists, one of them (the
+        task determinant is zero there).
     """
     g = geometry
+    # Signs of the branches' choices, (n or 1, 2 or 1 shoulders, the same of elbows and wrists).
+    if branches is None:
+        both = np.array([1.0, -1.0])
+        left, unflipped = both[None, :, None, None], both[None, None, None, :]
+        elbow_up = both[None, None, :, None]
+    else:
+        left, elbow_up, unflipped = (
+            _wide(1.0 - 2.0 * ((branches >> bit) & 1).astype(np.float64)) for bit in (2, 1, 0)
+        )
     target = (points - g.shoulder) @ g.frame
     tool = directions @ g.frame
     knuckle = target - g.reach * tool  # crossing of axes 5 and 6
@@ -168,7 +183,7 @@ def solve_inverse(
     with np.errstate(divide="ignore", invalid="ignore"):
         spread = _arccos(g.d4 / distance)
     heading = np.arctan2(knuckle[:, 1], knuckle[:, 0]) + np.pi / 2
-    t1 = (heading[:, None] + spread[:, None] * np.array([1.0, -1.0]))[:, :, None, None]
+    t1 = _wide(heading) + _wide(spread) * left
 
     c1, s1 = np.cos(t1), np.sin(t1)
     along = c1 * _wide(tool[:, 0]) + s1 * _wide(tool[:, 1])
@@ -176,7 +191,7 @@ def solve_inverse(
     up = _wide(tool[:, 2])
 
     # Joint 5, wrist unflipped or flipped; then the direction of the wrist in the arm's plane.
-    t5 = _arccos(aside) * np.array([1.0, -1.0])
+    t5 = _arccos(aside) * unflipped
     side = np.where(t5 >= 0, 1.0, -1.0)
     total = np.arctan2(-up * side, -along * side)  # joints 2 + 3 + 4
 
@@ -186,12 +201,12 @@ def solve_inverse(
     bend = _arccos((px**2 + py**2 - g.a2**2 - g.a3**2) / (2 * g.a2 * g.a3))
     # Elbow up is a left turn for the left shoulder, which reaches out along -x1, and a right
     # turn for the right one.
-    turn = np.array([[1.0, -1.0], [-1.0, 1.0]])[None, :, :, None]
-    t3 = bend * turn
+    t3 = bend * (left * elbow_up)
     t2 = np.arctan2(py, px) - np.arctan2(g.a3 * np.sin(t3), g.a2 + g.a3 * np.cos(t3))
     t4 = total - t2 - t3
 
-    canonical = np.stack(np.broadcast_arrays(t1, t2, t3, t4, t5), axis=-1).reshape(-1, 8, 5)
+    canonical = np.stack(np.broadcast_arrays(t1, t2, t3, t4, t5), axis=-1)
+    canonical = canonical.reshape(len(points), 8 if branches is None else 1, 5)
     five = _principal((canonical - g.offset) * g.sign)
     five[np.isnan(five).any(axis=2)] = np.nan
     sixth = np.where(np.isnan(five[:, :, :1]), np.nan, locked_angle)

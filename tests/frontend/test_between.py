@@ -7,10 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from shipped import WOK
 
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.between import along_edges, at_domain_border, remains_valid
 from cellcolor.frontend.generators import disc_mesh
+from cellcolor.frontend.prepare import prepare
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.surfaces import Surface
 
@@ -89,3 +91,14 @@ def test_asked_for_in_the_setup(scene: Callable[..., Path]) -> None:
     assert len(torn(asked)) > len(torn(trusting)) or len(asked.surface.colors) > len(
         trusting.surface.colors
     )
+
+
+def test_a_branch_followed_alone_is_the_same() -> None:
+    stage = prepare(WOK)
+    points, directions = stage.surface.vertices, -stage.surface.normals
+    branches = np.random.default_rng(2).integers(8, size=len(points))
+    expected = stage.inverse(points, directions)[np.arange(len(points)), branches]
+    found = stage.follow(points, directions, branches)
+    np.testing.assert_array_equal(found, expected)
+    assert np.isfinite(found).all(axis=1).mean() > 0.5
+    assert stage.follow(points[:0], directions[:0], branches[:0]).shape == (0, 6)
