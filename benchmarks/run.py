@@ -141,7 +141,7 @@ def displaced(_: int) -> Rows:
 
 
 def families(_: int) -> Rows:
-    """Random families of growing difficulty, 24 × 24 points, in the space paper: solving alone."""
+    """Random families, mostly on 24 × 24 points, in the search space paper: solving alone."""
     yield ["family", "cells", "of", "proved for any division", "median s", "worst s"]
     kinds: dict[str, Callable[[int], LabelledSurface]] = {
         "blobs": blobs,
@@ -150,6 +150,8 @@ def families(_: int) -> Rows:
         "islands, holes": lambda seed: blobs(seed, holes=3, islands=3),
         "rim": lambda seed: blobs(seed, rim=8, coverage=(0.6, 0.9)),
         "thin": lambda seed: blobs(seed, thin=True, colors=5),
+        "48 × 48 points, 8 colors": lambda seed: blobs(seed, 48, 8, waves=1.2),
+        "64 × 64 points, 10 colors": lambda seed: blobs(seed, 64, 10, waves=1.6),
     }
     for name, make in kinds.items():
         instances = [decompose(make(seed)) for seed in range(FAMILY_SEEDS)]

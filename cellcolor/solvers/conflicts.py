@@ -118,6 +118,7 @@ class _Areas:
             onward = (
                 (dart, cuts | chord)
                 for dart in self._ways[area]
+                if dart != entered  # an edge is crossed once
                 for chord in self._chords(area, entered, dart)
             )
             for dart, further in onward:
@@ -129,7 +130,7 @@ class _Areas:
                     continue
                 own = following in self.of_first
                 state = following, 0 if own else -dart, further
-                if state not in states:
+                if state not in states and len(self._ways[following]) > 1:
                     states.add(state)
                     heapq.heappush(heap, (len(further), len(states), state))
             if len(states) > MOST_STATES:

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import suppress
 from math import ceil, isfinite
-from threading import Event, Thread
 
 from ortools.sat.python import cp_model
 
@@ -21,8 +19,9 @@ from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, m
 from cellcolor.solvers.cpsat.plans import Plan, Planner, Undecided
 from cellcolor.solvers.cpsat.refined import refined
 from cellcolor.solvers.cpsat.routing import route
+from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.crossings import enough_crossings
-from cellcolor.solvers.interface import PORTFOLIO, Answer, Options, OutOfTime, Progress
+from cellcolor.solvers.interface import Answer, Options, OutOfTime, Progress
 from cellcolor.solvers.reductions import drop_dominated
 
 __all__ = ["CpSatSolver"]
@@ -73,8 +72,7 @@ class _Search:
         self._instance = instance
         self._options = options
         self._progress = progress
-        self._start = time.monotonic()
-        self._stopped = False
+        self._runner = Runner(options)
         own = tuple(frozenset(cell.colors) for cell in instance.cells)
         # A division to start from may use colors that would be dropped.
         self._colors = drop_dominated(instance) if options.start is None else own
@@ -120,16 +118,12 @@ class _Search:
         for number, (strands, seams) in enumerate(stages):
             if not self._done and stages.index((strands, seams)) == number:
                 self._minimize(strands, seams, self._colors, final=(strands, seams) == stages[-1])
-        if self._options.fewest_cuts and self._segments == self._bound and not self._over:
+        if self._options.fewest_cuts and self._segments == self._bound and not self._runner.over:
             self._fewest_cuts(*stages[-1])
 
     @property
     def _done(self) -> bool:
-        return self._segments == self._bound or self._over
-
-    @property
-    def _over(self) -> bool:
-        return self._stopped or self._left() <= 0
+        return self._segments == self._bound or self._runner.over
 
     def _begin(self) -> None:
         """A first division: what was handed in, or what plans lead to."""
@@ -183,10 +177,10 @@ class _Search:
     def _solve_plan(
         self, model: cp_model.CpModel, seed: int
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = self._solver(PLAN_EFFORT)
+        solver = self._runner.solver(PLAN_EFFORT)
         solver.parameters.num_workers = 1  # too small for a portfolio
         solver.parameters.random_seed = self._options.seed + seed
-        return solver, self._solve(solver, model)
+        return solver, self._runner.solve(solver, model)
 
     def _route(self, plan: Plan, rings: int, rounds: int, seed: int) -> None:
         if self._done:
@@ -194,7 +188,11 @@ class _Search:
         once = dict.fromkeys(self._enough, 1)
         graph = self._graph(once, self._seams(once, FEW_STRANDS))
         painting = route(
-            refined(graph, rings), plan, rounds, self._options.seed + seed, lambda: self._over
+            refined(graph, rings),
+            plan,
+            rounds,
+            self._options.seed + seed,
+            lambda: self._runner.over,
         )
         self._offer(graph, painting)
 
@@ -209,10 +207,10 @@ class _Search:
         graph = dart_graph(self._instance, colors, strands, seams)
         built = build(graph, color_regions(self._instance, colors))
         self._hint(built, graph)
-        solver = self._solver(None if final else TRIAL_EFFORT)
+        solver = self._runner.solver(None if final else TRIAL_EFFORT)
         if final:
             solver.best_bound_callback = lambda bound: self._report(None, ceil(bound - 1e-6))
-        status = self._solve(solver, built.model, _Watcher(self._report))
+        status = self._runner.solve(solver, built.model, lambda found: self._report(found, None))
         if final and isfinite(solver.best_objective_bound):
             self._bound = max(self._bound, ceil(solver.best_objective_bound - 1e-6))
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
@@ -226,8 +224,8 @@ class _Search:
         built = build(graph, self._regions)
         self._hint(built, graph)
         cut_paths(built, self._bound)
-        solver = self._solver(None)
-        status = self._solve(solver, built.model)
+        solver = self._runner.solver(None)
+        status = self._runner.solve(solver, built.model)
         # As many joins as a forest needs: sub-cells less segments.
         spare = len(self._instance.cells) - self._bound
         if isfinite(solver.best_objective_bound):
@@ -256,48 +254,6 @@ class _Search:
     def _seams(self, strands: dict[int, int], most: int | None) -> tuple[Seam, ...]:
         return seams_of(self._instance, self._colors, strands, most)
 
-    def _solve(
-        self, solver: cp_model.CpSolver, model: cp_model.CpModel, watcher: _Watcher | None = None
-    ) -> cp_model.CpSolverStatus:
-        """Solve in a thread, so that an interrupt here ends the search with its best."""
-        found: list[cp_model.CpSolverStatus] = []
-        finished = Event()
-
-        def work() -> None:
-            try:
-                found.append(solver.solve(model, watcher))
-            finally:
-                finished.set()
-
-        Thread(target=work).start()
-        # Not Thread.join: interrupted, it takes a running thread for a finished one (Python 3.11).
-        interrupt: KeyboardInterrupt | None = None
-        while not finished.is_set():
-            try:
-                finished.wait()
-            except KeyboardInterrupt as error:
-                interrupt = error
-                self._stopped = True
-                solver.stop_search()
-        if interrupt is not None and not isinstance(interrupt, OutOfTime):
-            raise interrupt
-        return found[0]
-
-    def _solver(self, effort: float | None) -> cp_model.CpSolver:
-        solver = cp_model.CpSolver()
-        solver.parameters.num_workers = self._options.workers or PORTFOLIO
-        solver.parameters.random_seed = self._options.seed
-        solver.parameters.catch_sigint_signal = False
-        if self._options.time_limit is not None:
-            solver.parameters.max_time_in_seconds = max(0.0, self._left())
-        if effort is not None:
-            solver.parameters.max_deterministic_time = effort
-        return solver
-
-    def _left(self) -> float:
-        limit = self._options.time_limit
-        return float("inf") if limit is None else limit - (time.monotonic() - self._start)
-
     def _offer(self, graph: DartGraph, painting: Painting) -> None:
         painting = canonical(graph, painting)
         division = division_of(graph, painting)
@@ -317,14 +273,3 @@ class _Search:
 
 def _cuts(painting: Painting) -> int:
     return sum(len(blocks) - 1 for blocks in painting)
-
-
-class _Watcher(cp_model.CpSolverSolutionCallback):
-    """Reports each better division while the search runs."""
-
-    def __init__(self, report: Callable[[int | None, int | None], None]) -> None:
-        super().__init__()
-        self._report = report
-
-    def on_solution_callback(self) -> None:
-        self._report(round(self.objective_value), None)
