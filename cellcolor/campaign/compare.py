@@ -13,7 +13,7 @@ from cellcolor.data.solution import Division, SchemeKey, scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import CellcolorError
 from cellcolor.solvers.interface import Options, OutOfTime
-from cellcolor.solvers.run import SOLVERS, enumerate_schemes, solve
+from cellcolor.solvers.run import CONTENDERS, SOLVERS, enumerate_schemes, solve
 
 __all__ = ["Disagreement", "Finding", "MeshFinding", "compare", "compare_on_mesh", "complaint"]
 
@@ -69,7 +69,7 @@ def compare(instance: Instance, time_limit: float) -> Finding:
     Raises:
         Disagreement: they do not agree.
     """
-    solutions = [solve(instance, Options("paper", 1, time_limit, 1), name) for name in SOLVERS]
+    solutions = [solve(instance, Options("paper", 1, time_limit, 1), name) for name in CONTENDERS]
     for one in solutions:
         for other in solutions:
             if one.segments is not None and one.segments < other.lower_bound:

@@ -12,10 +12,21 @@ from cellcolor.errors import CellcolorError
 from cellcolor.solvers.bounds import set_cover
 from cellcolor.solvers.interface import Options, Progress, Solver
 
-__all__ = ["SOLVERS", "ContradictionError", "enumerate_schemes", "make_solver", "solve"]
+__all__ = [
+    "CONTENDERS",
+    "SOLVERS",
+    "ContradictionError",
+    "enumerate_schemes",
+    "make_solver",
+    "solve",
+]
 
 SOLVERS = ("cp-sat", "dfs")
 """The names of the solvers."""
+
+CONTENDERS = (*SOLVERS, "cp-sat-model")
+"""What is held to each other: also the full CP-SAT model without plans, which settle most instances
+before it is built."""
 
 
 class ContradictionError(CellcolorError):
@@ -28,10 +39,10 @@ def make_solver(name: str) -> Solver:
     Raises:
         KeyError: there is none.
     """
-    if name == "cp-sat":
+    if name in ("cp-sat", "cp-sat-model"):
         from cellcolor.solvers.cpsat import CpSatSolver  # imports ortools
 
-        return CpSatSolver()
+        return CpSatSolver(plans=name == "cp-sat")
     if name == "dfs":
         from cellcolor.solvers.reference import ReferenceSolver
 
@@ -50,7 +61,7 @@ def solve(
     Args:
         instance: the topological graph.
         options: search space, limits, seed.
-        solver: one of ``SOLVERS``.
+        solver: one of ``CONTENDERS``.
         progress: called with the best so far and the lower bound.
 
     Returns:

@@ -43,9 +43,15 @@ TRIAL_EFFORT = 2.0
 
 
 class CpSatSolver:
-    """Fewest segments by a CP-SAT model with sub-cell cutting paths."""
+    """Fewest segments by plans, routes and a CP-SAT model with sub-cell cutting paths.
 
-    name = "cp-sat"
+    Args:
+        plans: False leaves everything to the model.
+    """
+
+    def __init__(self, plans: bool = True) -> None:
+        self.name = "cp-sat" if plans else "cp-sat-model"
+        self._plans = plans
 
     def minimize(
         self, instance: Instance, options: Options, progress: Progress | None = None
@@ -53,7 +59,7 @@ class CpSatSolver:
         """A division with the fewest segments, or the best that the time limit allowed."""
         if not instance.cells:
             return Answer((), (), 0, 0, 0 if options.fewest_cuts else None)
-        search = _Search(instance, options, progress)
+        search = _Search(instance, options, progress, self._plans)
         with suppress(OutOfTime):  # an interrupt between two models
             search.run()
         return search.answer()
@@ -68,10 +74,13 @@ class CpSatSolver:
 class _Search:
     """The best division so far, over models of growing width."""
 
-    def __init__(self, instance: Instance, options: Options, progress: Progress | None) -> None:
+    def __init__(
+        self, instance: Instance, options: Options, progress: Progress | None, plans: bool
+    ) -> None:
         self._instance = instance
         self._options = options
         self._progress = progress
+        self._plans = plans
         self._runner = Runner(options)
         own = tuple(frozenset(cell.colors) for cell in instance.cells)
         # A division to start from may use colors that would be dropped.
@@ -137,7 +146,8 @@ class _Search:
             self._offer(graph, painting_of(graph, start.division))
         if self._done:
             return
-        self._route_plans()
+        if self._plans:
+            self._route_plans()
         colors = tuple(
             frozenset(color for color, cells in self._planned if cell.id in cells)
             for cell in self._instance.cells
