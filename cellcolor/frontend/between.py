@@ -1,14 +1,14 @@
 """Validity on the way: what is linked has to be valid between the vertices as well.
 
-Where a branch is valid all around both ends of a mesh edge, it is taken for valid in between. An
-edge with an end at the border of the branch's domain, where limits, contacts and thresholds are
-near, is tested at points on it.
+Every link is tested at so many points that no body moves far from one to the next. An edge with an
+end at the border of the branch's domain, where limits, contacts and thresholds are near, is tested
+at points that are close on the surface as well.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +17,16 @@ from cellcolor.frontend.collision import Mask
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.surfaces import Surface
 
-__all__ = ["along_edges", "at_domain_border", "remains_valid"]
+__all__ = ["along_edges", "at_domain_border", "longest_steps", "remains_valid", "strides"]
 
+_DEPTH = 0.00065  # m; a tool of 20 mm radius may move by 10 mm, the upper arm by 17
 _AT_ONCE = 20_000  # configurations; a matter of memory: some kilobytes each
+_ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump
 
 Index = NDArray[np.int64]
-Test = Callable[[Array, Array, NDArray[np.intp]], Mask]
-"""Points (k, 3), unit tool directions (k, 3) and branches (k,): are they valid (k,)?"""
+Test = Callable[[Array, Array, NDArray[np.intp]], tuple[Mask, Array]]
+"""Points (k, 3), unit tool directions (k, 3) and branches (k,): are they valid (k,), and where are
+the ends of the bodies (ends, k, 3)?"""
 
 
 def along_edges(surface: Surface, edges: Index, way: Array) -> tuple[Array, Array]:
@@ -56,27 +59,83 @@ def at_domain_border(edges: Index, valid: Mask) -> Mask:
     return border
 
 
+def longest_steps(radii: Array) -> Array:
+    """How far bodies of these radii may move between two tested points of a link, m.
+
+    What two balls of radius r at a distance s leave out between them, of all that a third one on
+    its way from one to the other meets, is r - sqrt(r^2 - s^2 / 4) deep: at most 0.65 mm.
+    """
+    depth = np.minimum(_DEPTH, radii)
+    return np.asarray(2 * np.sqrt(depth * (2 * radii - depth)))
+
+
+def strides(first: Iterable[Array], second: Iterable[Array], longest: Array) -> Array:
+    """The largest movement (k,) of a body from ends (ends, k, 3) to others, 1 if just allowed.
+
+    No other point of a body's axis moves farther between the two: its displacement is a mean of
+    those of the ends.
+    """
+    squares: Array = np.zeros(1)
+    for here, there, allowed in zip(first, second, longest, strict=True):
+        moved = there - here
+        squares = np.maximum(squares, np.einsum("ij,ij->i", moved, moved) / allowed**2)
+    return np.sqrt(squares)
+
+
 def remains_valid(
-    surface: Surface, edges: Index, branches: NDArray[np.intp], spacing: float, test: Test
+    surface: Surface,
+    edges: Index,
+    branches: NDArray[np.intp],
+    pieces: Index,
+    ends: Array,
+    longest: Array,
+    test: Test,
 ) -> Mask:
     """Whether each branch is valid at points on its mesh edge, (k,).
 
     Args:
         edges: (k, 2) vertex indices.
         branches: (k,) one of each edge.
-        spacing: greatest distance between the points, m.
+        pieces: (k,) at least so many equal parts are made of each edge. A part on which a body
+            moves farther than it may is cut again.
+        ends: (ends, n, branches, 3) of the bodies at the vertices, m.
+        longest: (ends,) how far each may move between two points, m.
         test: see :data:`Test`.
     """
     result = np.ones(len(edges), dtype=bool)
-    pieces = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
+    i, j = edges.T
+    at_i, at_j = (end[i, branches] for end in ends), (end[j, branches] for end in ends)
+    pieces = np.maximum(pieces, np.ceil(strides(at_i, at_j, longest)).astype(int))
     for first, last in _batches(np.cumsum(pieces - 1)):
-        count = pieces[first:last] - 1
-        rows = np.repeat(np.arange(first, last), count)
-        number = np.arange(len(rows)) - np.repeat(np.cumsum(count) - count, count) + 1
-        way = number / pieces[rows]
-        valid = test(*along_edges(surface, edges[rows], way), branches[rows])
-        result[rows[~valid]] = False
+        # Parts of edges: row, from where to where, what they are cut into, the bodies there.
+        rows = first + np.flatnonzero(pieces[first:last] > 1)
+        low, high, count = np.zeros(len(rows)), np.ones(len(rows)), pieces[rows]
+        near, far = (ends[:, vertex[rows], branches[rows]] for vertex in (i, j))
+        for _ in range(_ROUNDS):
+            if not len(rows):
+                break
+            number, part = _numbered(count + 1)
+            inner = (number > 0) & (number < count[part])
+            row, way = rows[part], low[part] + (high - low)[part] * number / count[part]
+            places = np.empty((len(near), len(row), 3))
+            places[:, number == 0], places[:, number == count[part]] = near, far
+            at = row[inner]
+            points = along_edges(surface, edges[at], way[inner])
+            valid, places[:, inner] = test(*points, branches[at])
+            result[at[~valid]] = False
+            stride = strides(places[:, :-1], places[:, 1:], longest)
+            here = np.flatnonzero((number[1:] > 0) & (stride > 1) & result[row[1:]])
+            rows, low, high = row[here], way[here], way[here + 1]
+            near, far = places[:, here], places[:, here + 1]
+            count = np.ceil(stride[here]).astype(int)
+        result[rows] = False
     return result
+
+
+def _numbered(counts: Index) -> tuple[Index, Index]:
+    """Items of groups of given sizes, one after the other: number in the group, and group."""
+    group = np.repeat(np.arange(len(counts)), counts)
+    return np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts), group
 
 
 def _batches(total: Index) -> list[tuple[int, int]]:

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
-from cellcolor.frontend.between import at_domain_border, remains_valid
+from cellcolor.frontend.between import at_domain_border, longest_steps, remains_valid
 from cellcolor.frontend.collision import Mask
 from cellcolor.frontend.continuity import (
     Coloring,
@@ -113,9 +113,9 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
         between = stage.follow(points, directions, branch)
         return between, _well_conditioned(robot, setup, between)
 
-    def test(points: Array, directions: Array, branch: NDArray[np.intp]) -> Mask:
-        reasons = judge(stage.follow(points, directions, branch)).reasons
-        return np.asarray(reasons == Reason.VALID)
+    def test(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Mask, Array]:
+        found = judge(stage.follow(points, directions, branch))
+        return np.asarray(found.reasons == Reason.VALID), found.ends
 
     started = time.perf_counter()
     linked = link(surface, edges, candidates, setup.continuity, probe)
@@ -127,8 +127,15 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
     lap("continuity")
     spacing = setup.continuity.validity_spacing_m
     if spacing is not None:
-        rows, branches = np.nonzero(linked & at_domain_border(edges, valid))
-        linked[rows, branches] &= remains_valid(surface, edges[rows], branches, spacing, test)
+        rows, branches = np.nonzero(linked)
+        near_border = at_domain_border(edges, valid)[rows, branches]
+        parts = np.maximum(np.ceil(surface.lengths(edges[rows]) / spacing).astype(int), 2)
+        pieces = np.where(near_border, parts, 1)
+        ends = verdicts.ends.reshape(-1, *valid.shape, 3)
+        longest = longest_steps(judge.end_radii)
+        linked[rows, branches] &= remains_valid(
+            surface, edges[rows], branches, pieces, ends, longest, test
+        )
         lap("validity between vertices")
     coloring = color(valid, configurations, node_links(edges, linked), BRANCHES)
     slivers = None

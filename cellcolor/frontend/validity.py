@@ -89,11 +89,13 @@ class Verdicts:
         configurations: (k, 6) in rad, turned into the limits where possible.
         reasons: (k,) uint8, see :class:`Reason`.
         determinants: (k,) task determinant in m^3, NaN where the tests ended before it.
+        ends: (ends, k, 3) of the axes of the bodies that can move, in the world, m; NaN as above.
     """
 
     configurations: Array
     reasons: NDArray[np.uint8]
     determinants: Array
+    ends: Array
 
 
 def within_limits(robot: Robot, configurations: Array) -> tuple[Array, Mask]:
@@ -119,9 +121,14 @@ class Judge:
     def __init__(
         self, robot: Robot, setup: Setup, scene: Scene, obstacles: list[Solid], target: Solid
     ) -> None:
-        """``obstacles`` and ``target``, the object, stand in the world."""
+        """``obstacles`` and ``target``, the object, stand in the world.
+
+        ``end_radii`` (ends,) are those of the bodies of :attr:`Verdicts.ends`, m.
+        """
         self._robot, self._setup, self._scene = robot, setup, scene
         self._obstacles, self._target = obstacles, target
+        self._moving = [index for index, body in enumerate(robot.bodies) if body.joint > 0]
+        self.end_radii = np.repeat([robot.bodies[index].radius for index in self._moving], 2)
         self.seconds: dict[str, float] = {}
 
     def __call__(self, configurations: Array) -> Verdicts:
@@ -134,6 +141,7 @@ class Judge:
             np.concatenate([part.configurations for part in parts]),
             np.concatenate([part.reasons for part in parts]),
             np.concatenate([part.determinants for part in parts]),
+            np.concatenate([part.ends for part in parts], axis=1),
         )
 
     def _judged(self, configurations: Array) -> Verdicts:
@@ -185,7 +193,9 @@ class Judge:
             reasons[posed[passed[failed]]] = reason
             passed = passed[~failed]
             self._lap(reason.text, started)
-        return Verdicts(moved, reasons, determinants)
+        places = np.full((2 * len(self._moving), len(reasons), 3), np.nan)
+        places[:, posed] = ends[self._moving].reshape(len(places), len(posed), 3)
+        return Verdicts(moved, reasons, determinants, places)
 
     def _too_weak(self, poses: Poses, linear: Array) -> Mask:
         task = self._setup.task
