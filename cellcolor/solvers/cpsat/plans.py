@@ -84,9 +84,7 @@ class Planner:
         Raises:
             Undecided: the limits of the solver came first, or there are too many conflicts.
         """
-        copies = segments - self._fewest + 1
-        if copies**2 * sum(map(len, self._conflicts.values())) > MOST_CLAUSES:
-            raise Undecided
+        self._refuse_too_many(segments - self._fewest + 1)
         model = cp_model.CpModel()
         touched = self._add_segments(model, segments)
         for one, other in self._conflicts:
@@ -99,14 +97,23 @@ class Planner:
         return self._read(solver, touched)
 
     def find_conflicts(self, plan: Plan) -> bool:
-        """Look at the plan's regions, two at a time; whether conflicts were found in new ones."""
+        """Look at the plan's regions, two at a time; whether conflicts were found in new ones.
+
+        Raises:
+            Undecided: there are too many conflicts.
+        """
         numbers = sorted({self._regions.index(segment.region) for segment in plan})
         new = [pair for pair in combinations(numbers, 2) if pair not in self._conflicts]
         for one, other in new:
             self._conflicts[one, other] = conflicts(
                 self._instance, self._regions[one], self._regions[other]
             )
+            self._refuse_too_many(1)
         return any(self._conflicts[pair] for pair in new)
+
+    def _refuse_too_many(self, copies: int) -> None:
+        if copies**2 * sum(map(len, self._conflicts.values())) > MOST_CLAUSES:
+            raise Undecided
 
     def _add_segments(self, model: cp_model.CpModel, segments: int) -> _Touched:
         """Literals for the cells that each segment touches, by region and copy."""
