@@ -1,4 +1,4 @@
-"""The commands: exit codes, what goes to standard output, and what is written."""
+"""``solve``: exit codes, what goes to standard output, and what is written."""
 
 from __future__ import annotations
 
@@ -12,15 +12,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from documents import INSTANCE, SURFACE, Document
+from commands import json_lines, run
+from documents import INSTANCE
 from library import INSTANCES, PAPER
 
 import cellcolor.solvers.run
-from cellcolor.cli import main
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
-from cellcolor.data.surface import LabelledSurface
-from cellcolor.decomposition import decompose
 from cellcolor.solvers.interface import OutOfTime
 
 RING = PAPER / "ring.json"
@@ -49,14 +47,6 @@ cellcolor.cli.solve.progress_of = watched
 code = cellcolor.cli.main(sys.argv[1:])
 sys.exit(code if sent.is_set() else 99)
 """
-
-
-def run(*arguments: object) -> int:
-    return main([str(argument) for argument in arguments])
-
-
-def json_lines(text: str) -> list[Document]:
-    return [json.loads(line) for line in text.splitlines()]
 
 
 @pytest.fixture
@@ -368,130 +358,3 @@ class TestAllSchemes:
         assert run("solve", path, "--all", "--json") == 0
         (line,) = json_lines(capsys.readouterr().out)
         assert (line["segments"], line["schemes"], line["complete"]) == (1, 1, True)
-
-
-class TestBuild:
-    def test_surface(self, tmp_path: Path, capsys: Capture) -> None:
-        source = tmp_path / "surfaces" / "s.json"
-        source.parent.mkdir()
-        source.write_text(json.dumps(SURFACE), encoding="utf-8")
-        out = tmp_path / "graphs" / "s.json"
-        out.parent.mkdir()
-        assert run("build", source, "-o", out) == 0
-        instance = Instance.read(out)
-        assert instance.surface is not None
-        assert instance.surface.path == "../surfaces/s.json"
-        assert (out.parent / instance.surface.path).resolve() == source.resolve()
-        built = decompose(LabelledSurface.read(source), instance.surface.path)
-        assert built.to_json() == out.read_text(encoding="utf-8")
-        assert f"{len(instance.cells)} cells" in capsys.readouterr().out
-
-    def test_of_an_instance(self, tmp_path: Path, capsys: Capture) -> None:
-        assert run("build", RING, "-o", tmp_path / "x.json") == 2
-        assert "is an instance already" in capsys.readouterr().err
-        assert list(tmp_path.iterdir()) == []
-
-    def test_scene(self, tmp_path: Path, capsys: Capture) -> None:
-        pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-        text = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")
-        models = (INSTANCES.parent / "models").as_posix()
-        scene = tmp_path / "small.toml"
-        text = text.replace("target_vertices = 1000", "target_vertices = 120")
-        scene.write_text(text.replace("../../models", models), encoding="utf-8")
-        out = tmp_path / "small.json"
-        assert run("build", scene, "-o", out) == 0
-        assert "reachable" in capsys.readouterr().out
-        instance = Instance.read(out)
-        assert instance.surface is not None
-        assert instance.surface.path == "small.surface.json"
-        surface = LabelledSurface.read(tmp_path / "small.surface.json")
-        assert len(surface.vertices) == len(instance.surface.vertex_cell)
-        assert decompose(surface, "small.surface.json") == instance
-        side = tmp_path / "small.reasons.npz"
-        assert sorted(tmp_path.iterdir()) == sorted(
-            [scene, out, side, tmp_path / "small.surface.json"]
-        )
-        assert surface.meta["side_file"] == side.name
-        assert run("solve", scene, out, "--json") == 0
-        lines = json_lines(capsys.readouterr().out)
-        assert lines[0]["segments"] == lines[1]["segments"]
-
-
-class TestCheck:
-    @pytest.fixture
-    def solved(self, tmp_path: Path) -> Path:
-        out = tmp_path / "all.jsonl"
-        assert run("solve", ZEROS, "--all", "-o", out) == 0
-        return out
-
-    def change(self, path: Path, line: int, change: Any) -> None:
-        documents = json_lines(path.read_text(encoding="utf-8"))
-        change(documents[line])
-        path.write_text("".join(json.dumps(d) + "\n" for d in documents), encoding="utf-8")
-
-    def test_valid(self, solved: Path, capsys: Capture) -> None:
-        capsys.readouterr()
-        assert run("check", ZEROS, solved, "--json") == 0
-        (line,) = json_lines(capsys.readouterr().out)
-        assert line["valid"] is True
-        assert (line["segments"], line["lift_offs"], line["schemes"]) == (2, 1, 3)
-
-    def test_wrong_number(self, solved: Path, capsys: Capture) -> None:
-        self.change(solved, 0, lambda d: d.update(segments=1, lift_offs=0))
-        assert run("check", ZEROS, solved) == 1
-        out = capsys.readouterr().out
-        assert "not valid" in out
-        assert "segments: says 1" in out
-
-    def test_another_instance(self, solved: Path) -> None:
-        assert run("check", PAPER / "dominated-by-crack.json", solved) == 1
-
-    def test_wrong_scheme(self, solved: Path, capsys: Capture) -> None:
-        self.change(solved, 2, lambda d: d["cells"][1]["subcells"][0].update(color=1))
-        assert run("check", ZEROS, solved, "--json") == 1
-        (line,) = json_lines(capsys.readouterr().out.splitlines()[-1])
-        assert all(problem.startswith("scheme 2: ") for problem in line["problems"])
-
-    def test_same_scheme_twice(self, solved: Path, capsys: Capture) -> None:
-        lines = solved.read_text(encoding="utf-8").splitlines()
-        lines[3] = lines[1]
-        solved.write_text("\n".join(lines) + "\n", encoding="utf-8")
-        assert run("check", ZEROS, solved) == 1
-        assert "scheme 3: the same scheme" in capsys.readouterr().out
-
-    def test_scheme_missing(self, solved: Path, capsys: Capture) -> None:
-        lines = solved.read_text(encoding="utf-8").splitlines()
-        solved.write_text("\n".join(lines[:3]) + "\n", encoding="utf-8")
-        assert run("check", ZEROS, solved) == 1
-        assert "schemes: says 3, 2 follow" in capsys.readouterr().out
-
-    def test_scheme_that_is_not_optimal(self, solved: Path, capsys: Capture) -> None:
-        """A legal scheme with more segments than the solution has no place in its list."""
-        worse = {
-            "format": "cellcolor/scheme",
-            "cells": [
-                {"id": 0, "subcells": [{"color": 0, "darts": [1, 2, 3], "segment": 0}]},
-                {"id": 1, "subcells": [{"color": 0, "darts": [-2, -3], "segment": 0}]},
-                {"id": 2, "subcells": [{"color": 1, "darts": [], "segment": 1}]},
-                {"id": 3, "subcells": [{"color": 0, "darts": [-1], "segment": 0}]},
-                {"id": 4, "subcells": [{"color": 1, "darts": [], "segment": 2}]},
-            ],
-        }
-        self.change(solved, 3, lambda d: d.update(worse))
-        assert run("check", ZEROS, solved) == 1
-        assert "scheme 3: has 3 segments, the solution 2" in capsys.readouterr().out
-
-
-class TestBench:
-    def test_table(self, capsys: Capture) -> None:
-        assert run("bench", RING, ZEROS) == 0
-        rows = [line.split()[:4] for line in capsys.readouterr().out.splitlines()]
-        # Cells, live darts of the cell that has most of them, and the known minimum.
-        assert [str(RING), "3", "2", "2"] in rows
-        assert [str(ZEROS), "5", "6", "2"] in rows
-
-    def test_a_bad_file_does_not_stop_the_others(self, tmp_path: Path, capsys: Capture) -> None:
-        assert run("bench", tmp_path / "none.json", RING) == 2
-        out, err = capsys.readouterr()
-        assert str(RING) in out
-        assert len(err.splitlines()) == 1
