@@ -148,7 +148,7 @@ class _Areas:
         loops on either side: that is to choose for each.
         """
         others = self._others[area]
-        loops = self._merged.loops.get(area, [])
+        loops = self._merged.loops[area]
         own = next((loop for loop in loops if entered in loop and left in loop), None)
         if own is None or not others:
             return [frozenset()]

@@ -17,3 +17,15 @@ def edited(text: str, **values: object) -> str:
         text, found = re.subn(rf"^{key} = [^#\n]*", f"{key} = {value} ", text, flags=re.MULTILINE)
         assert found == 1, key
     return text
+
+
+def at_resolution(name: str, folder: Path, vertices: int) -> Path:
+    """A shipped scene with about so many vertices, as a file in the folder."""
+    text = edited(
+        (SCENES / f"{name}.toml").read_text(),
+        setup=f'"{(ROBOTS / "ur5_polishing.toml").as_posix()}"',
+        target_vertices=vertices,
+    )
+    file = folder / "scene.toml"
+    file.write_text(text)
+    return file

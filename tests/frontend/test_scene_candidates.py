@@ -21,7 +21,7 @@ from independent import (
     regular,
     set_distance,
 )
-from shipped import ROBOTS, SCENES, edited
+from shipped import at_resolution
 from world import World
 
 from cellcolor.frontend import BuildResult, Reason, build_surface
@@ -39,16 +39,6 @@ from cellcolor.frontend.scene import CylinderObstacle
 from cellcolor.frontend.solids import mesh_solid, primitive_solid
 
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
-
-
-def at_resolution(name: str, folder: Path, vertices: int) -> Path:
-    text = edited(
-        (SCENES / f"{name}.toml").read_text(),
-        setup=f'"{(ROBOTS / "ur5_polishing.toml").as_posix()}"',
-        target_vertices=vertices,
-    )
-    (folder / "scene.toml").write_text(text)
-    return folder / "scene.toml"
 
 
 def check_inverse(name: str, folder: Path, vertices: int, count: int) -> None:

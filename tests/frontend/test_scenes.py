@@ -6,7 +6,7 @@ import itertools
 from pathlib import Path
 
 import pytest
-from shipped import ROBOTS, SCENES, edited
+from shipped import SCENES, at_resolution
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
@@ -28,13 +28,7 @@ LIFT_OFFS = {
 
 
 def built(name: str, folder: Path, vertices: int) -> BuildResult:
-    text = edited(
-        (SCENES / f"{name}.toml").read_text(),
-        setup=f'"{(ROBOTS / "ur5_polishing.toml").as_posix()}"',
-        target_vertices=vertices,
-    )
-    (folder / "scene.toml").write_text(text)
-    return build_surface(folder / "scene.toml")
+    return build_surface(at_resolution(name, folder, vertices))
 
 
 def covers(surface: LabelledSurface, count: int) -> list[set[str]]:

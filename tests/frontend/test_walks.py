@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from shipped import ROBOTS, SCENES, edited
+from shipped import ROBOTS, SCENES, at_resolution, edited
 from world import PAIRS, World
 
 from cellcolor.frontend import BuildResult, Reason, build_surface
@@ -75,14 +75,7 @@ def largest_part(stage: Stage, points: Array, directions: Array, branch: int, pi
 
 
 def check_walks(name: str, folder: Path, vertices: int, count: int, with_coal: int) -> None:
-    file = folder / "scene.toml"
-    file.write_text(
-        edited(
-            (SCENES / f"{name}.toml").read_text(),
-            setup=f'"{(ROBOTS / "ur5_polishing.toml").as_posix()}"',
-            target_vertices=vertices,
-        )
-    )
+    file = at_resolution(name, folder, vertices)
     result, stage = build_surface(file), prepare(file)
     policy, robot = stage.setup.continuity, stage.robot
     all_points, all_directions, all_joints = [], [], []
@@ -160,14 +153,7 @@ def linked_edges(result: BuildResult, edges: Array) -> Array:
 
 def check_everywhere(name: str, folder: Path, vertices: int) -> None:
     """Every link at pieces of at most 1 mm, and 21 points of every face with three links."""
-    file = folder / "scene.toml"
-    file.write_text(
-        edited(
-            (SCENES / f"{name}.toml").read_text(),
-            setup=f'"{(ROBOTS / "ur5_polishing.toml").as_posix()}"',
-            target_vertices=vertices,
-        )
-    )
+    file = at_resolution(name, folder, vertices)
     result, stage = build_surface(file), prepare(file)
     surface = stage.surface
     edges = surface.edges()
