@@ -18,6 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.scene import load_scene
@@ -57,7 +58,7 @@ def build(name: str, vertices: int, seed: int, raw: bool, folder: Path) -> Build
 def lift_offs(result: BuildResult) -> tuple[str, int]:
     """Minimum as text, and number of cells."""
     instance = decompose(result.surface)
-    solution = solve(instance, Options(time_limit=10, workers=2))
+    solution = solve(instance, Options(deadline=Deadline.after(10), workers=2))
     found = "?" if solution.lift_offs is None else str(solution.lift_offs)
     if solution.status != "optimal":
         found = f"{max(0, solution.lower_bound - 1)}-{found}"

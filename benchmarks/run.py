@@ -15,6 +15,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
 from datetime import UTC, datetime
 from itertools import count
 from math import radians
@@ -24,6 +25,7 @@ from statistics import median
 from cellcolor.bench import Run, max_live_darts, measure
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.families import blobs, hub, hub_grid
 from cellcolor.peers import measure_clingo
@@ -136,7 +138,7 @@ def displaced(_: int) -> Rows:
             instances.append(decompose(built.surface))
         cells = [len(instance.cells) for instance in instances]
         for space, strands in (("paper", 1), ("surface", 2)):
-            options = Options(search_space=space, strands=strands, time_limit=FAMILY_LIMIT)
+            options = Options(search_space=space, strands=strands)
             yield [name, f"{min(cells)} to {max(cells)}", space, *solve_all(instances, options)]
 
 
@@ -156,8 +158,7 @@ def families(_: int) -> Rows:
     for name, make in kinds.items():
         instances = [decompose(make(seed)) for seed in range(FAMILY_SEEDS)]
         cells = [len(instance.cells) for instance in instances]
-        options = Options(time_limit=FAMILY_LIMIT)
-        found = solve_all(instances, options)
+        found = solve_all(instances, Options())
         yield [name, f"{min(cells)} to {max(cells)}", *found]
 
 
@@ -166,7 +167,7 @@ def solve_all(instances: list[Instance], options: Options) -> list[str]:
     solve(instances[0], options)  # imports
     proved, seconds = 0, []
     for instance in instances:
-        found = solve(instance, options)
+        found = solve(instance, replace(options, deadline=Deadline.after(FAMILY_LIMIT)))
         proved += found.proved_for_surface
         seconds.append(found.seconds)
     return [str(len(instances)), str(proved), f"{median(seconds):.2f}", f"{max(seconds):.2f}"]

@@ -10,6 +10,7 @@ from dataclasses import asdict, dataclass
 
 from cellcolor.data.files import parse_json
 from cellcolor.data.instance import Cell, Instance
+from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError
 from cellcolor.solvers.interface import Options
 
@@ -108,7 +109,7 @@ def _run(solver: str, time_limit: float) -> Run:
     instance = Instance.from_document(parse_json(sys.stdin.read()))
     # Solvers import what they need on first use, which is not what is measured here.
     solve(Instance("warm-up", ("any",), (Cell(0, (0,), ()),), ()), Options(), solver)
-    solution = solve(instance, Options(time_limit=time_limit), solver)
+    solution = solve(instance, Options(deadline=Deadline.after(time_limit)), solver)
     return Run(solution.segments, solution.status == "optimal", solution.seconds)
 
 

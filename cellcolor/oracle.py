@@ -15,13 +15,13 @@ docs/semantics.md, section 4): a bound of the search space ``paper`` may be beat
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 from cellcolor.check.plan import check_plan
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SearchSpace
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError
 from cellcolor.solvers.interface import Options
@@ -130,18 +130,17 @@ def proven_range(
     Raises:
         InputError: a cell of the surface is not planar.
     """
+    deadline = Deadline.after(time_limit)
     instance = decompose(surface)
     # One sub-cell a cell is a division of its own, whatever the solver finds.
     upper, lower = len(instance.cells), 0
-    deadline = None if time_limit is None else time.monotonic() + time_limit
     # The paper's search space is the smaller one: where its optimum meets a bound for any
     # division, there is nothing left to search.
     spaces: tuple[tuple[SearchSpace, int], ...] = (("paper", 1), ("surface", strands))
     for space, corridors in spaces:
-        remaining = None if deadline is None else deadline - time.monotonic()
-        if lower == upper or (remaining is not None and remaining <= 0):
+        if lower == upper or deadline.over:
             break
-        solution = solve(instance, Options(space, corridors, remaining, workers, seed))
+        solution = solve(instance, Options(space, corridors, deadline, workers, seed))
         lower = max(lower, solution.surface_lower_bound)
         if solution.segments is not None:
             upper = min(upper, solution.segments)

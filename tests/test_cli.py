@@ -19,7 +19,7 @@ from library import INSTANCES, PAPER
 import cellcolor.solvers.run
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
-from cellcolor.solvers.interface import OutOfTime
+from cellcolor.deadline import OutOfTime
 
 RING = PAPER / "ring.json"
 CORRIDORS = PAPER / "parallel-corridors.json"

@@ -15,6 +15,7 @@ from cellcolor.check.solution import check_division
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.families import blobs, hub, hub_minimum, planar_graph
 from cellcolor.solvers.bounds import color_regions, set_cover
@@ -23,7 +24,7 @@ from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model import add_hint, build, read_painting
 from cellcolor.solvers.cpsat.painting import Block, canonical, division_of, painting_of
-from cellcolor.solvers.interface import Options, OutOfTime, Start
+from cellcolor.solvers.interface import Options, Start
 from cellcolor.solvers.run import solve
 
 RED, BLUE = 0, 1
@@ -258,7 +259,7 @@ def test_a_start_is_kept_when_there_is_no_time() -> None:
     good = solve(instance, Options())
     assert good.cells is not None
     start = Start(good.cells, good.seams)
-    found = solve(instance, Options(time_limit=0.0, start=start))
+    found = solve(instance, Options(deadline=Deadline.after(0.0), start=start))
     assert found.segments == good.segments
 
 
@@ -304,7 +305,7 @@ def test_a_canonical_painting_joins_what_shows_one_color() -> None:
 
 def test_no_time_gives_no_more_than_was_found() -> None:
     instance = decompose(blobs(3))
-    found = solve(instance, Options(time_limit=0.0))
+    found = solve(instance, Options(deadline=Deadline.after(0.0)))
     assert found.status in ("unknown", "feasible", "optimal")
     assert (found.segments is None) == (found.status == "unknown")
     assert found.lower_bound == len(set_cover(instance))
@@ -356,7 +357,7 @@ def test_enumeration_stops_when_its_time_is_over() -> None:
     # Forty cells of two free colors each have 2**40 optimal schemes.
     cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
     instance = Instance("many", ("red", "blue"), cells, ())
-    found = CpSatSolver().optimal_schemes(instance, Options(time_limit=0.5), 40)
+    found = CpSatSolver().optimal_schemes(instance, Options(deadline=Deadline.after(0.5)), 40)
     with pytest.raises(OutOfTime):
         for _ in found:
             pass

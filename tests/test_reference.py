@@ -17,9 +17,10 @@ from library import PAPER
 from cellcolor.check.solution import check_division
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import CellDivision, SubCell, scheme_key
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.families import hub, planar_graph
-from cellcolor.solvers.interface import Answer, Options, OutOfTime
+from cellcolor.solvers.interface import Answer, Options
 from cellcolor.solvers.reference import ReferenceSolver, code, divisions, literal_cost
 from cellcolor.solvers.reference.cells import CellScheme, cell_schemes
 from cellcolor.solvers.reference.graph import GraphCell, Graphs
@@ -333,7 +334,9 @@ def test_depth_is_refused_before_the_stack_ends() -> None:
         edges = tuple(Edge(i, i - 1, i) for i in range(1, count))
         return Instance("row", ("red",), cells, edges)
 
-    assert segments(row(600), SOLVER.minimize(row(600), Options(time_limit=60.0))) == 1
+    assert (
+        segments(row(600), SOLVER.minimize(row(600), Options(deadline=Deadline.after(60.0)))) == 1
+    )
     with pytest.raises(InputError, match="too many"):
         SOLVER.minimize(row(1000), Options())
 
@@ -343,17 +346,19 @@ def test_time_limit_gives_the_best_so_far() -> None:
     instance = hub(0, 40, 6)
     assert instance.known is not None and instance.known.paper is not None
     began = time.monotonic()
-    answer = SOLVER.minimize(instance, Options(time_limit=0.5))
+    answer = SOLVER.minimize(instance, Options(deadline=Deadline.after(0.5)))
     assert time.monotonic() - began < 2.0
     assert answer.lower_bound == 6  # one segment for each color
     if answer.division is not None:
         assert segments(instance, answer) >= instance.known.paper.segments
     with pytest.raises(OutOfTime):
-        list(SOLVER.optimal_schemes(instance, Options(time_limit=0.2), 20))
+        list(SOLVER.optimal_schemes(instance, Options(deadline=Deadline.after(0.2)), 20))
 
 
 def test_no_time_at_all_gives_no_division() -> None:
-    answer = SOLVER.minimize(Instance.read(PAPER / "ring.json"), Options(time_limit=-1.0))
+    answer = SOLVER.minimize(
+        Instance.read(PAPER / "ring.json"), Options(deadline=Deadline.after(-1.0))
+    )
     assert answer == Answer(None, (), 2)
 
 

@@ -9,10 +9,11 @@ from itertools import islice
 from cellcolor.campaign.draw import live_loops
 from cellcolor.campaign.vertices import fewest_by_vertices
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, SchemeKey, scheme_key
+from cellcolor.data.solution import Division, SchemeKey, SearchSpace, scheme_key
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError
-from cellcolor.solvers.interface import Options, OutOfTime
+from cellcolor.solvers.interface import Options
 from cellcolor.solvers.run import CONTENDERS, SOLVERS, enumerate_schemes, solve
 
 __all__ = ["Disagreement", "Finding", "MeshFinding", "compare", "compare_on_mesh", "complaint"]
@@ -69,7 +70,7 @@ def compare(instance: Instance, time_limit: float) -> Finding:
     Raises:
         Disagreement: they do not agree.
     """
-    solutions = [solve(instance, Options("paper", 1, time_limit, 1), name) for name in CONTENDERS]
+    solutions = [solve(instance, _options("paper", 1, time_limit), name) for name in CONTENDERS]
     for one in solutions:
         for other in solutions:
             if one.segments is not None and one.segments < other.lower_bound:
@@ -123,7 +124,7 @@ def compare_on_mesh(
     if by_vertices is None:
         return None
     for strands in _STRANDS:
-        solution = solve(instance, Options("surface", strands, time_limit, 1), "cp-sat")
+        solution = solve(instance, _options("surface", strands, time_limit), "cp-sat")
         if by_vertices < solution.surface_lower_bound:
             raise Disagreement(
                 f"a coloring of the vertices has {by_vertices} segments, cp-sat a lower bound "
@@ -157,7 +158,7 @@ def _schemes(
     instance: Instance, solver: str, minimum: int, time_limit: float
 ) -> dict[SchemeKey, Division] | None:
     """The optimal schemes, None when there are too many or time ran out."""
-    options = Options("paper", 1, time_limit, 1)
+    options = _options("paper", 1, time_limit)
     found: dict[SchemeKey, Division] = {}
     try:
         schemes = enumerate_schemes(instance, options, solver, minimum)
@@ -169,3 +170,8 @@ def _schemes(
     except OutOfTime:
         return None
     return found if len(found) <= MOST_SCHEMES else None
+
+
+def _options(space: SearchSpace, strands: int, time_limit: float) -> Options:
+    """One worker, and a time limit that counts from now on."""
+    return Options(space, strands, Deadline.after(time_limit), workers=1)

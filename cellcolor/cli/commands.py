@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 from typing import Any
 
@@ -102,6 +103,7 @@ def solve(
     as_json: bool,
 ) -> int:
     """Find the fewest segments of instances, labelled surfaces and scenes."""
+    begun = time.monotonic()
     if strands is not None and search_space == "paper":
         raise click.UsageError("--strands goes with --search-space surface")
     if limit is not None and not every:
@@ -120,12 +122,13 @@ def solve(
     options = Options(
         "surface" if search_space == "surface" else "paper",
         (2 if strands is None else strands) if search_space == "surface" else 1,
-        time_limit,
-        workers,
-        seed,
+        workers=workers,
+        seed=seed,
         fewest_cuts=fewest_cuts,
     )
-    request = Request(files, output, solver, options, warm_start, every, limit, as_json)
+    request = Request(
+        files, output, solver, options, time_limit, begun, warm_start, every, limit, as_json
+    )
     return solve_files(request)
 
 

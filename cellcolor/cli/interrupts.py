@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from types import FrameType
 
-from cellcolor.solvers.interface import OutOfTime
+from cellcolor.deadline import OutOfTime
 
 
 class Interrupted(OutOfTime, KeyboardInterrupt):

@@ -25,8 +25,9 @@ from cellcolor.cli.tables import print_overview, print_solution
 from cellcolor.data.files import replacing, write_text
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.solvers.interface import PORTFOLIO, Options, OutOfTime, Start
+from cellcolor.solvers.interface import PORTFOLIO, Options, Start
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +38,10 @@ class Request:
         files: what to solve.
         output: a file, or a folder for several inputs; None writes nothing.
         solver: the solver's name.
-        options: how to solve.
+        options: how to solve; every file gets a deadline of its own.
+        time_limit: seconds for each file, None for as long as it takes.
+        begun: when the command began, on the clock of ``time.monotonic``: what it took to start
+            counts for the first file.
         warm_start: a solution to start from.
         every: all optimal schemes.
         limit: no more schemes than that.
@@ -48,6 +52,8 @@ class Request:
     output: Path | None
     solver: str
     options: Options
+    time_limit: float | None
+    begun: float
     warm_start: Path | None
     every: bool
     limit: int | None
@@ -61,10 +67,14 @@ def solve_files(request: Request) -> Exit:
     codes: list[Exit] = []
     solved: list[tuple[Path, Instance, Solution]] = []
     interrupts = Interrupts()
+    begun: float | None = request.begun
     for file, target in zip(request.files, targets, strict=True):
+        deadline = Deadline.after(request.time_limit, begun)
+        begun = None
         try:
             instance = read_instance(file)
-            solution = _solve(instance, file, target, request, interrupts)
+            options = replace(request.options, deadline=deadline)
+            solution = _solve(instance, file, target, request, options, interrupts)
         except Interrupted:
             _say_failed(request, file, f"{file}: interrupted, nothing found yet")
             codes.append(Exit.STOPPED)
@@ -155,17 +165,20 @@ def _targets(request: Request) -> list[Path | None]:
 
 
 def _solve(
-    instance: Instance, file: Path, target: Path | None, request: Request, interrupts: Interrupts
+    instance: Instance,
+    file: Path,
+    target: Path | None,
+    request: Request,
+    options: Options,
+    interrupts: Interrupts,
 ) -> Solution:
     """Solve one instance and write what was found."""
     from cellcolor.solvers.run import solve
 
     if request.every:
         _refuse_schemes(instance)
-    options = request.options
     if request.warm_start is not None:
         options = replace(options, start=_start(instance, request.warm_start, options))
-    started = time.monotonic()
     with progress_of(file) as report, interrupts.end_the_search():
         solution = solve(instance, options, request.solver, report)
     if not request.every:
@@ -173,13 +186,12 @@ def _solve(
             _make_folder(target)
             write_text(target, solution.to_json())
         return solution
-    spent = time.monotonic() - started
     with _spool(target) as spool:
         if interrupts.seen:
             solution = replace(solution, schemes=0, complete=False)
         else:
             with interrupts.end_the_search():
-                solution = _with_schemes(instance, solution, spent, request, spool)
+                solution = _with_schemes(instance, solution, request, options, spool)
         if target is not None and spool is not None:
             spool.seek(0)
             with replacing(target) as stream:
@@ -224,17 +236,17 @@ def _spool(target: Path | None) -> Iterator[IO[str] | None]:
 
 
 def _with_schemes(
-    instance: Instance, solution: Solution, spent: float, request: Request, spool: IO[str] | None
+    instance: Instance,
+    solution: Solution,
+    request: Request,
+    options: Options,
+    spool: IO[str] | None,
 ) -> Solution:
     """The solution with all optimal schemes counted, each written as soon as it is found."""
     from cellcolor.solvers.run import enumerate_schemes
 
     if solution.status != "optimal" or solution.segments is None:
         return replace(solution, schemes=0, complete=False)
-    options = request.options
-    if options.time_limit is not None:
-        # A limit of 0 is not one that solvers know: leave them a moment to notice.
-        options = replace(options, time_limit=max(options.time_limit - spent, 0.001))
     started = time.monotonic()
     count, complete = 0, True
     try:

@@ -8,7 +8,7 @@ from typing import Protocol
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, SearchSpace
-from cellcolor.errors import CellcolorError
+from cellcolor.deadline import NEVER, Deadline
 
 PORTFOLIO = 8
 """CP-SAT's workers unless asked for otherwise: different searches, useful beyond the cores."""
@@ -37,7 +37,7 @@ class Options:
     Attributes:
         search_space: ``paper``, or ``surface`` for any division of the physical surface.
         strands: strands per topological edge; 1 in ``paper``.
-        time_limit: seconds of wall-clock time, None for as long as it takes.
+        deadline: when everything has to end.
         workers: CP-SAT's search workers, None for ``PORTFOLIO``.
         seed: of everything random.
         start: a division to start from (CP-SAT only).
@@ -47,7 +47,7 @@ class Options:
 
     search_space: SearchSpace = "paper"
     strands: int = 1
-    time_limit: float | None = None
+    deadline: Deadline = NEVER
     workers: int | None = None
     seed: int = 0
     start: Start | None = None
@@ -65,6 +65,7 @@ class Answer:
         surface_lower_bound: no division of the physical surface has fewer segments.
         cutting_paths_lower_bound: no division in the search space with the fewest segments has
             fewer cutting paths; None when that was not asked for.
+        notes: what was left out and why, a sentence each, such as a model too large to be built.
     """
 
     division: Division | None
@@ -72,10 +73,7 @@ class Answer:
     lower_bound: int
     surface_lower_bound: int = 0
     cutting_paths_lower_bound: int | None = None
-
-
-class OutOfTime(CellcolorError):
-    """The time limit ended an enumeration before it was complete."""
+    notes: tuple[str, ...] = ()
 
 
 class Solver(Protocol):
@@ -86,7 +84,7 @@ class Solver(Protocol):
     def minimize(
         self, instance: Instance, options: Options, progress: Progress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best that the time limit allowed."""
+        """A division with the fewest segments, or the best found before the deadline."""
 
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int
@@ -94,5 +92,5 @@ class Solver(Protocol):
         """Every scheme (semantics: docs/semantics.md, section 3) with the given minimum, once.
 
         Raises:
-            OutOfTime: the time limit came first.
+            OutOfTime: the deadline came first.
         """

@@ -10,6 +10,7 @@ from shipped import SCENES, at_resolution
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.scene import load_scene
@@ -51,7 +52,7 @@ def test_one_setup_for_all() -> None:
 @pytest.mark.parametrize("name", LIFT_OFFS)
 def test_lift_offs(name: str, tmp_path: Path) -> None:
     result = built(name, tmp_path, 500)
-    solution = solve(decompose(result.surface), Options(time_limit=60, workers=2))
+    solution = solve(decompose(result.surface), Options(deadline=Deadline.after(60), workers=2))
     assert solution.status == "optimal" and solution.proved_for_surface
     assert solution.lift_offs == LIFT_OFFS[name]
 
@@ -64,7 +65,7 @@ def test_files_as_built(name: str) -> None:
     assert decompose(surface, f"{name}.surface.json").to_json() == instance.to_json()
     assert surface.meta["scene"] == load_scene(SCENES / f"{name}.toml").model_dump(mode="json")
     assert len(surface.vertices) > 800
-    solution = solve(instance, Options(time_limit=60, workers=2))
+    solution = solve(instance, Options(deadline=Deadline.after(60), workers=2))
     assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
 
 
@@ -84,7 +85,7 @@ def test_stored_surface_is_what_the_scene_gives(name: str) -> None:
 @pytest.mark.parametrize("vertices", [2000, 4000])
 def test_lift_offs_at_higher_resolutions(name: str, vertices: int, tmp_path: Path) -> None:
     surface = built(name, tmp_path, vertices).surface
-    solution = solve(decompose(surface), Options(time_limit=300, workers=2))
+    solution = solve(decompose(surface), Options(deadline=Deadline.after(300), workers=2))
     assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
 
 

@@ -9,6 +9,7 @@ the choices of several gaps together is sorted out as the solutions come.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import isfinite
 from queue import SimpleQueue
 from threading import Thread
 
@@ -16,11 +17,12 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
+from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.painting import Block, Painting, division_of
 from cellcolor.solvers.cpsat.zeros import zeros_can_differ
-from cellcolor.solvers.interface import Options, OutOfTime
+from cellcolor.solvers.interface import Options
 
 __all__ = ["optimal_schemes"]
 
@@ -30,12 +32,12 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
 
     Args:
         instance: the topological graph; at most one live loop a cell.
-        options: time limit and seed.
+        options: deadline and seed.
         segments: the minimum.
 
     Raises:
         InputError: a cell has several loops with live darts, for which schemes are not defined.
-        OutOfTime: the time limit came first.
+        OutOfTime: the deadline came first.
     """
     if not instance.cells:
         yield ()
@@ -53,8 +55,8 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = options.seed
     solver.parameters.catch_sigint_signal = False
-    if options.time_limit is not None:
-        solver.parameters.max_time_in_seconds = options.time_limit
+    if isfinite(options.deadline.moment):
+        solver.parameters.max_time_in_seconds = options.deadline.left
     found: SimpleQueue[Painting | cp_model.CpSolverStatus] = SimpleQueue()
     collector = _Collector(model, found)
     thread = Thread(target=lambda: found.put(solver.solve(model.model, collector)))

@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
+from math import isfinite
 from threading import Event, Thread
 
 from ortools.sat.python import cp_model
 
-from cellcolor.solvers.interface import PORTFOLIO, Options, OutOfTime
+from cellcolor.deadline import OutOfTime
+from cellcolor.solvers.interface import PORTFOLIO, Options
 
 __all__ = ["Runner"]
 
 
 class Runner:
-    """Solves models until the time is over; the time limit counts from here on."""
+    """Solves models until the deadline."""
 
     def __init__(self, options: Options) -> None:
         self._options = options
-        self._start = time.monotonic()
         self._stopped = False
 
     @property
     def over(self) -> bool:
         """Whether there is no time left, or Ctrl-C came."""
-        return self._stopped or self._left() <= 0
+        return self._stopped or self._options.deadline.over
 
     def solver(self, effort: float | None) -> cp_model.CpSolver:
         """A solver with the options' limits, workers and seed.
@@ -37,8 +37,8 @@ class Runner:
         solver.parameters.random_seed = self._options.seed
         # Left to itself, OR-Tools makes the next Ctrl-C kill the process.
         solver.parameters.catch_sigint_signal = False
-        if self._options.time_limit is not None:
-            solver.parameters.max_time_in_seconds = max(0.0, self._left())
+        if isfinite(self._options.deadline.moment):
+            solver.parameters.max_time_in_seconds = self._options.deadline.left
         if effort is not None:
             solver.parameters.max_deterministic_time = effort
         return solver
@@ -78,10 +78,6 @@ class Runner:
         if interrupt is not None and not isinstance(interrupt, OutOfTime):
             raise interrupt
         return status[0]
-
-    def _left(self) -> float:
-        limit = self._options.time_limit
-        return float("inf") if limit is None else limit - (time.monotonic() - self._start)
 
 
 class _Watcher(cp_model.CpSolverSolutionCallback):

@@ -10,6 +10,7 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
+from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds import color_regions, set_cover
 from cellcolor.solvers.cpsat.enumeration import optimal_schemes
@@ -21,7 +22,7 @@ from cellcolor.solvers.cpsat.refined import refined
 from cellcolor.solvers.cpsat.routing import route
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.crossings import enough_crossings
-from cellcolor.solvers.interface import Answer, Options, OutOfTime, Progress
+from cellcolor.solvers.interface import Answer, Options, Progress
 from cellcolor.solvers.reductions import drop_dominated
 
 __all__ = ["CpSatSolver"]

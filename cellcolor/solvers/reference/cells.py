@@ -11,12 +11,10 @@ a sub-cell of the stack (which closes the brackets above it) or opens a bracket.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import inf
 
-from cellcolor.solvers.interface import OutOfTime
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.reference.graph import GraphCell
 
 __all__ = ["CellScheme", "Known", "cell_schemes", "code", "divisions", "zero_colors"]
@@ -68,14 +66,14 @@ def zero_colors(painted: Sequence[int | None], own: int) -> list[tuple[int, int]
 
 
 def cell_schemes(
-    cell: GraphCell, known: Sequence[Known], deadline: float = inf
+    cell: GraphCell, known: Sequence[Known], deadline: Deadline = NEVER
 ) -> Iterator[CellScheme]:
     """Every way to divide and paint a cell that agrees with its solved neighbours.
 
     Args:
         cell: the cell.
         known: for each dart, what the cell beyond it has decided.
-        deadline: the ``time.monotonic()`` at which to stop.
+        deadline: when to stop.
 
     Raises:
         OutOfTime: the deadline has passed.
@@ -86,7 +84,7 @@ def cell_schemes(
 class _CellSearch:
     """The recursion of :func:`cell_schemes`."""
 
-    def __init__(self, cell: GraphCell, known: Sequence[Known], deadline: float) -> None:
+    def __init__(self, cell: GraphCell, known: Sequence[Known], deadline: Deadline) -> None:
         self._cell = cell
         self._known = known
         self._deadline = deadline
@@ -110,8 +108,7 @@ class _CellSearch:
         if i == len(self._block):
             yield from self._complete(last)
             return
-        if time.monotonic() > self._deadline:
-            raise OutOfTime("the time limit ended the enumeration of a cell")
+        self._deadline.check()
         single = sum(self._members[b] == 1 for b in stack) if len(self._color) > 1 else 0
         if single > self._room[i]:
             return  # "a single × cannot form a sub-cell": too few darts left to complete them

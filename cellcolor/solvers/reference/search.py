@@ -7,12 +7,11 @@ it cannot lose any more exceed what is asked for.
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
 from cellcolor.data.solution import DartName
-from cellcolor.solvers.interface import OutOfTime
+from cellcolor.deadline import Deadline
 from cellcolor.solvers.reference.cells import CellScheme, Known, cell_schemes
 from cellcolor.solvers.reference.graph import GraphCell, twin
 from cellcolor.solvers.reference.segments import Segments
@@ -30,7 +29,7 @@ class Search:
     Args:
         cells: the cells, in the order in which they are solved.
         region: the region of each (cell, color).
-        deadline: the ``time.monotonic()`` at which to stop.
+        deadline: when to stop.
 
     Attributes:
         budget: the most segments a painting may have; lower it while the search runs to prune.
@@ -38,7 +37,7 @@ class Search:
     """
 
     def __init__(
-        self, cells: Sequence[GraphCell], region: dict[tuple[int, int], int], deadline: float
+        self, cells: Sequence[GraphCell], region: dict[tuple[int, int], int], deadline: Deadline
     ) -> None:
         self._cells = cells
         self._region = region
@@ -81,8 +80,7 @@ class Search:
         return self._solve(0)
 
     def _solve(self, depth: int) -> Iterator[tuple[int, list[CellScheme]]]:
-        if time.monotonic() > self._deadline:
-            raise OutOfTime("the time limit ended the depth-first search")
+        self._deadline.check()
         bound = self._bound(depth)
         if bound > self.budget:
             return

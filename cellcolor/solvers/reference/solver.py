@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import product
-from math import inf
 
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import DartName, Division, Seam, number_segments
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.solvers.interface import Answer, Options, OutOfTime, Progress
+from cellcolor.solvers.interface import Answer, Options, Progress
 from cellcolor.solvers.reference.cells import CellScheme
 from cellcolor.solvers.reference.graph import GraphCell, Graphs
 from cellcolor.solvers.reference.search import Search
@@ -42,9 +41,8 @@ class ReferenceSolver:
         Raises:
             InputError: the graph is far too large for a depth-first search.
         """
-        deadline = _deadline(options)
         graphs = Graphs(instance, options.strands)
-        parts = [_Part(graphs, cells, deadline) for cells in graphs.parts()]
+        parts = [_Part(graphs, cells, options.deadline) for cells in graphs.parts()]
 
         def report() -> None:
             if progress is not None:
@@ -78,7 +76,7 @@ class ReferenceSolver:
             InputError: a cell has several live loops, or edges have strands: schemes are defined
                 for neither; or the graph is far too large.
             ValueError: ``segments`` is not the minimum.
-            OutOfTime: the time limit came first.
+            OutOfTime: the deadline came first.
         """
         if options.search_space != "paper" or options.strands != 1:
             raise InputError(
@@ -92,10 +90,10 @@ class ReferenceSolver:
                 f"cell {cell} has several loops with live darts: optimal schemes are defined "
                 "for cells with one",
             )
-        return self._schemes(instance, graphs, _deadline(options), segments)
+        return self._schemes(instance, graphs, options.deadline, segments)
 
     def _schemes(
-        self, instance: Instance, graphs: Graphs, deadline: float, segments: int
+        self, instance: Instance, graphs: Graphs, deadline: Deadline, segments: int
     ) -> Iterator[Division]:
         minima = []
         parts = graphs.parts()
@@ -135,7 +133,7 @@ class _Part:
         seams: what its darts refer to.
     """
 
-    def __init__(self, graphs: Graphs, cells: list[Cell], deadline: float) -> None:
+    def __init__(self, graphs: Graphs, cells: list[Cell], deadline: Deadline) -> None:
         self._graphs = graphs
         self._cells = cells
         self._deadline = deadline
@@ -194,10 +192,6 @@ class _Part:
             )
         search = Search(graph, self._graphs.region, self._deadline)
         return graph, search, [seam for _, seams in built for seam in seams]
-
-
-def _deadline(options: Options) -> float:
-    return inf if options.time_limit is None else time.monotonic() + options.time_limit
 
 
 def _named(graph: Sequence[GraphCell], schemes: Iterable[CellScheme]) -> dict[int, _Blocks]:

@@ -1,0 +1,67 @@
+"""One moment at which everything that takes time has to end."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass
+
+from cellcolor.errors import CellcolorError
+
+__all__ = ["NEVER", "Deadline", "OutOfTime"]
+
+
+class OutOfTime(CellcolorError):
+    """The deadline came before the work was done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Deadline:
+    """A moment, made once where a task begins and handed down to all that works for it.
+
+    Attributes:
+        moment: on the clock of ``time.monotonic``, in seconds; infinity if there is none.
+    """
+
+    moment: float = math.inf
+
+    @classmethod
+    def after(cls, seconds: float | None, start: float | None = None) -> Deadline:
+        """The moment so many seconds after the start.
+
+        Args:
+            seconds: None for no deadline.
+            start: on the clock of ``time.monotonic``; None for now.
+        """
+        if seconds is None:
+            return NEVER
+        return cls((time.monotonic() if start is None else start) + seconds)
+
+    @property
+    def left(self) -> float:
+        """Seconds until then, 0 afterwards, infinity if there is no deadline."""
+        return max(0.0, self.moment - time.monotonic())
+
+    @property
+    def over(self) -> bool:
+        """Whether the moment has passed."""
+        return time.monotonic() >= self.moment
+
+    def check(self) -> None:
+        """End the work if the moment has passed.
+
+        Raises:
+            OutOfTime: it has.
+        """
+        if self.over:
+            raise OutOfTime("the time limit came first")
+
+    def share(self, part: float) -> Deadline:
+        """A deadline after a part (0 to 1) of the time that is left; none if there is none."""
+        if math.isinf(self.moment):
+            return self
+        return Deadline(time.monotonic() + part * self.left)
+
+
+NEVER = Deadline()
+"""No deadline."""
