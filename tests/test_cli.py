@@ -17,7 +17,7 @@ from documents import INSTANCE
 from library import INSTANCES, PAPER
 
 import cellcolor.solvers.run
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
 from cellcolor.deadline import OutOfTime
 
@@ -268,6 +268,12 @@ class TestMore:
         assert any(f"no two of the cells {cell}, 2 can be" in out for cell in (0, 1))
 
 
+def _free(cells: int, colors: int) -> Instance:
+    """Cells without borders, each with all colors."""
+    own = tuple(range(colors))
+    return Instance("free", tuple(map(str, own)), tuple(Cell(i, own, ()) for i in range(cells)), ())
+
+
 class TestAllSchemes:
     @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
     def test_all(self, solver: str, tmp_path: Path, capsys: Capture) -> None:
@@ -302,6 +308,40 @@ class TestAllSchemes:
         assert run("solve", ZEROS, "--all", "--limit", 3, "--json") == 0
         (line,) = json_lines(capsys.readouterr().out)
         assert (line["schemes"], line["complete"]) == (3, True)
+
+    @pytest.mark.parametrize(
+        ("cells", "colors", "code", "complete"),
+        # Cells without a border are painted in any of their colors: 1000 and 1024 schemes.
+        [(3, 10, 0, True), (10, 2, 3, False)],
+    )
+    def test_a_thousand_unless_asked_for_more(
+        self,
+        cells: int,
+        colors: int,
+        code: int,
+        complete: bool,
+        tmp_path: Path,
+        capsys: Capture,
+    ) -> None:
+        path, out = tmp_path / "free.json", tmp_path / "all.jsonl"
+        path.write_text(_free(cells, colors).to_json(), encoding="utf-8")
+        assert run("solve", path, "--all", "-o", out, "--json") == code
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (1000, complete)
+        assert len({scheme_key(division) for division in read_schemes(out)}) == 1000
+        assert run("solve", path, "--all", "--limit", 1024, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out.splitlines()[-1])
+        assert (line["schemes"], line["complete"]) == (colors**cells, True)
+
+    def test_progress_counts_schemes(
+        self, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+        monkeypatch.setenv("TERM", "xterm")
+        assert run("solve", ZEROS, "--all", "--json") == 0
+        out, err = capsys.readouterr()
+        assert "3 schemes so far" in err
+        assert json_lines(out)[0]["schemes"] == 3
 
     @pytest.mark.parametrize("ctrl_c", [False, True])
     def test_stopped(

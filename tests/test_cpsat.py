@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from dataclasses import replace
+from queue import SimpleQueue
 
 import pytest
 from bruteforce import minimum, optimal_schemes
@@ -19,7 +21,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.families import blobs, hub, hub_minimum, planar_graph
 from cellcolor.solvers.bounds import color_regions, set_cover
-from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.cpsat import CpSatSolver, enumeration
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model import add_hint, build, read_painting
@@ -353,6 +355,17 @@ def test_divisions_of_a_lone_cell(edges: int, catalan: int) -> None:
     assert len(divisions) == catalan + edges
 
 
+def test_enumeration_gives_nothing_after_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What waits to be taken when the time is over stays there: taking it needs time as well."""
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(deadline=Deadline.after(1e6)), 40)
+    next(found)
+    monkeypatch.setattr(Deadline, "over", property(lambda _: True))
+    with pytest.raises(OutOfTime):
+        next(found)
+
+
 def test_enumeration_stops_when_its_time_is_over() -> None:
     # Forty cells of two free colors each have 2**40 optimal schemes.
     cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
@@ -361,6 +374,26 @@ def test_enumeration_stops_when_its_time_is_over() -> None:
     with pytest.raises(OutOfTime):
         for _ in found:
             pass
+
+
+def test_enumeration_waits_for_who_takes_the_schemes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No more than a few schemes wait in memory, however slowly they are taken."""
+    monkeypatch.setattr(enumeration, "_AHEAD", 3)
+    put: list[object] = []
+
+    class Watched(SimpleQueue[object]):
+        def put(self, item: object, block: bool = True, timeout: float | None = None) -> None:
+            put.append(item)
+            super().put(item, block, timeout)
+
+    monkeypatch.setattr(enumeration, "SimpleQueue", Watched)
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(), 40)
+    for taken in range(1, 6):
+        next(found)
+        time.sleep(0.05)  # the search could fill the memory meanwhile
+        assert len(put) <= taken + 3
 
 
 def test_enumeration_can_be_left_early() -> None:

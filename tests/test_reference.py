@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 import time
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import product
 from math import comb
@@ -21,9 +22,10 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.families import hub, planar_graph
 from cellcolor.solvers.interface import Answer, Options
-from cellcolor.solvers.reference import ReferenceSolver, code, divisions, literal_cost
+from cellcolor.solvers.reference import ReferenceSolver, code, divisions, literal_cost, solver
 from cellcolor.solvers.reference.cells import CellScheme, cell_schemes
 from cellcolor.solvers.reference.graph import GraphCell, Graphs
+from cellcolor.solvers.reference.search import Search
 from cellcolor.solvers.reference.segments import Segments
 from cellcolor.solvers.reference.zeros import zeros_fit
 
@@ -323,6 +325,63 @@ def test_paintedof_a_wrong_minimum_are_refused() -> None:
     for wrong in (1, 3):
         with pytest.raises(ValueError, match="the minimum is 2"):
             list(SOLVER.optimal_schemes(ring, Options(), wrong))
+
+
+def two_rows(count: int) -> Instance:
+    """Two rows, cells with red or blue in turn, and between them cells with both.
+
+    Each of these is painted like its left or its right neighbor, so that a row with n of them has
+    2^n optimal schemes, of n + 1 segments.
+    """
+    cells: list[Cell] = []
+    edges: list[Edge] = []
+    for _ in range(2):
+        first = len(cells)
+        for place in range(2 * count + 1):
+            cell = first + place
+            left = (-len(edges),) if place else ()
+            right = (len(edges) + 1,) if place < 2 * count else ()
+            colors = (0, 1) if place % 2 else ((place // 2) % 2,)
+            cells.append(Cell(cell, colors, ((*left, *right),)))
+            if right:
+                edges.append(Edge(len(edges) + 1, cell, cell + 1))
+    return Instance("two rows", ("red", "blue"), tuple(cells), tuple(edges))
+
+
+@pytest.mark.parametrize("kept", [0, 60, 200_000])
+def test_schemes_of_parts_are_combined_in_all_ways(
+    kept: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whether the schemes of both rows, of one or of none are kept: 7 cells, 8 schemes each."""
+    monkeypatch.setattr(solver, "_KEPT", kept)
+    found = list(SOLVER.optimal_schemes(two_rows(3), Options(), 8))
+    assert len(found) == len({scheme_key(division) for division in found}) == 64
+
+
+def test_few_schemes_are_kept_for_the_first(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first scheme of all does not wait until those of all parts are in memory."""
+    monkeypatch.setattr(solver, "_KEPT", 1000)
+    drawn = 0
+    paintings = Search.paintings
+
+    def counted(search: Search) -> Iterator[tuple[int, list[CellScheme]]]:
+        nonlocal drawn
+        for painting in paintings(search):
+            drawn += 1
+            yield painting
+
+    monkeypatch.setattr(Search, "paintings", counted)
+    found = SOLVER.optimal_schemes(two_rows(10), Options(), 22)
+    next(found)
+    assert drawn < 200  # of 1024 for each row: 21 cells a scheme
+
+
+def test_combining_parts_ends_with_the_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = SOLVER.optimal_schemes(two_rows(3), Options(deadline=Deadline.after(1e6)), 8)
+    next(found)
+    monkeypatch.setattr(Deadline, "over", property(lambda _: True))
+    with pytest.raises(OutOfTime):
+        next(found)
 
 
 def test_depth_is_refused_before_the_stack_ends() -> None:

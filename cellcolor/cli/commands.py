@@ -82,7 +82,12 @@ def build(source: Path, output: Path) -> int:
     type=_PATH,
     help="Start from this solution of the one file given.",
 )
-@click.option("--limit", metavar="N", type=click.IntRange(min=1), help="No more schemes than that.")
+@click.option(
+    "--limit",
+    metavar="N",
+    type=click.IntRange(min=1),
+    help="With --all: no more schemes than that.  [default: 1000]",
+)
 @click.option("--time-limit", metavar="S", type=_SECONDS, help="Seconds for each file.")
 @click.option("--workers", metavar="N", type=click.IntRange(min=1), help="CP-SAT's search workers.")
 @click.option("--seed", metavar="N", type=click.IntRange(0, 2**31 - 1), default=0)
@@ -127,7 +132,7 @@ def solve(
         fewest_cuts=fewest_cuts,
     )
     request = Request(
-        files, output, solver, options, time_limit, begun, warm_start, every, limit, as_json
+        files, output, solver, options, time_limit, begun, warm_start, every, limit or 1000, as_json
     )
     return solve_files(request)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -13,6 +13,31 @@ from cellcolor.solvers.interface import Progress
 @contextmanager
 def progress_of(file: Path) -> Iterator[Progress | None]:
     """A line with the time spent, the best division and the bound; None without a terminal."""
+    with _line(f"{file.name}: solving") as show:
+        if show is None:
+            yield None
+            return
+
+        def report(segments: int | None, lower_bound: int) -> None:
+            best = "no division yet" if segments is None else f"best {segments}"
+            show(f"{file.name}: {best}, at least {lower_bound}")
+
+        yield report
+
+
+@contextmanager
+def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None] | None]:
+    """A line with the time spent and the schemes found; None without a terminal."""
+    with _line(f"{file.name}: looking for schemes") as show:
+        if show is None:
+            yield None
+            return
+        yield lambda count: show(f"{file.name}: {count} schemes so far")
+
+
+@contextmanager
+def _line(text: str) -> Iterator[Callable[[str], None] | None]:
+    """A line that can be replaced; None without a terminal."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -22,10 +47,5 @@ def progress_of(file: Path) -> Iterator[Progress | None]:
 
     columns = (SpinnerColumn(), TextColumn("{task.description}"), TimeElapsedColumn())
     with Display(*columns, console=Console(stderr=True), transient=True) as display:
-        task = display.add_task(f"{file.name}: solving", total=None)
-
-        def report(segments: int | None, lower_bound: int) -> None:
-            best = "no division yet" if segments is None else f"best {segments}"
-            display.update(task, description=f"{file.name}: {best}, at least {lower_bound}")
-
-        yield report
+        task = display.add_task(text, total=None)
+        yield lambda text: display.update(task, description=text)

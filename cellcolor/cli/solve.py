@@ -8,7 +8,7 @@ import shutil
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,7 +20,7 @@ from cellcolor.check.solution import check_solution
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.interrupts import Interrupted, Interrupts
-from cellcolor.cli.progress import progress_of
+from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.tables import print_overview, print_solution
 from cellcolor.data.files import replacing, write_text
 from cellcolor.data.instance import Instance
@@ -44,7 +44,7 @@ class Request:
             counts for the first file.
         warm_start: a solution to start from.
         every: all optimal schemes.
-        limit: no more schemes than that.
+        limit: with ``every``, no more schemes than that.
         as_json: JSON Lines instead of tables.
     """
 
@@ -56,7 +56,7 @@ class Request:
     begun: float
     warm_start: Path | None
     every: bool
-    limit: int | None
+    limit: int
     as_json: bool
 
 
@@ -190,8 +190,8 @@ def _solve(
         if interrupts.seen:
             solution = replace(solution, schemes=0, complete=False)
         else:
-            with interrupts.end_the_search():
-                solution = _with_schemes(instance, solution, request, options, spool)
+            with scheme_progress_of(file) as count, interrupts.end_the_search():
+                solution = _with_schemes(instance, solution, request, options, spool, count)
         if target is not None and spool is not None:
             spool.seek(0)
             with replacing(target) as stream:
@@ -241,8 +241,12 @@ def _with_schemes(
     request: Request,
     options: Options,
     spool: IO[str] | None,
+    report: Callable[[int], None] | None,
 ) -> Solution:
-    """The solution with all optimal schemes counted, each written as soon as it is found."""
+    """The solution with all optimal schemes counted, each written as soon as it is found.
+
+    One more than the limit is looked for: only so is it known whether the limit cut any off.
+    """
     from cellcolor.solvers.run import enumerate_schemes
 
     if solution.status != "optimal" or solution.segments is None:
@@ -258,6 +262,8 @@ def _with_schemes(
             if spool is not None:
                 spool.write(scheme_line(division) + "\n")
                 spool.flush()
+            if report is not None:
+                report(count)
     except OutOfTime:
         complete = False
     seconds = solution.seconds + time.monotonic() - started

@@ -126,9 +126,17 @@ def _summary(solution: Solution) -> list[tuple[str, str]]:
         proof = "fewest" if fewest else f"at least {solution.cutting_paths_lower_bound}"
         lines.insert(2, ("cutting paths", f"{solution.cutting_paths} ({proof})"))
     if solution.schemes is not None:
-        extent = "all of them" if solution.complete else "maybe not all"
-        lines.insert(3, ("schemes", f"{solution.schemes} ({extent})"))
+        lines.insert(3, ("schemes", f"{solution.schemes} ({_extent(solution)})"))
     return lines
+
+
+def _extent(solution: Solution) -> str:
+    """Whether the schemes that were found are all there are."""
+    if solution.complete:
+        return "all of them"
+    if solution.status != "optimal":
+        return "not looked for: the minimum is not proved"
+    return "the search was stopped, there may be more: see --limit and --time-limit"
 
 
 def _witness(instance: Instance, solution: Solution) -> list[tuple[str, str]]:

@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from math import isfinite
 from queue import SimpleQueue
-from threading import Thread
+from threading import Semaphore, Thread
 
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
-from cellcolor.deadline import OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.painting import Block, Painting, division_of
@@ -26,9 +26,14 @@ from cellcolor.solvers.interface import Options
 
 __all__ = ["optimal_schemes"]
 
+_AHEAD = 100
+"""Schemes that may wait to be taken; with so many the search pauses."""
+
 
 def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iterator[Division]:
     """Every scheme with so many segments, the fewest, each once (semantics, section 3).
+
+    The search runs in a thread that is never far ahead of who takes the schemes.
 
     Args:
         instance: the topological graph; at most one live loop a cell.
@@ -49,7 +54,7 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
             )
     colors = [frozenset(cell.colors) for cell in instance.cells]
     graph = dart_graph(instance, colors, dict.fromkeys((e.id for e in instance.edges), 1), ())
-    model = _SchemeModel(graph, segments)
+    model = _SchemeModel(graph, segments, options.deadline)
     solver = cp_model.CpSolver()
     solver.parameters.enumerate_all_solutions = True
     solver.parameters.num_workers = 1
@@ -57,17 +62,21 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
     solver.parameters.catch_sigint_signal = False
     if isfinite(options.deadline.moment):
         solver.parameters.max_time_in_seconds = options.deadline.left
-    found: SimpleQueue[Painting | cp_model.CpSolverStatus] = SimpleQueue()
-    collector = _Collector(model, found)
+    collector = _Collector(model)
+    found = collector.found
     thread = Thread(target=lambda: found.put(solver.solve(model.model, collector)))
     thread.start()
     try:
         while isinstance(painting := found.get(), list):
+            options.deadline.check()
+            collector.room.release()
             if zeros_can_differ(graph, painting):
                 yield division_of(graph, painting)
     finally:
-        solver.stop_search()
-        thread.join()
+        collector.stop()
+        while thread.is_alive():  # a stop that comes before the search does is lost
+            solver.stop_search()
+            thread.join(0.1)
     if painting not in (cp_model.OPTIMAL, cp_model.INFEASIBLE):
         raise OutOfTime("the time limit ended the enumeration of schemes")
 
@@ -75,8 +84,9 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
 class _SchemeModel:
     """Variables and constraints, by dart index."""
 
-    def __init__(self, graph: DartGraph, segments: int) -> None:
+    def __init__(self, graph: DartGraph, segments: int, deadline: Deadline) -> None:
         self.graph = graph
+        self._deadline = deadline
         self.model = model = cp_model.CpModel()
         darts = range(len(graph.darts))
         self.joined_in: dict[tuple[int, int], cp_model.IntVar] = {}
@@ -113,6 +123,7 @@ class _SchemeModel:
         """Blocks are chains of links of one color that do not cross; rule 2 for their size."""
         model, cell = self.model, self.graph.lists[number]
         for place, one in enumerate(cell):
+            self._deadline.check()
             for other in cell[place + 1 :]:
                 shared = self.graph.darts[one].colors & self.graph.darts[other].colors
                 if not shared:
@@ -126,6 +137,7 @@ class _SchemeModel:
                             [~link, ~self.joined_in[dart, color], *self._in(twin, color)]
                         )
         for place, dart in enumerate(cell):
+            self._deadline.check()
             before = [self.link[o, dart] for o in cell[:place] if (o, dart) in self.link]
             after = [self.link[dart, o] for o in cell[place + 1 :] if (dart, o) in self.link]
             model.add_at_most_one(before)
@@ -149,6 +161,7 @@ class _SchemeModel:
         first, last = self._outermost(cell), self._outermost(cell[::-1])
         with_first = {dart: model.new_bool_var("") for dart in cell}
         for place, dart in enumerate(cell):
+            self._deadline.check()
             model.add_implication(with_first[dart], self.joined[dart])
             model.add_implication(first[dart], with_first[dart])
             before = []
@@ -250,16 +263,31 @@ class _SchemeModel:
 
 
 class _Collector(cp_model.CpSolverSolutionCallback):
-    """Puts each solution's painting into a queue."""
+    """Puts each solution's painting into a queue.
 
-    def __init__(
-        self, model: _SchemeModel, found: SimpleQueue[Painting | cp_model.CpSolverStatus]
-    ) -> None:
+    Attributes:
+        found: the paintings, and the solver's status after the last one.
+        room: to be released for each painting that was taken.
+    """
+
+    def __init__(self, model: _SchemeModel) -> None:
         super().__init__()
         self._model = model
-        self._found = found
+        self._over = False
+        self.found: SimpleQueue[Painting | cp_model.CpSolverStatus] = SimpleQueue()
+        self.room = Semaphore(_AHEAD)
+
+    def stop(self) -> None:
+        """End the search, though nobody takes what it has found."""
+        self._over = True
+        self.room.release()
 
     def on_solution_callback(self) -> None:
+        self.room.acquire()
+        if self._over:
+            self.room.release()
+            self.stop_search()
+            return
         model, graph = self._model, self._model.graph
         painting: Painting = []
         for number, cell in enumerate(graph.lists):
@@ -284,4 +312,4 @@ class _Collector(cp_model.CpSolverSolutionCallback):
             blocks = [block for dart, block in block_of.items() if dart == min(block.darts)]
             own = [c for c, literal in model.own[number].items() if self.boolean_value(literal)]
             painting.append(blocks or [Block(own[0], set())])
-        self._found.put(painting)
+        self.found.put(painting)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import product
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from functools import partial
+from itertools import islice
+from typing import TypeVar
 
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import DartName, Division, Seam, number_segments
@@ -16,10 +18,16 @@ from cellcolor.solvers.reference.search import Search
 
 __all__ = ["ReferenceSolver"]
 
+_T = TypeVar("_T")
 _Blocks = list[tuple[int, list[DartName]]]
+_Repeatable = Callable[[], Iterator[_T]]
 
 _DEEPEST = 700
 """Levels of the recursion over cells and darts that Python's stack has room for."""
+
+_KEPT = 200_000
+"""Painted cells, of all schemes of all parts of the graph, that are kept to be combined; they
+take some hundred megabytes at most."""
 
 
 class ReferenceSolver:
@@ -113,14 +121,17 @@ class ReferenceSolver:
                 yield _named(graph, schemes)
 
         # Parts of the graph that no live edge connects are painted independently.
-        first = of_part(parts[0], minima[0]) if parts else iter(({},))
-        others = [list(of_part(*part)) for part in zip(parts[1:], minima[1:], strict=True)]
-        for one in first:
-            for combined in product(*others):
-                blocks = dict(one)
-                for more in combined:
-                    blocks |= more
-                yield _division(instance, blocks)
+        streams, room = [], _KEPT
+        for cells, budget in zip(parts, minima, strict=True):
+            stream, used = _repeatable(partial(of_part, cells, budget), room // len(cells))
+            streams.append(stream)
+            room -= used * len(cells)
+        for combined in _combinations(streams):
+            deadline.check()
+            blocks: dict[int, _Blocks] = {}
+            for one in combined:
+                blocks |= one
+            yield _division(instance, blocks)
 
 
 class _Part:
@@ -192,6 +203,37 @@ class _Part:
             )
         search = Search(graph, self._graphs.region, self._deadline)
         return graph, search, [seam for _, seams in built for seam in seams]
+
+
+def _repeatable(stream: Callable[[], Iterator[_T]], most: int) -> tuple[_Repeatable[_T], int]:
+    """A stream to be read many times, and how many items are kept for that.
+
+    Up to ``most`` items are kept in memory; a stream that has more is made anew each time.
+    """
+    first = list(islice(stream(), most + 1))
+    if len(first) > most:
+        return stream, 0
+    return first.__iter__, len(first)
+
+
+def _combinations(streams: Sequence[_Repeatable[_T]]) -> Iterator[tuple[_T, ...]]:
+    """One item of each stream in all ways, as :func:`itertools.product`, which keeps them all."""
+    if not streams:
+        yield ()
+        return
+    chosen: list[_T] = []
+    running = [streams[0]()]
+    while running:
+        del chosen[len(running) - 1 :]
+        try:
+            chosen.append(next(running[-1]))
+        except StopIteration:
+            running.pop()
+            continue
+        if len(running) == len(streams):
+            yield tuple(chosen)
+        else:
+            running.append(streams[len(running)]())
 
 
 def _named(graph: Sequence[GraphCell], schemes: Iterable[CellScheme]) -> dict[int, _Blocks]:
