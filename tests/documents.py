@@ -22,7 +22,7 @@ SURFACE: Document = {
 
 INSTANCE: Document = {
     "format": "cellcolor/instance",
-    "version": 1,
+    "version": 2,
     "name": "pair",
     "colors": ["red", "blue"],
     "cells": [
@@ -36,13 +36,14 @@ INSTANCE: Document = {
         {"id": 4, "left": 1, "right": 1, "colors": [0]},
     ],
     "meta": {"source": "by hand"},
-    "surface": {"path": "pair.surface.json", "vertex_cell": [0, 1, -1]},
+    "surface": {"path": "pair.surface.json", "vertex_cell": [0, 1, -1], "sha256": "0" * 64},
+    "coverage": {"area_m2": 2.0, "unreachable": 0.25, "given_up": 0.125},
     "known": {"paper": {"segments": 1, "schemes": 1}, "surface": {"segments": 1}},
 }
 
 SOLUTION: Document = {
     "format": "cellcolor/solution",
-    "version": 1,
+    "version": 2,
     "instance": {"name": "pair", "sha256": "0" * 64},
     "search_space": "surface",
     "strands": 2,
@@ -53,6 +54,11 @@ SOLUTION: Document = {
     "lower_bound": 1,
     "surface_lower_bound": 1,
     "proved_for_surface": True,
+    "bounds": [
+        {"kind": "cover", "value": 1, "holds_for": "surface", "certificate": {"regions": []}}
+    ],
+    "coverage": {"area_m2": 2.0, "unreachable": 0.25, "given_up": 0.125},
+    "notes": ["The model was too large to be built."],
     "seams": [{"id": 5, "cell": 1, "from": 3, "to": -4, "strands": 2}],
     "cells": [
         {"id": 0, "subcells": [{"color": 0, "darts": [[1, 1], [1, 2]], "segment": 0}]},

@@ -62,7 +62,7 @@ GRAPHS = {
     "NaN by name": Bad(json.dumps(INSTANCE).replace("0.5", "NaN"), "NaN"),
     "neither instance nor surface": Bad(json.dumps(PLAN), "format", "cellcolor/plan"),
     "no format": instance_of(drop("format"), "format"),
-    "wrong version": instance_of(put("version", to=2), "version"),
+    "wrong version": instance_of(put("version", to=3), "version"),
     "unknown member": instance_of(put("color", to=[]), "color"),
     "edge used three times": instance_of(
         put("cells", 0, "loops", to=[[1, 2, 1]]), "cells[0].loops[0][2]", "dart 1 stands twice"

@@ -26,6 +26,7 @@ from cellcolor.campaign.shrink import shrink_instance, shrink_surface
 from cellcolor.campaign.summary import Summary
 from cellcolor.campaign.vertices import fewest_by_vertices
 from cellcolor.cli import main
+from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.data.surface import LabelledSurface
@@ -50,7 +51,9 @@ def boast(
     answer = right_minimize(self, instance, options, progress)
     if options.search_space == "surface" or not has_busy_cell(instance):
         return answer
-    return replace(answer, division=None, lower_bound=answer.lower_bound + 1)
+    return replace(
+        answer, division=None, bounds=(Bound("model", answer.lower_bound + 1, "strands"),)
+    )
 
 
 right_minimize = CpSatSolver.minimize
@@ -149,8 +152,8 @@ def test_a_bound_above_a_coloring_of_the_vertices_is_noticed(
         answer = right_minimize(self, instance, options, progress)
         if options.search_space == "paper":
             return answer
-        bound = answer.surface_lower_bound + 1
-        return replace(answer, division=None, lower_bound=bound, surface_lower_bound=bound)
+        bound = Bound("crossings", greatest(answer.bounds, "surface") + 1, "surface")
+        return replace(answer, division=None, bounds=(bound,))
 
     number = KINDS.index("thin blobs")
     fine = examine(0, 20.0, number)

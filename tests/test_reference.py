@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 from library import PAPER
 
 from cellcolor.check.solution import check_division
+from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import CellDivision, SubCell, scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
@@ -179,7 +180,7 @@ def test_segments_are_undone(joins: list[tuple[int, int]], data: st.DataObject) 
 
 def test_no_cells_have_no_segments() -> None:
     nothing = Instance("nothing", ("red",), (), ())
-    assert SOLVER.minimize(nothing, Options()) == Answer((), (), 0)
+    assert SOLVER.minimize(nothing, Options()) == Answer((), (), ())
     assert list(SOLVER.optimal_schemes(nothing, Options(), 0)) == [()]
 
 
@@ -418,7 +419,7 @@ def test_no_time_at_all_gives_no_division() -> None:
     answer = SOLVER.minimize(
         Instance.read(PAPER / "ring.json"), Options(deadline=Deadline.after(-1.0))
     )
-    assert answer == Answer(None, (), 2)
+    assert answer == Answer(None, (), (Bound("search", 2, "strands"),))
 
 
 def test_progress_closes_the_gap() -> None:

@@ -150,7 +150,10 @@ def _read(path: Path) -> _Subject:
 def _same_surface(path: Path, instance: Instance, surface: LabelledSurface) -> None:
     """Refuse a surface that is not the one the instance was made of."""
     assert instance.surface is not None
-    cells = instance.surface.vertex_cell
+    cells, fingerprint = instance.surface.vertex_cell, instance.surface.sha256
+    if fingerprint is not None and fingerprint != surface.sha256:
+        message = f"{instance.surface.path} is not the surface that this instance was built from"
+        raise InputError(str(path), "surface.sha256", message)
     if instance.colors != surface.colors or len(cells) != len(surface.vertices):
         raise InputError(str(path), "surface.path", "the surface has other colors or vertices")
     for vertex, cell in enumerate(cells):

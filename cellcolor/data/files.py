@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO, TypeVar
@@ -76,15 +76,33 @@ def read_document(path: Path) -> dict[str, Any]:
         raise error.in_file(str(path)) from error
 
 
-def take_body(document: dict[str, Any], expected: str) -> dict[str, Any]:
-    """The document without ``format`` and ``version``, both of which must be the expected ones."""
+def take_body(
+    document: dict[str, Any], expected: str, since_version_2: Sequence[str] = ()
+) -> dict[str, Any]:
+    """The document without ``format`` and ``version``, both of which must be the expected ones.
+
+    Args:
+        document: the parsed JSON object.
+        expected: its format.
+        since_version_2: the members that version 2 added, those of members as ``member.name``;
+            without any there is only version 1.
+    """
     body = dict(document)
     found = body.pop("format", None)
     if found != expected:
         raise InputError(None, "format", f"must be {expected!r}, is {found!r}")
     version = body.pop("version", None)
-    if type(version) is not int or version != 1:
-        raise InputError(None, "version", f"must be 1, is {version!r}")
+    newest = 2 if since_version_2 else 1
+    if type(version) is not int or not 1 <= version <= newest:
+        known = "1" if newest == 1 else "1 or 2"
+        raise InputError(None, "version", f"must be {known}, is {version!r}")
+    for name in since_version_2 if version == 1 else ():
+        *outer, last = name.split(".")
+        holder: Any = body
+        for part in outer:
+            holder = holder.get(part) if isinstance(holder, dict) else None
+        if isinstance(holder, dict) and last in holder:
+            raise InputError(None, name, "is a member of version 2, the file says version 1")
     return body
 
 

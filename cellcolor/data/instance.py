@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any
@@ -12,7 +12,9 @@ from typing import Annotated, Any
 from annotated_types import Ge
 from pydantic import ConfigDict, TypeAdapter
 
+from cellcolor.data.coverage import Coverage
 from cellcolor.data.files import dump_lines, read_document, take_body, validate
+from cellcolor.data.fingerprint import sha256_of
 from cellcolor.errors import InputError
 
 FORMAT = "cellcolor/instance"
@@ -70,12 +72,14 @@ class SurfaceReference:
     Attributes:
         path: relative to the instance's file.
         vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable.
+        sha256: the surface's fingerprint; None in files of version 1.
     """
 
     __pydantic_config__ = _STRICT
 
     path: str
     vertex_cell: tuple[int, ...]
+    sha256: str | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,6 +106,16 @@ class Known:
 class Instance:
     """A validated topological graph, all that is needed to solve.
 
+    Attributes:
+        name: what to call it.
+        colors: the names of the colors.
+        cells: numbered 0, 1, 2, …
+        edges: in no particular order.
+        meta: free, JSON-able.
+        surface: the labelled surface it was built from, if any.
+        known: results known from elsewhere.
+        coverage: how much of that surface the cells cover, if known.
+
     Raises:
         InputError: anything that ``docs/formats.md`` forbids, with field and element.
     """
@@ -114,7 +128,8 @@ class Instance:
     edges: tuple[Edge, ...]
     meta: dict[str, Any] | None = None
     surface: SurfaceReference | None = None
-    known: Known | None = field(default=None)
+    known: Known | None = None
+    coverage: Coverage | None = None
 
     def __post_init__(self) -> None:
         self._check_cells()
@@ -227,8 +242,12 @@ class Instance:
 
     def to_json(self) -> str:
         """The file's text, as ``build`` writes it."""
-        document: dict[str, Any] = {"format": FORMAT, "version": 1, "name": self.name}
-        document["colors"] = list(self.colors)
+        document = {"format": FORMAT, "version": 2} | self._body()
+        return dump_lines(document, frozenset({"cells", "edges"}))
+
+    def _body(self) -> dict[str, Any]:
+        """The JSON object without its format and version."""
+        document: dict[str, Any] = {"name": self.name, "colors": list(self.colors)}
         document["cells"] = [
             _given(
                 {"id": c.id, "colors": c.colors, "loops": c.loops},
@@ -243,10 +262,12 @@ class Instance:
         if self.meta is not None:
             document["meta"] = self.meta
         if self.surface is not None:
-            document["surface"] = {
-                "path": self.surface.path,
-                "vertex_cell": self.surface.vertex_cell,
-            }
+            document["surface"] = _given(
+                {"path": self.surface.path, "vertex_cell": self.surface.vertex_cell},
+                sha256=self.surface.sha256,
+            )
+        if self.coverage is not None:
+            document["coverage"] = self.coverage.to_document()
         if self.known is not None:
             results = {
                 space: _given({"segments": result.segments}, schemes=result.schemes)
@@ -254,17 +275,43 @@ class Instance:
                 if result is not None
             }
             document["known"] = results
-        return dump_lines(document, frozenset({"cells", "edges"}))
+        return document
 
     @cached_property
     def sha256(self) -> str:
-        """Fingerprint of the file's text as ``build`` writes it."""
-        return hashlib.sha256(self.to_json().encode()).hexdigest()
+        """Fingerprint of what a solver reads (docs/formats.md): the graph, no names, no sizes.
+
+        The order of edges, of loops and of a loop's first dart means nothing; the ids of cells
+        and edges are in it, since a solution names them.
+        """
+        return sha256_of(
+            {
+                "colors": len(self.colors),
+                "cells": [
+                    [
+                        sorted(cell.colors),
+                        sorted([*loop[at:], *loop[:at]] for loop, at in _from_smallest(cell.loops)),
+                    ]
+                    for cell in self.cells
+                ],
+                "edges": sorted([e.id, e.left, e.right, self.joinable(e.id)] for e in self.edges),
+            }
+        )
+
+    @cached_property
+    def sha256_of_version_1(self) -> str:
+        """Fingerprint of this instance in a solution of version 1: that of the whole file."""
+        return _sha256_of_version_1(self._body())
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:
         """An instance from a parsed JSON object."""
-        return validate(_ADAPTER, take_body(document, FORMAT))
+        body = take_body(document, FORMAT, ("coverage", "surface.sha256"))
+        instance = validate(_ADAPTER, body)
+        if document["version"] == 1:
+            # The old fingerprint depends on the order of colors, which an instance does not keep.
+            instance.__dict__["sha256_of_version_1"] = _sha256_of_version_1(body)
+        return instance
 
     @classmethod
     def read(cls, path: Path) -> Instance:
@@ -280,6 +327,39 @@ class Instance:
 
 
 _ADAPTER = TypeAdapter(Instance)
+
+
+def _from_smallest(loops: Sequence[tuple[int, ...]]) -> list[tuple[tuple[int, ...], int]]:
+    """Each loop with the place of its smallest dart."""
+    return [(loop, loop.index(min(loop))) for loop in loops]
+
+
+def _sha256_of_version_1(body: dict[str, Any]) -> str:
+    """SHA-256 of the text that was written for an instance when there was only version 1."""
+
+    def part(element: dict[str, Any], names: Sequence[str], measure: str = "") -> dict[str, Any]:
+        taken = {name: element[name] for name in names if element.get(name) is not None}
+        size = element.get(measure)
+        return taken | ({} if size is None else {measure: float(size)})
+
+    document: dict[str, Any] = {"format": FORMAT, "version": 1}
+    document |= {"name": body["name"], "colors": body["colors"]}
+    document["cells"] = [part(c, ("id", "colors", "loops"), "area") for c in body["cells"]]
+    document["edges"] = [
+        part(e, ("id", "left", "right", "colors"), "length") for e in body["edges"]
+    ]
+    if body.get("meta") is not None:
+        document["meta"] = body["meta"]
+    if body.get("surface") is not None:
+        document["surface"] = part(body["surface"], ("path", "vertex_cell"))
+    if body.get("known") is not None:
+        document["known"] = {
+            space: part(body["known"][space], ("segments", "schemes"))
+            for space in ("paper", "surface")
+            if body["known"].get(space) is not None
+        }
+    text = dump_lines(document, frozenset({"cells", "edges"}))
+    return hashlib.sha256(text.encode()).hexdigest()
 
 
 def _given(document: dict[str, Any], **optional: object) -> dict[str, Any]:

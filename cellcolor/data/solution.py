@@ -11,6 +11,8 @@ from typing import Annotated, Any, Literal
 from annotated_types import Ge
 from pydantic import ConfigDict, Field, TypeAdapter
 
+from cellcolor.data.bound import Bound
+from cellcolor.data.coverage import Coverage
 from cellcolor.data.files import dump_lines, parse_json, read_text, take_body, validate
 from cellcolor.errors import InputError
 
@@ -90,12 +92,20 @@ class Seam:
 
 @dataclass(frozen=True, slots=True)
 class InstanceReference:
-    """The instance that was solved: its name and the fingerprint of its file."""
+    """The instance that was solved.
+
+    Attributes:
+        name: what it is called.
+        sha256: its fingerprint.
+        of: what that was taken of: the ``graph``, or the whole ``text`` of its file as in
+            solutions of version 1.
+    """
 
     __pydantic_config__ = _STRICT
 
     name: str
     sha256: str
+    of: Literal["graph", "text"] = "graph"
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +131,10 @@ class Solution:
         cutting_paths: with "fewest cutting paths" asked for, how many the division has.
         cutting_paths_lower_bound: with "fewest cutting paths" asked for, no division in the search
             space with as few segments has fewer.
+        bounds: how ``lower_bound`` and ``surface_lower_bound`` were proved, each the greatest of
+            its kind in here; None where that is not said, as in files of version 1.
+        coverage: the instance's, so that shares can be told from the solution alone.
+        notes: what was left out and why, a sentence each.
     """
 
     __pydantic_config__ = _STRICT
@@ -142,6 +156,9 @@ class Solution:
     complete: bool | None = None
     cutting_paths: Count | None = None
     cutting_paths_lower_bound: Count | None = None
+    bounds: tuple[Bound, ...] | None = None
+    coverage: Coverage | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         missing = [
@@ -164,7 +181,7 @@ class Solution:
         """The JSON object."""
         document: dict[str, Any] = {
             "format": FORMAT,
-            "version": 1,
+            "version": 2,
             "instance": {"name": self.instance.name, "sha256": self.instance.sha256},
             "search_space": self.search_space,
             "strands": self.strands,
@@ -175,6 +192,16 @@ class Solution:
             "lower_bound": self.lower_bound,
             "surface_lower_bound": self.surface_lower_bound,
             "proved_for_surface": self.proved_for_surface,
+        }
+        if self.instance.of != "graph":
+            document["instance"]["of"] = self.instance.of
+        if self.bounds is not None:
+            document["bounds"] = [bound.to_document() for bound in self.bounds]
+        if self.coverage is not None:
+            document["coverage"] = self.coverage.to_document()
+        if self.notes:
+            document["notes"] = list(self.notes)
+        document |= {
             "seams": [
                 {"id": s.id, "cell": s.cell, "from": s.from_, "to": s.to, "strands": s.strands}
                 for s in self.seams
@@ -192,12 +219,15 @@ class Solution:
 
     def to_json(self) -> str:
         """The file's text."""
-        return dump_lines(self.to_document(), frozenset({"cells"}))
+        return dump_lines(self.to_document(), frozenset({"bounds", "cells"}))
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Solution:
         """A solution from a parsed JSON object."""
-        return validate(_ADAPTER, take_body(document, FORMAT))
+        body = take_body(document, FORMAT, ("bounds", "coverage", "notes", "instance.of"))
+        if document["version"] == 1 and isinstance(body.get("instance"), dict):
+            body["instance"] = body["instance"] | {"of": "text"}
+        return validate(_ADAPTER, body)
 
     @classmethod
     def read(cls, path: Path) -> Solution:

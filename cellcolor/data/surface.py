@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter
 
 from cellcolor.data.files import dump_lines, read_document, take_body, validate
+from cellcolor.data.fingerprint import sha256_of
 from cellcolor.data.mesh import directed_edges
 from cellcolor.errors import InputError
 
@@ -111,6 +112,21 @@ class LabelledSurface:
     def left_of(self) -> dict[tuple[int, int], int]:
         """``{(i, j): k}`` for every triangle (i, j, k): see :func:`directed_edges`."""
         return directed_edges(self.faces, len(self.vertices))
+
+    @cached_property
+    def sha256(self) -> str:
+        """Fingerprint of what an instance is made of (docs/formats.md); no names, no ``meta``."""
+        first = self.faces.argmin(axis=1)[:, None]
+        faces = np.take_along_axis(self.faces, (first + np.arange(3)) % 3, axis=1)
+        return sha256_of(
+            {
+                # Doubles in hexadecimal have one text in every language; adding 0 drops -0.
+                "vertices": (self.vertices + 0.0).astype(">f8").tobytes().hex(),
+                "faces": sorted(faces.tolist()),
+                "vertex_colors": self.vertex_colors,
+                "cracks": sorted([crack.i, crack.j, list(crack.colors)] for crack in self.cracks),
+            }
+        )
 
     def to_json(self) -> str:
         """The file's text."""

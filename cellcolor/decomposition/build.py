@@ -60,7 +60,7 @@ def decompose(surface: LabelledSurface, path: PurePath | str | None = None) -> I
         edges.append(Edge(number, area[left], area[right], colors, measure.length(curve)))
     reference = None
     if path is not None:
-        reference = SurfaceReference(str(path), tuple(area[: mesh.real_count]))
+        reference = SurfaceReference(str(path), tuple(area[: mesh.real_count]), surface.sha256)
     return Instance(
         surface.name, surface.colors, cells, tuple(edges), surface.meta or None, reference
     )

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Protocol
 
+from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, SearchSpace
 from cellcolor.deadline import NEVER, Deadline
@@ -61,8 +62,7 @@ class Answer:
     Attributes:
         division: the best division found, None when none was found.
         seams: the seams that its darts refer to.
-        lower_bound: no division in the search space has fewer segments.
-        surface_lower_bound: no division of the physical surface has fewer segments.
+        bounds: what was proved about the fewest segments, and how.
         cutting_paths_lower_bound: no division in the search space with the fewest segments has
             fewer cutting paths; None when that was not asked for.
         notes: what was left out and why, a sentence each, such as a model too large to be built.
@@ -70,10 +70,14 @@ class Answer:
 
     division: Division | None
     seams: tuple[Seam, ...]
-    lower_bound: int
-    surface_lower_bound: int = 0
+    bounds: tuple[Bound, ...]
     cutting_paths_lower_bound: int | None = None
     notes: tuple[str, ...] = ()
+
+    @property
+    def lower_bound(self) -> int:
+        """No division in the search space has fewer segments."""
+        return greatest(self.bounds, "strands")
 
 
 class Solver(Protocol):

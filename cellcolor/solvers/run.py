@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 
 from cellcolor.check.solution import Report, check_division, check_solution
+from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status
 from cellcolor.errors import CellcolorError
@@ -74,8 +75,8 @@ def solve(
     start = time.monotonic()
     answer = chosen.minimize(instance, options, progress)
     cover = len(set_cover(instance)) if instance.cells else 0
-    surface_bound = max(cover, answer.surface_lower_bound)
-    lower_bound = max(answer.lower_bound, surface_bound)
+    bounds = _needed((Bound("cover", cover, "surface"), *answer.bounds))
+    surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")
     segments = None if answer.division is None else _count(answer.division)
     proved_for_surface = segments == surface_bound
     status: Status = "feasible"
@@ -99,6 +100,9 @@ def solve(
         seconds=time.monotonic() - start,
         cutting_paths=None if answer.cutting_paths_lower_bound is None else _cuts(answer.division),
         cutting_paths_lower_bound=answer.cutting_paths_lower_bound,
+        bounds=bounds,
+        coverage=instance.coverage,
+        notes=answer.notes,
     )
     _insist(check_solution(instance, solution), solver)
     return solution
@@ -126,6 +130,19 @@ def enumerate_schemes(
             reasons = "; ".join(report.not_canonical) or f"{report.segments} segments"
             raise ContradictionError(f"{solver} returned no optimal scheme: {reasons}")
         yield division
+
+
+def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
+    """The bounds without those that an earlier or a more general one makes pointless.
+
+    Those for any division of the surface come first, each kind of bound in the order given.
+    """
+    kept: list[Bound] = []
+    for extent in ("surface", "strands"):
+        for bound in bounds:
+            if bound.holds_for == extent and bound.value > max((b.value for b in kept), default=0):
+                kept.append(bound)
+    return tuple(kept)
 
 
 def _count(division: Division) -> int:

@@ -8,6 +8,7 @@ from math import ceil, isfinite
 
 from ortools.sat.python import cp_model
 
+from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import OutOfTime
@@ -59,7 +60,7 @@ class CpSatSolver:
     ) -> Answer:
         """A division with the fewest segments, or the best that the time limit allowed."""
         if not instance.cells:
-            return Answer((), (), 0, 0, 0 if options.fewest_cuts else None)
+            return Answer((), (), (), 0 if options.fewest_cuts else None)
         search = _Search(instance, options, progress, self._plans)
         with suppress(OutOfTime):  # an interrupt between two models
             search.run()
@@ -108,10 +109,19 @@ class _Search:
             painting = canonical(full, moved(graph, painting, full))
             division = division_of(full, painting, strands)
         cuts = self._cuts_bound if self._options.fewest_cuts else None
+        return Answer(division, seams, self._bounds(), cuts)
+
+    def _bounds(self) -> tuple[Bound, ...]:
+        """What is proved of the number of segments, and how."""
         # Where more corridors across an edge are never needed, the bound is one for the surface.
         wide = all(enough <= self._options.strands for enough in self._enough.values())
-        surface_bound = self._bound if wide else self._surface_bound
-        return Answer(division, seams, self._bound, surface_bound, cuts)
+        return (
+            Bound("cover", len(self._cover), "surface"),
+            Bound("conflicts", self._surface_bound, "surface"),
+            Bound("crossings", self._bound, "surface")
+            if wide
+            else Bound("model", self._bound, "strands"),
+        )
 
     def run(self) -> None:
         """Solve until the best division is proved, or there is no time left."""

@@ -7,6 +7,7 @@ from functools import partial
 from itertools import islice
 from typing import TypeVar
 
+from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import DartName, Division, Seam, number_segments
 from cellcolor.deadline import Deadline, OutOfTime
@@ -68,12 +69,12 @@ class ReferenceSolver:
                     report()
         except OutOfTime:
             pass
-        bound = sum(part.bound for part in parts)
+        bounds = (Bound("search", sum(part.bound for part in parts), "strands"),)
         if any(part.segments is None for part in parts):
-            return Answer(None, (), bound)
+            return Answer(None, (), bounds)
         blocks = {cell: found for part in parts for cell, found in part.blocks.items()}
         seams = sorted((s for part in parts for s in part.seams), key=lambda seam: seam.id)
-        return Answer(_division(instance, blocks), tuple(seams), bound)
+        return Answer(_division(instance, blocks), tuple(seams), bounds)
 
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int

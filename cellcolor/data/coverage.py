@@ -1,0 +1,46 @@
+"""What part of a surface a solution's numbers speak about."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le
+from pydantic import ConfigDict
+
+from cellcolor.errors import InputError
+
+_ROUNDING = 1e-9
+"""Shares are sums of floating-point areas, divided."""
+
+Share = Annotated[float, Ge(0), Le(1)]
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """How much of a surface the cells cover; the rest is painted by nobody.
+
+    Attributes:
+        area_m2: the whole surface, square metres.
+        unreachable: the share of its area that no color reaches, 0 to 1.
+        given_up: the share that some color reaches and that the sliver policy took away, 0 to 1;
+            not part of ``unreachable``.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+    area_m2: Annotated[float, Ge(0)]
+    unreachable: Share
+    given_up: Share
+
+    def __post_init__(self) -> None:
+        if self.unreachable + self.given_up > 1 + _ROUNDING:
+            raise InputError(None, "coverage", "unreachable and given_up are more than the whole")
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "area_m2": self.area_m2,
+            "unreachable": self.unreachable,
+            "given_up": self.given_up,
+        }
