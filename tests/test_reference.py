@@ -180,7 +180,7 @@ def test_segments_are_undone(joins: list[tuple[int, int]], data: st.DataObject) 
 
 def test_no_cells_have_no_segments() -> None:
     nothing = Instance("nothing", ("red",), (), ())
-    assert SOLVER.minimize(nothing, Options()) == Answer((), (), ())
+    assert SOLVER.minimize(nothing, Options()) == Answer((), (), (Bound("search", 0, "strands"),))
     assert list(SOLVER.optimal_schemes(nothing, Options(), 0)) == [()]
 
 
