@@ -16,6 +16,7 @@ from commands import json_lines, run
 from documents import INSTANCE
 from library import INSTANCES, PAPER
 
+import cellcolor.cli.commands
 import cellcolor.solvers.run
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
@@ -61,6 +62,20 @@ def not_proved(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cellcolor.solvers.run, "solve", stopped)
 
 
+@pytest.mark.parametrize("columns", [80, 50])
+def test_help_is_cut_nowhere(
+    columns: int, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(columns))
+    assert run("--help") == 0
+    _, _, listed = capsys.readouterr().out.partition("Commands:")
+    text = "".join(listed.split())  # lines may end at hyphens
+    for name, command in cellcolor.cli.commands.cellcolor.commands.items():
+        assert command.help is not None
+        paragraph = "".join(command.help.partition("\n\n")[0].split())
+        assert f"{name}{paragraph}" in text
+
+
 class TestSolve:
     def test_table(self, capsys: Capture) -> None:
         assert run("solve", ZEROS) == 0
@@ -83,6 +98,9 @@ class TestSolve:
         out = capsys.readouterr().out
         assert "share of area" in out
         assert out.count("25.0–75.0 %") == 2
+        assert "where the cut runs through a divided cell is free" in out
+        assert run("solve", RING) == 0  # nothing is divided there
+        assert "where the cut runs" not in capsys.readouterr().out
 
     def test_json_is_all_there_is(self, capsys: Capture) -> None:
         assert run("solve", RING, CORRIDORS, "--json") == 0

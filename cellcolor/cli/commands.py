@@ -27,11 +27,31 @@ class _Seconds(click.FloatRange):
         return seconds
 
 
+class _Commands(click.Group):
+    """Lists every command with its first paragraph in full; click would cut it to one line."""
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        rows = []
+        for name in self.list_commands(ctx):
+            paragraph = (self.commands[name].help or "").partition("\n\n")[0]
+            rows.append((name, " ".join(paragraph.split())))
+        with formatter.section("Commands"):
+            formatter.write_dl(rows)
+
+
 _PATH = click.Path(path_type=Path)
 _SECONDS = _Seconds()
+_SEED = click.option(
+    "--seed",
+    metavar="N",
+    type=click.IntRange(0, 2**31 - 1),
+    default=0,
+    show_default=True,
+    help="Of everything random.",
+)
 
 
-@click.group(name="cellcolor", invoke_without_command=True)
+@click.group(name="cellcolor", cls=_Commands, invoke_without_command=True)
 @click.version_option(package.__version__, message="%(prog)s %(version)s")
 @click.pass_context
 def cellcolor(context: click.Context) -> None:
@@ -42,7 +62,14 @@ def cellcolor(context: click.Context) -> None:
 
 @cellcolor.command()
 @click.argument("source", metavar="SCENE.toml|SURFACE.json", type=_PATH)
-@click.option("-o", "--output", metavar="INSTANCE.json", required=True, type=_PATH)
+@click.option(
+    "-o",
+    "--output",
+    metavar="INSTANCE.json",
+    required=True,
+    type=_PATH,
+    help="The instance; other files are named after it.",
+)
 def build(source: Path, output: Path) -> int:
     """Make the topological graph of a robot scene or of a labelled surface.
 
@@ -58,13 +85,19 @@ def build(source: Path, output: Path) -> int:
 @click.option(
     "-o", "--output", metavar="OUT", type=_PATH, help="A file for one input, a folder for several."
 )
-@click.option("--solver", type=click.Choice(["cp-sat", "dfs"]), default="cp-sat", show_default=True)
+@click.option(
+    "--solver",
+    type=click.Choice(["cp-sat", "dfs"]),
+    default="cp-sat",
+    show_default=True,
+    help="dfs: the paper's depth-first search, for small instances.",
+)
 @click.option(
     "--search-space",
     type=click.Choice(["paper", "surface"]),
     default="paper",
     show_default=True,
-    help="surface: any division of the physical surface.",
+    help="paper: no more than one corridor across an edge. surface: several.",
 )
 @click.option(
     "--strands",
@@ -72,7 +105,7 @@ def build(source: Path, output: Path) -> int:
     type=click.IntRange(min=1),
     help="Corridors that may cross an edge, in search space surface.  [default: 2]",
 )
-@click.option("--all", "every", is_flag=True, help="All optimal schemes.")
+@click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
 @click.option(
     "--fewest-cuts", is_flag=True, help="Of the best divisions one with fewest cutting paths."
 )
@@ -86,11 +119,11 @@ def build(source: Path, output: Path) -> int:
     "--limit",
     metavar="N",
     type=click.IntRange(min=1),
-    help="With --all: no more schemes than that.  [default: 1000]",
+    help="With --all, no more schemes than that.  [default: 1000]",
 )
 @click.option("--time-limit", metavar="S", type=_SECONDS, help="Seconds for each file.")
 @click.option("--workers", metavar="N", type=click.IntRange(min=1), help="CP-SAT's search workers.")
-@click.option("--seed", metavar="N", type=click.IntRange(0, 2**31 - 1), default=0)
+@_SEED
 @click.option("--json", "as_json", is_flag=True, help="JSON Lines, one solution a file.")
 def solve(
     files: tuple[Path, ...],
@@ -175,9 +208,18 @@ def bench(files: tuple[Path, ...], time_limit: float) -> int:
 
 @cellcolor.command()
 @click.argument("files", metavar="FILE [SOLUTION.json]", nargs=-1, required=True, type=_PATH)
-@click.option("-o", "--output", metavar="OUT.(html|png|svg)", required=True, type=_PATH)
-@click.option("--color", metavar="NAME|ID", help="The domain of one color.")
-@click.option("--reason", is_flag=True, help="Why points are out of reach; with --branch, of it.")
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT.(html|png|svg)",
+    required=True,
+    type=_PATH,
+    help="The picture, in the format of its ending.",
+)
+@click.option("--color", metavar="NAME|ID", help="Where one color is available.")
+@click.option(
+    "--reason", is_flag=True, help="Why points are out of reach, at best or in one --branch."
+)
 @click.option("--graph", is_flag=True, help="The topological graph.")
 @click.option(
     "--vertex", metavar="N", type=click.IntRange(min=0), help="The arm on a vertex, in a --branch."
@@ -222,7 +264,7 @@ def show(
     show_default=True,
     help="Random instances.",
 )
-@click.option("--seed", metavar="N", type=click.IntRange(0, 2**31 - 1), default=0)
+@_SEED
 @click.option(
     "--time-limit",
     metavar="S",

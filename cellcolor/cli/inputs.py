@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -24,12 +25,14 @@ class Scene:
 
     Attributes:
         surface: what the front end made of it.
-        report: what it has to say about that, several lines.
+        report: what it has to say about that, several lines, warnings among them.
+        warnings: what is probably not meant, a sentence each.
         write_side: writes the surface's side file, reasons and configurations (``.npz``).
     """
 
     surface: LabelledSurface
     report: str
+    warnings: tuple[str, ...]
     write_side: Callable[[Path], None]
 
 
@@ -55,7 +58,8 @@ def build_scene(path: Path) -> Scene:
             str(path), None, f"scenes need {missing}: pip install 'cellcolor[frontend]'"
         ) from error
     result = build_surface(path)
-    return Scene(result.surface, str(result.report), partial(write_side_file, result))
+    report = result.report
+    return Scene(result.surface, str(report), report.warnings, partial(write_side_file, result))
 
 
 def read_graph(path: Path) -> Instance | LabelledSurface:
@@ -95,12 +99,16 @@ def graph_of(surface: LabelledSurface, path: Path, reference: str) -> Instance:
 def read_instance(path: Path) -> Instance:
     """An instance from anything that can be solved.
 
-    A surface or scene becomes the instance that ``build`` writes beside it.
+    A surface or scene becomes the instance that ``build`` writes beside it. What the front end
+    warns of goes to standard error.
 
     Raises:
         InputError: with the file named.
     """
     if is_scene(path):
-        return graph_of(build_scene(path).surface, path, f"{path.stem}.surface.json")
+        scene = build_scene(path)
+        for warning in scene.warnings:
+            print(f"cellcolor: {path}: warning: {warning}", file=sys.stderr)
+        return graph_of(scene.surface, path, f"{path.stem}.surface.json")
     found = read_graph(path)
     return found if isinstance(found, Instance) else graph_of(found, path, path.name)

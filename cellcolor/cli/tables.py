@@ -34,6 +34,9 @@ def print_solution(instance: Instance, solution: Solution) -> None:
     )
     if solution.cells:
         out.print(_segments(instance, solution))
+        if any(len({sub.segment for sub in cell.subcells}) > 1 for cell in solution.cells):
+            out.print("ranges: where the cut runs through a divided cell is free, between its ends")
+            out.print()
     summary = Table(box=None, show_header=False, pad_edge=False)
     for name, value in [*_summary(solution), *_witness(instance, solution)]:
         summary.add_row(Text(name, style="bold"), value)

@@ -35,6 +35,7 @@ from cellcolor.frontend.report import BuildReport, make_report
 from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Scene, Setup
 from cellcolor.frontend.slivers import SliverReport, clean
+from cellcolor.frontend.survey import survey
 from cellcolor.frontend.ur import BRANCHES
 from cellcolor.frontend.validity import Candidates, Reason
 
@@ -156,7 +157,10 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
         cracks=cracks,
         meta=_meta(scene, setup, seconds, slivers),
     )
-    report = make_report(surface, candidates, coloring, BRANCHES, len(cracks), seconds, slivers)
+    where = survey(surface, stage.geometry)
+    report = make_report(
+        where, surface, candidates, coloring, BRANCHES, len(cracks), seconds, slivers
+    )
     return BuildResult(
         surface=labelled,
         branches=BRANCHES,

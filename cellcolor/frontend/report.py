@@ -9,6 +9,7 @@ import numpy as np
 from cellcolor.frontend.continuity import Coloring
 from cellcolor.frontend.slivers import SliverReport
 from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.survey import Survey
 from cellcolor.frontend.validity import Candidates, Reason
 
 __all__ = ["BuildReport", "ColorReport", "make_report"]
@@ -29,6 +30,7 @@ class BuildReport:
     """What a build found.
 
     Attributes:
+        survey: where the object is.
         vertices: of the surface.
         reachable: vertices with one valid configuration or more.
         area_m2: of the whole surface.
@@ -42,6 +44,7 @@ class BuildReport:
         seconds: wall time of each stage.
     """
 
+    survey: Survey
     vertices: int
     reachable: int
     area_m2: float
@@ -53,9 +56,15 @@ class BuildReport:
     seconds: dict[str, float]
     slivers: SliverReport | None = None
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is probably not meant, a sentence each."""
+        return self.survey.warnings
+
     def __str__(self) -> str:
         share = 100 * self.reachable_area_m2 / self.area_m2
-        lines = [
+        lines = [f"object  {self.survey}", *(f"warning  {text}" for text in self.warnings)]
+        lines += [
             f"reachable  {self.reachable} of {self.vertices} vertices, {share:.1f} % of the area"
         ]
         lines += _table("unreachable vertices, by the branch that came farthest", self.unreachable)
@@ -86,6 +95,7 @@ def _table(title: str, counts: dict[str, int]) -> list[str]:
 
 
 def make_report(
+    where: Survey,
     surface: Surface,
     candidates: Candidates,
     coloring: Coloring,
@@ -105,6 +115,7 @@ def make_report(
         size, area = int(domain.sum()), float(areas[domain].sum())
         colors.append(ColorReport(name, branch_names[branch], size, area))
     return BuildReport(
+        survey=where,
         vertices=len(areas),
         reachable=int(reached.sum()),
         area_m2=float(areas.sum()),

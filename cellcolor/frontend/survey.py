@@ -1,0 +1,122 @@
+"""How the object lies to the robot: its size, its distance, and which of its sides is outside.
+
+What a wrong unit, a wrong placement or a mesh wound the wrong way would change.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import fcl
+import numpy as np
+import trimesh
+
+from cellcolor.frontend.robot import Array
+from cellcolor.frontend.surfaces import Faces, Surface, face_normals
+from cellcolor.frontend.ur import UrGeometry
+
+__all__ = ["Survey", "survey"]
+
+_POINTS = 500  # of the surface that are looked at
+_SHORT = 1e-3  # by this part of its length a line of sight ends before the surface
+_THIN = 1e-7  # m; radius of a line of sight
+
+
+@dataclass(frozen=True)
+class Survey:
+    """Where the object is.
+
+    Attributes:
+        size_m: (3,) of its bounding box along the axes of the world.
+        distance_m: from the origin of the robot's base to the nearest point of it.
+        from_behind: of an open mesh, the share (0 to 1) of what can be seen of it that shows its
+            back only; 0 for a closed one and for what cannot be seen.
+    """
+
+    size_m: Array
+    distance_m: float
+    from_behind: float
+
+    def __str__(self) -> str:
+        size = " x ".join(_meters(side) for side in self.size_m)
+        return f"{size} m, nearest point {_meters(self.distance_m)} m from the robot's base"
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is probably not meant, a sentence each."""
+        if self.from_behind <= 0.5:
+            return ()
+        return (
+            f"the robot sees {100 * self.from_behind:.0f} % of the object from behind only: if its "
+            "faces are wound clockwise as seen from outside, the tool comes from the wrong side",
+        )
+
+
+def survey(surface: Surface, geometry: UrGeometry) -> Survey:
+    """Measure the placed surface."""
+    vertices, faces = surface.vertices, surface.faces
+    nearest = trimesh.triangles.closest_point(vertices[faces], np.zeros((len(faces), 3)))
+    return Survey(
+        vertices.max(axis=0) - vertices.min(axis=0),
+        float(np.linalg.norm(nearest, axis=1).min()),
+        _from_behind(vertices, faces, geometry) if _is_open(faces) else 0.0,
+    )
+
+
+def _is_open(faces: Faces) -> bool:
+    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    used = np.unique(np.sort(directed, axis=1), axis=0)
+    return len(directed) < 2 * len(used)
+
+
+def _from_behind(vertices: Array, faces: Faces, geometry: UrGeometry) -> float:
+    """Of the points seen from the shoulder or from above it, the share whose front is not seen.
+
+    Above: as high as the arm is long. Over a bowl or half a pipe the arm reaches into what the
+    shoulder sees the outside of.
+    """
+    arm = abs(geometry.a2) + abs(geometry.a3)
+    points, face = _spread(vertices, faces)
+    model = fcl.BVHModel()
+    model.beginModel(len(faces), len(vertices))
+    model.addSubModel(vertices, faces)
+    model.endModel()
+    shape = fcl.CollisionObject(model, fcl.Transform())
+    normals = face_normals(vertices, faces)[face]
+    seen, front = np.zeros((2, len(points)), dtype=bool)
+    for eye in (geometry.shoulder, geometry.shoulder + arm * geometry.frame[:, 2]):
+        visible = np.array([_visible(shape, eye, point) for point in points])
+        seen |= visible
+        front |= visible & (np.einsum("ij,ij->i", normals, eye - points) > 0)
+    return float((seen & ~front).sum() / max(seen.sum(), 1))
+
+
+def _spread(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+    """Points (k, 3) all over the surface, each for as much area, and the face (k,) of each."""
+    corners = vertices[faces]
+    areas = np.linalg.norm(face_normals(vertices, faces), axis=1)
+    wanted = (np.arange(_POINTS) + 0.5) / _POINTS * areas.sum()
+    face = np.minimum(np.searchsorted(np.cumsum(areas), wanted), len(faces) - 1)
+    u, v = np.random.default_rng(0).random((2, _POINTS))
+    u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
+    weights = np.stack([1 - u - v, u, v], axis=1)
+    return np.einsum("ij,ijk->ik", weights, corners[face]), face
+
+
+def _visible(shape: fcl.CollisionObject, eye: Array, point: Array) -> bool:
+    """Whether nothing of the shape lies before a point of it."""
+    sight = (1 - _SHORT) * (point - eye)
+    length = float(np.linalg.norm(sight))
+    if length == 0:
+        return False
+    z = sight / length
+    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
+    x /= np.linalg.norm(x)
+    turn = np.column_stack([x, np.cross(z, x), z])
+    line = fcl.CollisionObject(fcl.Capsule(_THIN, length), fcl.Transform(turn, eye + sight / 2))
+    return not fcl.collide(shape, line, fcl.CollisionRequest(), fcl.CollisionResult())
+
+
+def _meters(length: float) -> str:
+    """Three digits, whether it is 0.7 mm or 70 m."""
+    return f"{length:.0f}" if length >= 100 else f"{length:.3g}"

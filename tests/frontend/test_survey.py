@@ -1,0 +1,107 @@
+"""Where the object is, and whether its outside is towards the robot."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shipped import SCENES, edited
+
+from cellcolor.cli import main
+from cellcolor.frontend import build_surface
+from cellcolor.frontend.generators import disc_mesh, grid_mesh, rectangle, spherical_cap
+from cellcolor.frontend.prepare import prepare
+from cellcolor.frontend.scene import Placement
+from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.survey import survey
+from cellcolor.frontend.ur import UrGeometry
+
+
+def turned_over(surface: Surface) -> Surface:
+    """Its inside out."""
+    return replace(surface, faces=surface.faces[:, ::-1].copy(), normals=-surface.normals)
+
+
+def test_size_and_distance_are_those_of_the_faces(geometry: UrGeometry) -> None:
+    """A plate under the robot, whose corners are far away."""
+    plate = Surface(
+        np.array([[-1.0, -2, -0.18], [1, -2, -0.18], [1, 2, -0.18], [-1, 2, -0.18]]),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        np.tile([0.0, 0, 1], (4, 1)),
+    )
+    found = survey(plate, geometry)
+    assert found.size_m == pytest.approx([2, 4, 0])
+    assert found.distance_m == pytest.approx(0.18)
+    assert str(found) == "2 x 4 x 0 m, nearest point 0.18 m from the robot's base"
+
+
+@pytest.mark.parametrize(
+    ("scale", "text"), [(0.001, "0.002 x 0.004 x 0 m"), (100.0, "200 x 400 x 0 m")]
+)
+def test_a_wrong_unit_is_seen(scale: float, text: str, geometry: UrGeometry) -> None:
+    plate = rectangle(2.0 * scale, 4.0 * scale, *grid_mesh(2.0 * scale, 4.0 * scale, 50, 0.0, 0))
+    assert str(survey(plate, geometry)).startswith(text)
+
+
+@given(
+    st.floats(0.05, 0.25),
+    st.floats(0.3, np.pi / 2),
+    st.floats(0.35, 0.9),
+    st.floats(-0.4, 0.0),
+    st.floats(-np.pi, np.pi),
+    st.integers(20, 400),
+)
+@settings(deadline=None, max_examples=12)
+def test_domes_before_the_robot(
+    geometry: UrGeometry,
+    radius: float,
+    half_angle: float,
+    away: float,
+    height: float,
+    around: float,
+    target: int,
+) -> None:
+    """The robot looks from above a dome's rim, so it sees no inside, or nothing else."""
+    position = (away * np.cos(around), away * np.sin(around), height - radius * np.cos(half_angle))
+    dome = spherical_cap(radius, half_angle, *disc_mesh(target, 0.0, 0)).placed(
+        Placement(position_m=position, rpy_rad=(0.0, 0.0, 0.0))
+    )
+    assert survey(dome, geometry).from_behind < 0.1
+    (warning,) = survey(turned_over(dome), geometry).warnings
+    assert "from behind" in warning
+
+
+@pytest.mark.parametrize("scene", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
+def test_no_shipped_scene_is_warned_of(scene: Path) -> None:
+    """Half a pipe shows the shoulder mostly its inside."""
+    stage = prepare(scene)
+    assert survey(stage.surface, stage.geometry).warnings == ()
+
+
+def test_what_cannot_be_told(geometry: UrGeometry) -> None:
+    """A closed mesh has an outside of its own, wherever it is."""
+    corners = np.array([[0.4, 0, 0], [0.6, 0, 0], [0.4, 0.2, 0], [0.4, 0, 0.2]])
+    faces = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    closed = Surface(corners, faces, np.zeros((4, 3)))
+    assert survey(turned_over(closed), geometry).from_behind == 0
+
+
+def test_report_and_commands_warn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The square with its outside down: the same mesh wound the other way round."""
+    text = (SCENES / "square.toml").read_text().replace("../../models", f"{SCENES}/../../models")
+    path = tmp_path / "scene.toml"
+    path.write_text(
+        edited(text, target_vertices=50, rpy_rad="[3.1416, 0.0, 0.0]", position_m="[0.5, 0.0, 0.0]")
+    )
+    report = str(build_surface(path).report)
+    first, second, *_ = report.splitlines()
+    assert first.startswith("object  0.") and first.endswith("from the robot's base")
+    assert second.startswith("warning  the robot sees 100 % of the object from behind only")
+    main(["solve", str(path)])
+    assert f"cellcolor: {path}: warning: the robot sees 100 %" in capsys.readouterr().err
+    main(["build", str(path), "-o", str(tmp_path / "out.json")])
+    assert second in capsys.readouterr().out
