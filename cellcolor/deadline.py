@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import math
 import time
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from typing import TypeVar
 
 from cellcolor.errors import CellcolorError
 
 __all__ = ["NEVER", "Deadline", "OutOfTime"]
+
+_Item = TypeVar("_Item")
 
 
 class OutOfTime(CellcolorError):
@@ -55,6 +59,17 @@ class Deadline:
         """
         if self.over:
             raise OutOfTime("the time limit came first")
+
+    def watch(self, items: Iterable[_Item]) -> Iterator[_Item]:
+        """The same items, for a loop over many that takes microseconds for each.
+
+        Raises:
+            OutOfTime: the moment has passed; asked before every thousandth item.
+        """
+        for number, item in enumerate(items):
+            if number % 1000 == 0:
+                self.check()
+            yield item
 
     def share(self, part: float) -> Deadline:
         """A deadline after a part (0 to 1) of the time that is left; none if there is none."""

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 
 Step = tuple[int, int]
 """A border where it crosses one mesh edge: the vertex on its left and the one on its right."""
@@ -101,13 +102,18 @@ class Borders:
         u, v = step
         return self._area[u], self._area[v], self._joinable(u, v)
 
-    def curves(self) -> list[Curve]:
-        """The topological edges, each with an area other than ``OUTSIDE`` on its left."""
+    def curves(self, deadline: Deadline) -> list[Curve]:
+        """The topological edges, each with an area other than ``OUTSIDE`` on its left.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
         curves: list[Curve] = []
         done: set[Step] = set()
         # Curves between corners first; what is left over then are closed curves without any.
         starts = sorted(self.steps)
-        for first in [s for s in starts if self.ends_in_corner(s[::-1])] + starts:
+        corners = [step for step in deadline.watch(starts) if self.ends_in_corner(step[::-1])]
+        for first in deadline.watch(corners + starts):
             if first in done or self._area[first[0]] == OUTSIDE:
                 continue
             steps = [first]

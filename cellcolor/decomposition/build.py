@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, SurfaceReference
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
 from cellcolor.errors import InputError
 
 
-def decompose(surface: LabelledSurface, path: PurePath | str | None = None) -> Instance:
+def decompose(
+    surface: LabelledSurface, path: PurePath | str | None = None, deadline: Deadline = NEVER
+) -> Instance:
     """The topological graph of a labelled surface (paper, section III-C).
 
     Cells are numbered by their smallest vertex. Areas and lengths are those of the barycentric
@@ -23,10 +26,13 @@ def decompose(surface: LabelledSurface, path: PurePath | str | None = None) -> I
     Args:
         surface: the labelled surface.
         path: where it is stored, relative to the instance; None leaves the reference out.
+        deadline: when to give up. The time grows in proportion to the mesh.
 
     Raises:
         InputError: a cell is not planar (its genus is not 0).
+        OutOfTime: the deadline came first.
     """
+    deadline.check()
     mesh = ClosedMesh(surface)
     cracks = {(c.i, c.j): frozenset(c.colors) for c in surface.cracks}
     sets = [frozenset(colors) for colors in surface.vertex_colors]
@@ -38,26 +44,26 @@ def decompose(surface: LabelledSurface, path: PurePath | str | None = None) -> I
     def joinable(a: int, b: int) -> frozenset[int]:
         return (sets[a] & sets[b]) - crack(a, b)
 
-    area = _cells(surface, mesh, cracks)
+    area, firsts = _cells(surface, mesh, cracks, deadline)
     borders = Borders(mesh, area, joinable, lambda a, b: bool(crack(a, b)))
-    curves = borders.curves()
-    loops = _loops(borders, curves, area)
-    _check_planar(surface, area, borders, loops)
+    curves = borders.curves(deadline)
+    loops = _loops(borders, curves, area, deadline)
+    _check_planar(surface, area, firsts, borders, loops, deadline)
 
     measure = _DualMeasure(surface, mesh)
     areas = measure.areas(area)
     cells = tuple(
-        Cell(
-            number, surface.vertex_colors[area.index(number)], loops.get(number, ()), areas[number]
-        )
-        for number in range(max(area, default=OUTSIDE) + 1)
+        Cell(number, surface.vertex_colors[first], loops.get(number, ()), areas[number])
+        for number, first in enumerate(firsts)
     )
     edges = []
-    for number, curve in enumerate(curves, start=1):
+    lengths = measure.lengths(curves)
+    for number, (curve, length) in enumerate(zip(curves, lengths, strict=True), start=1):
         left, right = curve.steps[0]
         shared, joined = sets[left] & sets[right], joinable(left, right)
         colors = None if shared == joined else tuple(sorted(joined))
-        edges.append(Edge(number, area[left], area[right], colors, measure.length(curve)))
+        edges.append(Edge(number, area[left], area[right], colors, length))
+    deadline.check()
     reference = None
     if path is not None:
         reference = SurfaceReference(str(path), tuple(area[: mesh.real_count]), surface.sha256)
@@ -67,33 +73,39 @@ def decompose(surface: LabelledSurface, path: PurePath | str | None = None) -> I
 
 
 def _cells(
-    surface: LabelledSurface, mesh: ClosedMesh, cracks: dict[tuple[int, int], frozenset[int]]
-) -> list[int]:
-    """The cell of each vertex: equal color sets, connected over mesh edges without a crack."""
+    surface: LabelledSurface,
+    mesh: ClosedMesh,
+    cracks: dict[tuple[int, int], frozenset[int]],
+    deadline: Deadline,
+) -> tuple[list[int], list[int]]:
+    """The cell of each vertex, and the smallest vertex of each cell.
+
+    A cell has equal color sets and is connected over mesh edges without a crack.
+    """
     area = [OUTSIDE] * mesh.vertex_count
     neighbours: list[list[int]] = [[] for _ in range(mesh.real_count)]
-    for a, b in surface.left_of:
+    for a, b in deadline.watch(surface.left_of):
         pair = (a, b) if a < b else (b, a)
         if surface.vertex_colors[a] == surface.vertex_colors[b] and pair not in cracks:
             neighbours[a].append(b)
             neighbours[b].append(a)
-    count = 0
-    for vertex, colors in enumerate(surface.vertex_colors):
+    firsts: list[int] = []
+    for vertex, colors in deadline.watch(enumerate(surface.vertex_colors)):
         if area[vertex] != OUTSIDE or not colors:
             continue
-        area[vertex] = count
+        area[vertex] = count = len(firsts)
+        firsts.append(vertex)
         stack = [vertex]
         while stack:
             for neighbour in neighbours[stack.pop()]:
                 if area[neighbour] == OUTSIDE:
                     area[neighbour] = count
                     stack.append(neighbour)
-        count += 1
-    return area
+    return area, firsts
 
 
 def _loops(
-    borders: Borders, curves: list[Curve], area: list[int]
+    borders: Borders, curves: list[Curve], area: list[int], deadline: Deadline
 ) -> dict[int, tuple[tuple[int, ...], ...]]:
     """Each cell's border loops, as cyclic lists of darts with the cell on the left."""
     dart_at: dict[Step, int] = {}
@@ -103,7 +115,7 @@ def _loops(
         dart_at[last[1], last[0]] = -number
     loops: dict[int, list[tuple[int, ...]]] = {}
     walked: set[Step] = set()
-    for first in dart_at:
+    for first in deadline.watch(dart_at):
         cell = area[first[0]]
         if cell == OUTSIDE or first in walked:
             continue
@@ -123,25 +135,27 @@ def _loops(
 def _check_planar(
     surface: LabelledSurface,
     area: list[int],
+    firsts: list[int],
     borders: Borders,
     loops: dict[int, tuple[tuple[int, ...], ...]],
+    deadline: Deadline,
 ) -> None:
     """Euler's formula for each cell: a surface of genus g with b border loops has 2 - 2g - b."""
     characteristic: Counter[int] = Counter(c for c in area if c != OUTSIDE)
-    for a, b in surface.left_of:
+    for a, b in deadline.watch(surface.left_of):
         # A mesh edge stands here once for each of its triangles: count it at one of them.
         inner = area[a] == area[b] and (a, b) not in borders.steps
         if inner and (a < b or (b, a) not in surface.left_of):
             characteristic[area[a]] -= 1
-    for a, b, c in surface.faces.tolist():
+    for a, b, c in deadline.watch(surface.faces.tolist()):
         if not borders.steps.intersection(((a, b), (b, c), (c, a))):
             characteristic[area[a]] += 1
-    for cell in range(max(area, default=OUTSIDE) + 1):
+    for cell, first in enumerate(firsts):
         handles = 2 - len(loops.get(cell, ())) - characteristic[cell]
         if handles != 0:
             raise InputError(
                 None,
-                f"vertices[{area.index(cell)}]",
+                f"vertices[{first}]",
                 f"lies in cell {cell}, which is not planar (genus {handles // 2})",
             )
 
@@ -163,26 +177,29 @@ class _DualMeasure:
         sums = np.bincount(owner[reached], weights=thirds[reached], minlength=max(area) + 1)
         return [round(float(value), 12) for value in sums]
 
-    def length(self, curve: Curve) -> float:
-        """Metres along a curve, from triangle to triangle over the middles of mesh edges."""
-        total = 0.0
-        for left, right in curve.steps:
-            here = self._crossing(left, right)
-            for a, b in ((left, right), (right, left)):
-                total += float(np.linalg.norm(self._centre(a, b) - here))
-        return round(total, 12)
+    def lengths(self, curves: list[Curve]) -> list[float]:
+        """Metres along each curve, from triangle to triangle over the middles of mesh edges."""
+        steps = np.array([step for curve in curves for step in curve.steps], dtype=np.int64)
+        if not len(steps):
+            return []
+        third = self._mesh.third
+        left, right = steps.T
+        here = self._middles(steps)
+        total = np.zeros(len(steps))
+        for a, b in ((left, right), (right, left)):
+            ahead = np.array([third[pair] for pair in zip(a.tolist(), b.tolist(), strict=True)])
+            centre = self._middles(np.column_stack([a, b, ahead]))
+            total += np.linalg.norm(centre - here, axis=1)
+        counts = [len(curve.steps) for curve in curves]
+        sums = np.add.reduceat(total, np.concatenate([[0], np.cumsum(counts)[:-1]]))
+        return [round(float(value), 12) for value in sums]
 
-    def _crossing(self, a: int, b: int) -> NDArray[np.float64]:
-        """Where the dual crosses edge a-b; an edge to the outside is crossed at its real end."""
-        vertices, count = self._surface.vertices, self._mesh.real_count
-        if a >= count:
-            return np.asarray(vertices[b])
-        if b >= count:
-            return np.asarray(vertices[a])
-        return np.asarray((vertices[a] + vertices[b]) / 2.0)
+    def _middles(self, corners: NDArray[np.int64]) -> NDArray[np.float64]:
+        """Means of the real ones among vertices (k, c), (k, 3); one of each row at least is real.
 
-    def _centre(self, a: int, b: int) -> NDArray[np.float64]:
-        """Centre of the triangle left of a-b; of a virtual one, the middle of its real edge."""
-        corners = (a, b, self._mesh.third[a, b])
-        real = [v for v in corners if v < self._mesh.real_count]
-        return np.asarray(self._surface.vertices[real].mean(axis=0))
+        An edge to the outside is crossed at its real end, and the centre of a virtual triangle is
+        the middle of its real edge.
+        """
+        real = corners < self._mesh.real_count
+        places = self._surface.vertices[np.where(real, corners, 0)] * real[:, :, None]
+        return np.asarray(places.sum(axis=1) / real.sum(axis=1)[:, None])
