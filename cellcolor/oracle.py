@@ -21,7 +21,7 @@ from cellcolor.check.plan import check_plan
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SearchSpace
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError
 from cellcolor.solvers.interface import Options
@@ -131,7 +131,12 @@ def proven_range(
         InputError: a cell of the surface is not planar.
     """
     deadline = Deadline.after(time_limit)
-    instance = decompose(surface)
+    try:
+        instance = decompose(surface, deadline=deadline)
+    except OutOfTime:
+        # A segment for each vertex is a division too, and without any nothing is covered.
+        reached = sum(map(bool, surface.vertex_colors))
+        return ProvenRange(min(reached, 1), reached)
     # One sub-cell a cell is a division of its own, whatever the solver finds.
     upper, lower = len(instance.cells), 0
     # The paper's search space is the smaller one: where its optimum meets a bound for any

@@ -16,8 +16,22 @@ from meshes import drawn, finer, grid_faces, grid_points, octahedron, surface, s
 
 from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
+
+
+class Asked(Deadline):
+    """A deadline that passes when it has been asked so many times.
+
+    The ``moment`` counts how many times are left.
+    """
+
+    @property
+    def over(self) -> bool:
+        object.__setattr__(self, "moment", self.moment - 1)
+        return self.moment < 0
+
 
 BUILT_CASES = sorted(PAPER.glob("*.surface.json"))
 
@@ -308,3 +322,16 @@ def test_lengths() -> None:
     path = [middles[0], centres[0], middles[1], centres[1], middles[2]]
     inside = sum(float(np.linalg.norm(b - a)) for a, b in pairwise(path))
     assert between.length == pytest.approx(inside)
+
+
+def test_a_deadline_ends_it_wherever_it_is() -> None:
+    """Asked a few times for each thousand vertices, and whenever it says so, that is the end."""
+    labelled = surface(grid_points(40, 40), grid_faces(40, 40), [[i % 2] for i in range(1600)])
+    patient = Asked(1e9)
+    decompose(labelled, deadline=patient)
+    times = int(1e9 - patient.moment)
+    assert times > 20
+    for asked in range(times):
+        with pytest.raises(OutOfTime):
+            decompose(labelled, deadline=Asked(asked))
+    decompose(labelled, deadline=Asked(times))

@@ -96,6 +96,14 @@ def test_no_time_at_all() -> None:
     assert bounds.lower <= 2 <= bounds.upper
 
 
+def test_no_time_for_the_graph() -> None:
+    """The range is known from the vertices alone, and the right one."""
+    surface = drawn("AA.AA AA.BB", {"A": [0], "B": [0, 1], ".": []})
+    bounds = proven_range(surface, time_limit=1e-9)
+    assert bounds.lower == 1 and bounds.upper == 8
+    assert proven_range(drawn("... ...", {".": []}), time_limit=1e-9) == ProvenRange(0, 0)
+
+
 def test_nothing_reachable() -> None:
     surface = drawn("... ...", {".": []})
     verdict = judge(surface, Plan((None,) * 6))

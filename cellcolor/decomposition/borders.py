@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import NEVER, Deadline
 
 Step = tuple[int, int]
 """A border where it crosses one mesh edge: the vertex on its left and the one on its right."""
@@ -102,7 +102,7 @@ class Borders:
         u, v = step
         return self._area[u], self._area[v], self._joinable(u, v)
 
-    def curves(self, deadline: Deadline) -> list[Curve]:
+    def curves(self, deadline: Deadline = NEVER) -> list[Curve]:
         """The topological edges, each with an area other than ``OUTSIDE`` on its left.
 
         Raises:

@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 from cellcolor.frontend.collision import Mask, body_poses, body_shape
 from cellcolor.frontend.robot import Array, Body, Robot
+from cellcolor.frontend.samples import sample_mesh
 from cellcolor.frontend.scene import BoxObstacle, CylinderObstacle, SphereObstacle
 from cellcolor.frontend.surfaces import Faces, rotation_from_rpy
 
@@ -146,7 +147,7 @@ def mesh_solid(vertices: Array, faces: Faces) -> Solid:
     model.beginModel(len(faces), len(vertices))
     model.addSubModel(vertices, faces)
     model.endModel()
-    samples, slack = _samples(vertices[faces])
+    samples, slack = sample_mesh(vertices, faces, _SPACING, _SAMPLES)
     lowest, highest = vertices.min(axis=0), vertices.max(axis=0)
     extent = highest - lowest
     pitch = max(_PITCH, float(extent.max()) / _PARTS)
@@ -215,20 +216,3 @@ def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -
         return distance, distance
 
     return Solid(fcl.CollisionObject(shape, fcl.Transform(turn, center)), distances)
-
-
-def _samples(corners: Array) -> tuple[Array, float]:
-    """Points on triangles (m, 3, 3), and how far a point of them can be from the nearest one."""
-    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1)
-    area = np.linalg.norm(
-        np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1
-    )
-    spacing = max(_SPACING, float(np.sqrt(area.sum() / _SAMPLES)))
-    # No point of a triangle is farther from its nearest corner than the longest side / sqrt(3).
-    parts = np.maximum(np.ceil(longest / (np.sqrt(3) * spacing)).astype(int), 1)
-    samples = []
-    for count in np.unique(parts):
-        u, v = np.mgrid[0 : count + 1, 0 : count + 1] / count
-        weights = np.stack([1 - u - v, u, v], axis=-1)[u + v <= 1 + 1e-9]
-        samples.append((weights @ corners[parts == count]).reshape(-1, 3))
-    return np.unique(np.concatenate(samples), axis=0), float((longest / parts).max() / np.sqrt(3))

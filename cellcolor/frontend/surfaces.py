@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.scene import Placement
 
-__all__ = ["Faces", "Surface", "face_normals", "rotation_from_rpy"]
+__all__ = ["Faces", "Surface", "every_edge", "face_normals", "rotation_from_rpy"]
 
 Faces = NDArray[np.int64]
 
@@ -38,16 +38,19 @@ class Surface:
 
     def edges(self) -> Faces:
         """Every mesh edge once, (k, 2), smaller index first, in lexicographic order."""
-        pairs = np.concatenate(
-            [self.faces[:, [0, 1]], self.faces[:, [1, 2]], self.faces[:, [2, 0]]]
-        )
-        return np.unique(np.sort(pairs, axis=1), axis=0)
+        return every_edge(self.faces)
 
     def lengths(self, edges: Faces) -> Array:
         """Lengths (k,) of mesh edges (k, 2), m."""
         i, j = edges.T
         lengths: Array = np.linalg.norm(self.vertices[i] - self.vertices[j], axis=1)
         return lengths
+
+
+def every_edge(faces: Faces) -> Faces:
+    """The edges (k, 2) of faces (m, 3), each once, in lexicographic order."""
+    pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    return np.unique(np.sort(pairs, axis=1), axis=0)
 
 
 def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> Array:

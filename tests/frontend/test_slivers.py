@@ -6,12 +6,17 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rescanning
+from hypothesis import given
+from hypothesis import strategies as st
 from shipped import ROBOTS, SCENES, edited
 
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.continuity import Coloring
+from cellcolor.frontend.continuity import Coloring, color, node_links
+from cellcolor.frontend.generators import grid_mesh, rectangle
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.scene import Slivers, load_setup
 from cellcolor.frontend.slivers import SliverReport, clean
@@ -79,6 +84,43 @@ def test_small_cells_are_given_up_and_counted() -> None:
     found, report = cleaned(0, 2, "a", "a", "b", "a", "a", "c")
     assert found == ["a", "a", "", "a", "a", ""]
     assert report == SliverReport(0, 0.0, 2, 2, 2.0)
+
+
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from([30, 120]), st.sampled_from([0.0, 0.02, 0.2]),
+    st.sampled_from([0.02, 0.1, 0.5]), st.booleans(),
+)  # fmt: skip
+def test_like_looking_at_all_cells_again(
+    seed: int, vertices: int, cracked: float, below: float, noisy: bool
+) -> None:
+    """Many small cells, equal areas and cracks between them: the same cells in the same order."""
+    rng = np.random.default_rng(seed)
+    surface = rectangle(1.0, 1.0, *grid_mesh(1.0, 1.0, vertices, 0.2, 0))
+    x, y = surface.vertices[:, :2].T
+    waves = [np.sin(rng.uniform(2, 9) * x + rng.uniform(0, 9) * y + phase) for phase in range(4)]
+    nodes = np.stack(waves, axis=1) + noisy * rng.standard_normal((len(x), 4)) > -0.3
+    edges = surface.edges()
+    linked = nodes[edges[:, 0]] & nodes[edges[:, 1]] & (rng.random((len(edges), 4)) >= cracked)
+    names = ("a", "b", "c", "d")
+    coloring = color(nodes, np.zeros((*nodes.shape, 6)), node_links(edges, linked), names)
+    # Whole numbers: their sums are exact, so that equal areas are equal in whatever order.
+    areas = rng.integers(1, 4, len(x)).astype(float)
+    policy = Slivers(simplify_below_share=below, uncover_below_share=below / 2)
+    kept, report = clean(edges, linked, coloring, areas, policy)
+    expected, simplified, given_up = rescanning.clean(edges, linked, coloring, areas, policy)
+    assert (kept == expected).all()
+    assert (report.simplified_cells, report.simplified_area_m2) == (
+        len(simplified),
+        sum(simplified),
+    )
+    assert report.given_up_cells == given_up
+
+
+def test_out_of_time() -> None:
+    edges, linked, coloring = row("a", "a", "ab", "b", "b")
+    policy = Slivers(simplify_below_share=0.3)
+    with pytest.raises(OutOfTime):
+        clean(edges, linked, coloring, np.ones(5), policy, Deadline.after(0.0))
 
 
 @pytest.fixture(scope="module")

@@ -7,6 +7,9 @@ from dataclasses import replace
 import fcl
 import numpy as np
 import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 from trimesh import Trimesh
 from trimesh.proximity import closest_point_naive
@@ -14,6 +17,7 @@ from trimesh.proximity import closest_point_naive
 from cellcolor.frontend.collision import body_poses, body_shape
 from cellcolor.frontend.generators import disc_mesh, spherical_cap
 from cellcolor.frontend.robot import Array, Body, Robot
+from cellcolor.frontend.samples import sample_mesh
 from cellcolor.frontend.scene import BoxObstacle
 from cellcolor.frontend.solids import Solid, mesh_solid, primitive_solid
 from cellcolor.frontend.surfaces import Surface
@@ -108,3 +112,36 @@ def test_balls_about_a_point_end_at_its_distance(robot: Robot, target: int) -> N
         for radius, expected in ((distance - 1e-6, False), (distance + 1e-6, True)):
             single, _ = alone(robot, 0.0, radius, flat=False)
             assert solid.hits(single, np.tile(point, (1, 2, 1, 1)))[0] == expected
+
+
+@given(
+    st.integers(0, 2**32 - 1),
+    st.sampled_from([1.0, 0.1, 0.01, 1e-4]),
+    st.sampled_from([10_000, 300]),
+)
+def test_no_point_of_a_face_or_an_edge_is_far_from_a_sample_of_its_own(
+    seed: int, thickness: float, most: int
+) -> None:
+    """Of all samples of one triangle: thick and thin, with acute and obtuse corners."""
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform(-1, 1, (3, 3)) * [1.0, thickness, 0.0]
+    points, slack = sample_mesh(corners, np.array([[0, 1, 2]]), 0.02, most)
+    shares = rng.dirichlet([0.6, 0.6, 0.6], 200)
+    gaps = np.linalg.norm((shares @ corners)[:, None] - points, axis=2).min(axis=1)
+    assert gaps.max() <= slack * (1 + 1e-9)
+    assert len(points) <= 3 + 1.2 * most
+    for i, j in ((0, 1), (1, 2), (2, 0)):
+        along = (corners[j] - corners[i]) / np.linalg.norm(corners[j] - corners[i])
+        off = np.linalg.norm(np.cross(points - corners[i], along), axis=1)
+        own = np.sort((points[off < 1e-9] - corners[i]) @ along)
+        assert np.diff(own).max() / 2 <= slack
+
+
+@pytest.mark.parametrize("sections", [32, 512])
+def test_long_thin_faces_have_no_more_samples_than_their_size_needs(sections: int) -> None:
+    """A tube of 60 mm, 2 m long: lattices as fine across as along would have millions."""
+    mesh = trimesh.creation.cylinder(radius=0.03, height=2.0, sections=sections)
+    points, slack = sample_mesh(np.array(mesh.vertices), np.array(mesh.faces), 0.003, 500_000)
+    assert slack <= 0.004
+    edges = mesh.edges_unique_length.sum()
+    assert len(points) <= 1.5 * (edges / 0.0042 + mesh.area / 0.0042**2) + len(mesh.vertices)
