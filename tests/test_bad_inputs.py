@@ -73,7 +73,7 @@ GRAPHS = {
     "dart of another cell": instance_of(
         put("cells", 0, "loops", to=[[1, 2, 3]]), "cells[0].loops[0][2]", "does not close"
     ),
-    "unknown color": instance_of(put("cells", 1, "colors", to=[0, 3]), "cells[1].colors[1]", "3"),
+    "unknown color": instance_of(put("cells", 1, "colors", to=[0, 3]), "cells[1].colors", "3"),
     "empty color set": instance_of(put("cells", 0, "colors", to=[]), "cells[0].colors"),
     "joinable color of one side": instance_of(put("edges", 0, "colors", to=[1]), "edges[0].colors"),
     "outside on both sides": instance_of(put("edges", 1, "left", to=-1), "edges[1]", "both sides"),

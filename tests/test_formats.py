@@ -228,8 +228,8 @@ INSTANCE_FAULTS = {
     "edge id zero": (put("edges", 1, "id", to=0), "edges[1].id", "positive"),
     "cell ids out of order": (put("cells", 1, "id", to=2), "cells[1].id", "0, 1, 2"),
     "empty color set": (put("cells", 0, "colors", to=[]), "cells[0].colors", "no color"),
-    "unknown color": (put("cells", 0, "colors", to=[5]), "cells[0].colors[0]", "unknown color 5"),
-    "color twice": (put("cells", 1, "colors", to=[0, 0]), "cells[1].colors[1]", "twice"),
+    "unknown color": (put("cells", 0, "colors", to=[5]), "cells[0].colors", "unknown color 5"),
+    "color twice": (put("cells", 1, "colors", to=[0, 0]), "cells[1].colors", "twice"),
     "joinable color not shared": (
         put("edges", 0, "colors", to=[1]),
         "edges[0].colors",

@@ -9,6 +9,8 @@ from typing import Annotated, Any, Literal
 from annotated_types import Ge
 from pydantic import ConfigDict
 
+from cellcolor.data.values import json_content, settle
+
 __all__ = ["Bound", "greatest"]
 
 Extent = Literal["surface", "strands"]
@@ -33,6 +35,12 @@ class Bound:
     value: Annotated[int, Ge(0)]
     holds_for: Extent
     certificate: dict[str, Any] | None = None
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if self.certificate is not None:
+            content = json_content(self.certificate, "certificate")
+            object.__setattr__(self, "certificate", content)
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""

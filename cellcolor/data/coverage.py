@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 from pydantic import ConfigDict
 
+from cellcolor.data.values import settle
 from cellcolor.errors import InputError
 
 _ROUNDING = 1e-9
@@ -34,6 +35,7 @@ class Coverage:
     given_up: Share
 
     def __post_init__(self) -> None:
+        settle(self)
         if self.unreachable + self.given_up > 1 + _ROUNDING:
             raise InputError(None, "coverage", "unreachable and given_up are more than the whole")
 

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,6 +16,7 @@ from pydantic import ConfigDict, TypeAdapter
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.files import dump_lines, read_document, take_body, validate
 from cellcolor.data.fingerprint import sha256_of
+from cellcolor.data.values import json_content, settle
 from cellcolor.errors import InputError
 
 FORMAT = "cellcolor/instance"
@@ -23,6 +25,7 @@ OUTSIDE = -1
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 Measure = Annotated[float, Ge(0)]
+Count = Annotated[int, Ge(0)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +46,10 @@ class Cell:
     loops: tuple[tuple[int, ...], ...]
     area: Measure | None = None
 
+    def __post_init__(self) -> None:
+        settle(self)
+        object.__setattr__(self, "colors", tuple(sorted(self.colors)))
+
 
 @dataclass(frozen=True, slots=True)
 class Edge:
@@ -52,7 +59,8 @@ class Edge:
         id: positive; ``+id`` is its dart in the cell on the left, ``-id`` on the right.
         left: cell on the left, or ``OUTSIDE``.
         right: cell on the right, or ``OUTSIDE``.
-        colors: the joinable colors where they are fewer than the two cells share; None else.
+        colors: the joinable colors, ascending, where they are fewer than the two cells share; None
+            else.
         length: metres, if known.
     """
 
@@ -63,6 +71,11 @@ class Edge:
     right: int
     colors: tuple[int, ...] | None = None
     length: Measure | None = None
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if self.colors is not None:
+            object.__setattr__(self, "colors", tuple(sorted(self.colors)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +94,9 @@ class SurfaceReference:
     vertex_cell: tuple[int, ...]
     sha256: str | None = None
 
+    def __post_init__(self) -> None:
+        settle(self)
+
 
 @dataclass(frozen=True, slots=True)
 class KnownResult:
@@ -88,8 +104,11 @@ class KnownResult:
 
     __pydantic_config__ = _STRICT
 
-    segments: int
-    schemes: int | None = None
+    segments: Count
+    schemes: Count | None = None
+
+    def __post_init__(self) -> None:
+        settle(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +119,9 @@ class Known:
 
     paper: KnownResult | None = None
     surface: KnownResult | None = None
+
+    def __post_init__(self) -> None:
+        settle(self)
 
 
 @dataclass(frozen=True)
@@ -132,6 +154,9 @@ class Instance:
     coverage: Coverage | None = None
 
     def __post_init__(self) -> None:
+        settle(self)
+        if self.meta is not None:
+            object.__setattr__(self, "meta", json_content(self.meta, "meta"))
         self._check_cells()
         self._check_edges()
         self._check_darts()
@@ -223,7 +248,7 @@ class Instance:
     @cached_property
     def _joinable(self) -> dict[int, tuple[int, ...]]:
         return {
-            edge.id: tuple(sorted(self._shared(edge) if edge.colors is None else edge.colors))
+            edge.id: tuple(sorted(self._shared(edge))) if edge.colors is None else edge.colors
             for edge in self.edges
         }
 
@@ -289,7 +314,7 @@ class Instance:
                 "colors": len(self.colors),
                 "cells": [
                     [
-                        sorted(cell.colors),
+                        cell.colors,
                         sorted([*loop[at:], *loop[:at]] for loop, at in _from_smallest(cell.loops)),
                     ]
                     for cell in self.cells
@@ -367,8 +392,10 @@ def _given(document: dict[str, Any], **optional: object) -> dict[str, Any]:
 
 
 def _check_colors(colors: Sequence[int], count: int, where: str) -> None:
-    for position, color in enumerate(colors):
+    """Refuse what is no set of colors; they are in order by now, so no place is named."""
+    for color in colors:
         if not 0 <= color < count:
-            raise InputError(None, f"{where}[{position}]", f"unknown color {color}")
-        if color in colors[:position]:
-            raise InputError(None, f"{where}[{position}]", f"color {color} stands twice")
+            raise InputError(None, where, f"unknown color {color}")
+    for color, following in pairwise(colors):
+        if color == following:
+            raise InputError(None, where, f"color {color} stands twice")

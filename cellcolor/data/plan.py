@@ -10,6 +10,7 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter
 
 from cellcolor.data.files import read_document, take_body, validate
+from cellcolor.data.values import settle
 from cellcolor.errors import InputError
 
 FORMAT = "cellcolor/plan"
@@ -20,12 +21,19 @@ class Plan:
     """One color per vertex of a labelled surface.
 
     Attributes:
-        vertex_colors: the painted color of each vertex; None exactly where it has none.
+        vertex_colors: the painted color of each vertex, by its number, None exactly where it has
+            none; lists and arrays of integers become this.
+
+    Raises:
+        InputError: a color is no integer, as ``True``, 1.0 and names are not.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
 
     vertex_colors: tuple[int | None, ...]
+
+    def __post_init__(self) -> None:
+        settle(self)
 
     def to_json(self) -> str:
         """The file's text."""

@@ -14,6 +14,7 @@ from pydantic import ConfigDict, Field, TypeAdapter
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.files import dump_lines, parse_json, read_text, take_body, validate
+from cellcolor.data.values import settle
 from cellcolor.errors import InputError
 
 FORMAT = "cellcolor/solution"
@@ -45,6 +46,9 @@ class SubCell:
     darts: tuple[DartName, ...]
     segment: int
 
+    def __post_init__(self) -> None:
+        settle(self)
+
 
 @dataclass(frozen=True, slots=True)
 class CellDivision:
@@ -54,6 +58,9 @@ class CellDivision:
 
     id: int
     subcells: tuple[SubCell, ...]
+
+    def __post_init__(self) -> None:
+        settle(self)
 
 
 Division = tuple[CellDivision, ...]
@@ -89,6 +96,9 @@ class Seam:
     to: int
     strands: Count
 
+    def __post_init__(self) -> None:
+        settle(self)
+
 
 @dataclass(frozen=True, slots=True)
 class InstanceReference:
@@ -106,6 +116,9 @@ class InstanceReference:
     name: str
     sha256: str
     of: Literal["graph", "text"] = "graph"
+
+    def __post_init__(self) -> None:
+        settle(self)
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,6 +174,7 @@ class Solution:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
+        settle(self)
         missing = [
             name
             for name, value in (

@@ -14,6 +14,7 @@ from pydantic import ConfigDict, TypeAdapter
 from cellcolor.data.files import dump_lines, read_document, take_body, validate
 from cellcolor.data.fingerprint import sha256_of
 from cellcolor.data.mesh import directed_edges
+from cellcolor.data.values import json_content, plain, settle, validate_python
 from cellcolor.errors import InputError
 
 FORMAT = "cellcolor/labelled-surface"
@@ -22,6 +23,8 @@ FORMAT = "cellcolor/labelled-surface"
 @dataclass(frozen=True, slots=True)
 class Crack:
     """A mesh edge across which colors that both ends have are not continuous.
+
+    Ends and colors are put in order.
 
     Attributes:
         i: one end, the smaller vertex index.
@@ -33,10 +36,19 @@ class Crack:
     j: int
     colors: tuple[int, ...]
 
+    def __post_init__(self) -> None:
+        settle(self)
+        ordered = (*sorted((self.i, self.j)), tuple(sorted(self.colors)))
+        for name, content in zip(("i", "j", "colors"), ordered, strict=True):
+            object.__setattr__(self, name, content)
+
 
 @dataclass(frozen=True)
 class LabelledSurface:
     """What a front end produces: where the surface is, and which colors reach each point.
+
+    Lists and arrays are taken for every member, and put in order; the arrays are copies that
+    nobody can change.
 
     Attributes:
         name: what to call it.
@@ -60,6 +72,14 @@ class LabelledSurface:
     meta: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
+        settle(self, ("vertices", "faces"))
+        for name, content in (
+            ("vertices", _rows(self.vertices, "vertices", float)),
+            ("faces", _rows(self.faces, "faces", int)),
+            ("vertex_colors", tuple([tuple(sorted(colors)) for colors in self.vertex_colors])),
+            ("meta", json_content(self.meta, "meta")),
+        ):
+            object.__setattr__(self, name, content)
         if self.vertices.ndim != 2 or self.vertices.shape[1] != 3:
             raise InputError(None, "vertices", "each vertex needs three coordinates")
         if self.faces.ndim != 2 or self.faces.shape[1] != 3:
@@ -151,10 +171,10 @@ class LabelledSurface:
         return cls(
             raw.name,
             raw.colors,
-            np.array(raw.vertices, dtype=np.float64).reshape(-1, 3),
-            np.array(raw.faces, dtype=np.int64).reshape(-1, 3),
-            tuple(tuple(sorted(colors)) for colors in raw.vertex_colors),
-            tuple(Crack(min(i, j), max(i, j), tuple(sorted(c))) for i, j, c in raw.cracks),
+            _array(raw.vertices, "vertices", float),
+            _array(raw.faces, "faces", int),
+            tuple(raw.vertex_colors),
+            tuple([Crack(i, j, colors) for i, j, colors in raw.cracks]),
             raw.meta,
         )
 
@@ -187,3 +207,35 @@ class _SurfaceFile:
 
 
 _ADAPTER = TypeAdapter(_SurfaceFile)
+_ROWS: dict[type, TypeAdapter[Any]] = {
+    float: TypeAdapter(list[tuple[float, float, float]], config=ConfigDict(strict=True)),
+    int: TypeAdapter(list[tuple[int, int, int]], config=ConfigDict(strict=True)),
+}
+_KINDS = {float: ("iuf", "numbers"), int: ("iu", "integers")}
+
+
+def _rows(content: Any, member: str, kind: type) -> NDArray[Any]:
+    """An array of int64 or float64 of its own, unchangeable.
+
+    Raises:
+        InputError: these are other than numbers, or other than integers where they have to be.
+    """
+    if isinstance(content, np.ndarray):
+        kinds, text = _KINDS[kind]
+        if content.dtype.kind not in kinds:
+            raise InputError(None, member, f"must be {text}, is an array of {content.dtype}")
+        array = _array(content, member, kind)
+    else:
+        rows = plain(content)
+        rows = validate_python(_ROWS[kind], list(rows) if isinstance(rows, tuple) else rows, member)
+        array = _array(rows, member, kind)
+    array.setflags(write=False)
+    return array
+
+
+def _array(rows: Any, member: str, kind: type) -> NDArray[Any]:
+    try:
+        array = np.array(rows, dtype=np.float64 if kind is float else np.int64)
+    except OverflowError as error:
+        raise InputError(None, member, "a number is too large") from error
+    return array if array.size else array.reshape(-1, 3)
