@@ -1,0 +1,260 @@
+"""Hubs: cells with all colors, ringed by petals with few."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Sequence
+from functools import cache
+
+from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, Known, KnownResult
+from cellcolor.errors import InputError
+
+__all__ = ["cover_tree", "hub", "hub_grid", "hub_minimum", "hub_with_loops", "wide_hub"]
+
+
+def hub(seed: int, petals: int, colors: int) -> Instance:
+    """One cell with all colors, ringed by single-colored cells, no two equal neighbors.
+
+    Its minimum is known (:func:`hub_minimum`) and bounds that count colors say nothing about it.
+
+    Args:
+        seed: of the petals' colors.
+        petals: how many, two or more.
+        colors: how many, two or more; three or more for an odd number of petals.
+
+    Raises:
+        InputError: there is no such hub.
+    """
+    if petals < 2 or colors < 2 or (petals % 2 and colors == 2):
+        raise InputError(None, None, f"no hub has {petals} petals in {colors} colors")
+    rng = random.Random(f"hub {seed} {petals} {colors}")
+    ring = _ring(rng, petals, colors)
+    known = Known(paper=KnownResult(hub_minimum(ring)))
+    return _hub(f"hub_{seed}_{petals}", [[(color,) for color in ring]], colors, known)
+
+
+def hub_with_loops(seed: int, loops: int, petals: int, colors: int) -> Instance:
+    """A hub with a ring of petals round each of its several loops.
+
+    Args:
+        seed: of the petals' colors.
+        loops: how many, one or more.
+        petals: of each loop, two or more.
+        colors: how many, two or more; three or more for an odd number of petals.
+
+    Raises:
+        InputError: there is no such hub.
+    """
+    if loops < 1 or petals < 2 or colors < 2 or (petals % 2 and colors == 2):
+        raise InputError(
+            None, None, f"no hub has {loops} loops of {petals} petals in {colors} colors"
+        )
+    rng = random.Random(f"hub with loops {seed} {loops} {petals} {colors}")
+    rings = [[(color,) for color in _ring(rng, petals, colors)] for _ in range(loops)]
+    return _hub(f"hub_{seed}_{loops}x{petals}", rings, colors)
+
+
+def wide_hub(seed: int, petals: int, colors: int, choices: int) -> Instance:
+    """A hub whose petals have several random colors each; neighbors may share some.
+
+    Args:
+        seed: of the petals' colors.
+        petals: how many, two or more.
+        colors: how many, one or more.
+        choices: colors of each petal, at most all.
+
+    Raises:
+        InputError: there is no such hub.
+    """
+    if petals < 2 or not 1 <= choices <= colors:
+        raise InputError(
+            None, None, f"no hub has {petals} petals with {choices} of {colors} colors"
+        )
+    rng = random.Random(f"wide hub {seed} {petals} {colors} {choices}")
+    ring = [tuple(sorted(rng.sample(range(colors), choices))) for _ in range(petals)]
+    return _hub(f"wide_hub_{seed}_{petals}", [ring], colors)
+
+
+def cover_tree(seed: int, hubs: int, leaves: int, colors: int, choices: int = 3) -> Instance:
+    """Hubs with all colors, joined to a random tree, and leaves on them with a few colors each.
+
+    Every color is one region, so that the bound by set cover is a hitting set of all the leaves'
+    random sets, which is hard to find by itself.
+
+    Args:
+        seed: of the tree and the leaves' colors.
+        hubs: how many, one or more.
+        leaves: on each hub, one or more.
+        colors: how many, one or more.
+        choices: colors of each leaf, at most all.
+
+    Raises:
+        InputError: there is no such tree.
+    """
+    if hubs < 1 or leaves < 1 or not 1 <= choices <= colors:
+        raise InputError(
+            None,
+            None,
+            f"no tree has {hubs} hubs of {leaves} leaves with {choices} of {colors} colors",
+        )
+    rng = random.Random(f"cover tree {seed} {hubs} {leaves} {colors} {choices}")
+    sets = [tuple(range(colors))] * hubs
+    loops: list[list[int]] = [[] for _ in range(hubs)]
+    edges: list[Edge] = []
+
+    def join(left: int, right: int) -> None:
+        edges.append(Edge(len(edges) + 1, left, right))
+        loops[left].append(len(edges))
+        loops[right].append(-len(edges))
+
+    for number in range(1, hubs):
+        join(rng.randrange(number), number)
+    for number in range(hubs * leaves):
+        sets.append(tuple(sorted(rng.sample(range(colors), choices))))
+        loops.append([])
+        join(number // leaves, len(sets) - 1)
+    return Instance(
+        f"cover_tree_{seed}_{hubs}x{leaves}",
+        tuple(f"c{color}" for color in range(colors)),
+        # A tree is planar in whatever order the darts stand.
+        tuple(
+            Cell(i, own, (tuple(rng.sample(loop, len(loop))),) if loop else ())
+            for i, (own, loop) in enumerate(zip(sets, loops, strict=True))
+        ),
+        tuple(edges),
+    )
+
+
+def _ring(rng: random.Random, petals: int, colors: int) -> list[int]:
+    """Random colors of a ring of petals, no two successive ones equal."""
+    while True:
+        ring = [rng.randrange(colors)]
+        while len(ring) < petals:
+            ring.append(rng.choice([color for color in range(colors) if color != ring[-1]]))
+        if ring[0] != ring[-1]:
+            return ring
+
+
+def _hub(
+    name: str,
+    rings: Sequence[Sequence[tuple[int, ...]]],
+    colors: int,
+    known: Known | None = None,
+) -> Instance:
+    """A cell with all colors and a ring of petals, given by their colors, round each loop."""
+    loops: list[tuple[int, ...]] = []
+    petals: list[Cell] = []
+    edges: list[Edge] = []
+    for ring in rings:
+        n, first = len(ring), len(petals) + 1
+        start = len(edges)
+        loops.append(tuple(range(start + 1, start + n + 1)))
+        edges += [Edge(start + i + 1, 0, first + i) for i in range(n)]
+        edges += [Edge(start + n + i + 1, first + i, first + (i + 1) % n) for i in range(n)]
+        edges += [Edge(start + 2 * n + i + 1, first + i, OUTSIDE) for i in range(n)]
+        for i, own in enumerate(ring):
+            before, after = start + n + (i - 1) % n + 1, start + n + i + 1
+            loop = (-(start + i + 1), -before, start + 2 * n + i + 1, after)
+            petals.append(Cell(first + i, own, (loop,)))
+    return Instance(
+        name,
+        tuple(f"c{color}" for color in range(colors)),
+        (Cell(0, tuple(range(colors)), tuple(loops)), *petals),
+        tuple(edges),
+        known=known,
+    )
+
+
+def hub_minimum(petal_colors: Sequence[int]) -> int:
+    """The minimum of a hub: its petals less the most that corridors through the hub can join.
+
+    The corridors join petals of one color without crossing. A petal is the first of its interval
+    and stays alone, or is joined to a later one, which leaves what lies between and beyond.
+    """
+
+    @cache
+    def joined(first: int, last: int) -> int:
+        if first >= last:
+            return 0
+        best = joined(first + 1, last)
+        for k in range(first + 1, last + 1):
+            if petal_colors[k] == petal_colors[first]:
+                best = max(best, joined(first + 1, k - 1) + 1 + joined(k, last))
+        return best
+
+    return len(petal_colors) - joined(0, len(petal_colors) - 1)
+
+
+def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> Instance:
+    """Hubs in a grid that share the petals between them.
+
+    A hub is a square cell with all colors and ``side`` single-colored petals on each of its four
+    sides. A petal between two hubs has a live edge to both, one at the rim of the grid to one; no
+    two successive petals of a side are equal. What lies between four hubs is unreachable. Bounds
+    that count colors say nothing here, and unlike a single hub it has no recursion for its minimum.
+
+    Args:
+        seed: of the petals' colors.
+        rows: of hubs, one or more.
+        columns: of hubs, one or more.
+        colors: how many, two or more.
+        side: petals on each side of a hub, one or more.
+
+    Raises:
+        InputError: there is no such grid.
+    """
+    if rows < 1 or columns < 1 or colors < 2 or side < 1:
+        raise InputError(
+            None,
+            None,
+            f"no grid has {rows} x {columns} hubs, {side} petals a side, {colors} colors",
+        )
+    rng = random.Random(f"hub grid {seed} {rows} {columns} {colors} {side}")
+    sets: list[tuple[int, ...]] = [tuple(range(colors))] * (rows * columns)
+    loops: list[tuple[int, ...]] = [()] * (rows * columns)
+    edges: list[Edge] = []
+
+    def border(left: int, right: int) -> int:
+        edges.append(Edge(len(edges) + 1, left, right))
+        return len(edges)
+
+    def strip(near: int, far: int) -> tuple[list[int], list[int]]:
+        """Petals between two areas, as walks round each of the two meet them.
+
+        Looking from the near area to the far one they follow each other from right to left.
+        """
+        nears: list[int] = []
+        fars: list[int] = []
+        behind = None
+        for number in range(side):
+            petal = len(sets)
+            last = sets[-1] if number else ()
+            sets.append((rng.choice([color for color in range(colors) if color not in last]),))
+            right = border(petal, OUTSIDE) if behind is None else -behind
+            nears.append(border(near, petal))
+            fars.insert(0, -border(petal, far))
+            behind = border(petal, petal + 1 if number < side - 1 else OUTSIDE)
+            loops.append((right, -fars[0], behind, -nears[-1]))
+        return nears, fars
+
+    # Row by row from the bottom, so that the strips below and to the left of a hub are known.
+    above: dict[tuple[int, int], list[int]] = {}
+    beside: dict[tuple[int, int], list[int]] = {}
+    for row in range(rows):
+        for column in range(columns):
+            hub_id = row * columns + column
+            bottom = above[row - 1, column] if row else strip(OUTSIDE, hub_id)[1]
+            left = beside[row, column - 1] if column else strip(OUTSIDE, hub_id)[1]
+            right_hub = hub_id + 1 if column < columns - 1 else OUTSIDE
+            right, beside[row, column] = strip(hub_id, right_hub)
+            top, above[row, column] = strip(hub_id, hub_id + columns if row < rows - 1 else OUTSIDE)
+            loop: list[int] = []
+            for darts in (bottom, right, top, left):
+                loop += [*darts, border(hub_id, OUTSIDE)]
+            loops[hub_id] = tuple(loop)
+    return Instance(
+        f"hub_grid_{seed}_{rows}x{columns}x{side}",
+        tuple(f"c{color}" for color in range(colors)),
+        tuple(Cell(i, own, (loop,)) for i, (own, loop) in enumerate(zip(sets, loops, strict=True))),
+        tuple(edges),
+    )
