@@ -1,0 +1,396 @@
+"""Hold the commands to their limits on random inputs: ``python benchmarks/limits.py [FILE …]``.
+
+Every input is given to one command as a process of its own, with a time limit. Promised are the
+limit + 10 % + 1 s from the start of the process, and 4 GiB. Prints a table by kind of input, then
+the runs that were worst; ``--kinds``, ``--seed`` and ``--count 1`` repeat one of them. A kind's
+inputs are functions of their seeds, and so is the command, which takes turns. Files that are given
+are run instead, with every command that takes them.
+
+What is still running when it should have ended is asked for its Python stack, and killed at three
+times the limit + 30 s, or at 6 GiB.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from statistics import median
+from typing import Any, Literal
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.families import (
+    SHAPES,
+    Shape,
+    blobs,
+    cover_tree,
+    hub,
+    hub_grid,
+    hub_with_loops,
+    part,
+    voronoi,
+    wide_hub,
+)
+
+Subject = Instance | LabelledSurface
+
+PROMISED_MEMORY_MB = 4096
+KILLED_AT_MB = 6144
+SHOWN = 12
+
+# A process that prints its stack on a signal, and is the command otherwise.
+COMMAND = """
+import faulthandler, signal, sys
+faulthandler.register(signal.SIGUSR1, all_threads=False)
+from cellcolor.cli import main
+sys.exit(main())
+"""
+
+VARIANTS = {
+    "paper": ("solve", "--search-space", "paper"),
+    "surface": ("solve", "--search-space", "surface"),
+    "paper cuts": ("solve", "--search-space", "paper", "--fewest-cuts"),
+    "surface cuts": ("solve", "--search-space", "surface", "--fewest-cuts"),
+    "all": ("solve", "--all"),
+    "check": ("check",),
+}
+
+
+def _voronoi(shape: Shape) -> Callable[[int], Subject]:
+    def make(seed: int) -> Subject:
+        rng = random.Random(f"{shape} {seed}")
+        size = rng.randint(12, 64)
+        low = rng.uniform(0.05, 0.6)
+        return voronoi(
+            seed,
+            shape,
+            size,
+            round(math.exp(rng.uniform(1.5, math.log(size**2 / 3)))),
+            rng.randint(2, 30),
+            scattered=rng.random() < 0.4,
+            coverage=(low, rng.uniform(low, 0.9)),
+            cracks=rng.randint(0, 15),
+            islands=rng.randint(0, 10),
+            holes=rng.randint(0, 4),
+        )
+
+    return make
+
+
+def _part(seed: int) -> Subject:
+    rng = random.Random(f"part {seed}")
+    cells = round(math.exp(rng.uniform(math.log(100), math.log(1500))))
+    return part(seed, cells, min(500, round(cells * rng.uniform(0.2, 0.5))))
+
+
+def _loops(seed: int) -> Subject:
+    rng = random.Random(f"loops {seed}")
+    return hub_with_loops(seed, rng.randint(2, 12), rng.randint(2, 10), rng.randint(3, 8))
+
+
+def _petals(seed: int) -> Subject:
+    rng = random.Random(f"petals {seed}")
+    petals = rng.randint(50, 400)
+    if seed % 2:
+        return hub(seed, petals, rng.randint(3, 100))
+    colors = rng.randint(4, 100)
+    return wide_hub(seed, petals, colors, rng.randint(1, max(1, colors // 4)))
+
+
+def _trees(seed: int) -> Subject:
+    rng = random.Random(f"trees {seed}")
+    hubs = rng.randint(5, 70)
+    return cover_tree(seed, hubs, rng.randint(2, 8), rng.randint(10, 80), rng.randint(2, 5))
+
+
+def _grids(seed: int) -> Subject:
+    rng = random.Random(f"grids {seed}")
+    rows, columns = rng.randint(2, 12), rng.randint(2, 12)
+    return hub_grid(seed, rows, columns, rng.randint(3, 8), rng.randint(1, 4))
+
+
+def _patches(seed: int) -> Subject:
+    rng = random.Random(f"patches {seed}")
+    return blobs(
+        seed,
+        rng.randint(24, 110),
+        rng.randint(3, 14),
+        waves=rng.uniform(0.5, 3.0),
+        coverage=(0.2, rng.uniform(0.4, 0.95)),
+        thin=rng.random() < 0.3,
+        cracks=rng.randint(0, 10),
+        rim=rng.randint(0, 30),
+        islands=rng.randint(0, 60),
+        holes=rng.randint(0, 5),
+    )
+
+
+KINDS: dict[str, Callable[[int], Subject]] = {
+    **{shape: _voronoi(shape) for shape in SHAPES},
+    "parts": _part,
+    "loops": _loops,
+    "petals": _petals,
+    "trees": _trees,
+    "grids": _grids,
+    "patches": _patches,
+}
+
+
+@dataclass
+class Run:
+    """What one process did.
+
+    Attributes:
+        kind: of the input.
+        seed: of the input, or its file.
+        variant: of the command.
+        seconds: from the start of the process to its end.
+        cpu: seconds of all processors that it used; few where the machine was busy otherwise.
+        over: seconds beyond what is promised, negative if it was kept.
+        megabytes: the most memory that the process had at a time.
+        end: how it ended.
+        exit_code: of the process, negative for a signal.
+        status: of the solution, None if there is none.
+        segments: of the solution.
+        bound: the lower bound for what was asked.
+        stage: the innermost frames of the package when it should have ended.
+        error: the last line of standard error, if there is no solution.
+    """
+
+    kind: str
+    seed: int | str
+    variant: str
+    seconds: float
+    cpu: float
+    over: float
+    megabytes: float
+    end: Literal["itself", "killed: time", "killed: memory"]
+    exit_code: int
+    status: str | None = None
+    segments: int | None = None
+    bound: int | None = None
+    stage: str = ""
+    error: str = ""
+
+    @property
+    def broken(self) -> bool:
+        """Whether a promise was not kept."""
+        answered = self.exit_code == 2 or (self.exit_code in (0, 3) and self.status is not None)
+        return self.over > 0 or self.megabytes > PROMISED_MEMORY_MB or not answered
+
+
+def measure(kind: str, seed: int | str, variant: str, files: list[Path], limit: float) -> Run:
+    """Run one command and look at it from outside."""
+    name, *options = VARIANTS[variant]
+    arguments = [name, *map(str, files), *options, "--time-limit", str(limit), "--json"]
+    promised = 1.1 * limit + 1.0
+    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
+        started = time.monotonic()
+        process = subprocess.Popen(
+            [sys.executable, "-c", COMMAND, *arguments], stdout=out, stderr=err
+        )
+        end: Literal["itself", "killed: time", "killed: memory"] = "itself"
+        asked = False
+        while True:
+            pid, status, usage = os.wait4(process.pid, os.WNOHANG)
+            seconds = time.monotonic() - started
+            if pid:
+                break
+            if seconds > promised and not asked:
+                process.send_signal(signal.SIGUSR1)
+                asked = True
+            if end == "itself":
+                if seconds > 3 * limit + 30:
+                    end = "killed: time"
+                elif _megabytes(process.pid) > KILLED_AT_MB:
+                    end = "killed: memory"
+                if end != "itself":
+                    process.kill()
+            time.sleep(0.01)
+        process.returncode = os.waitstatus_to_exitcode(status)
+        out.seek(0)
+        err.seek(0)
+        said, complaints = out.read().decode(), err.read().decode(errors="replace")
+    run = Run(
+        kind,
+        seed,
+        variant,
+        round(seconds, 2),
+        round(usage.ru_utime + usage.ru_stime, 2),
+        round(seconds - promised, 2),
+        round(usage.ru_maxrss / 1024, 1),
+        end,
+        process.returncode,
+        stage=_stage(complaints),
+    )
+    _read_answer(run, said, complaints)
+    return run
+
+
+def _megabytes(pid: int) -> float:
+    """Memory of a process now; 0 if it has just ended."""
+    try:
+        pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    except (OSError, IndexError):
+        return 0.0
+    return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def _stage(complaints: str) -> str:
+    """The innermost three frames of the package in a stack that faulthandler printed."""
+    frames = []
+    for line in complaints.splitlines():
+        if line.startswith('  File "') and "/cellcolor/" in line:
+            place, _, name = line.rpartition(" in ")
+            module = place.rpartition("/cellcolor/")[2].partition('"')[0]
+            number = place.rpartition(" ")[2]
+            frames.append(f"{module}:{number} {name}")
+    return " < ".join(frames[:3])
+
+
+def _read_answer(run: Run, said: str, complaints: str) -> None:
+    """Take the numbers of a solution or of a verdict over into the run."""
+    try:
+        answer: dict[str, Any] = json.loads(said.splitlines()[0])
+    except (IndexError, ValueError):
+        answer = {}
+    if "status" in answer:
+        run.status, run.segments = answer["status"], answer["segments"]
+        run.bound = answer["lower_bound"]
+        if "surface" in run.variant:
+            run.bound = answer["surface_lower_bound"]
+    elif "valid" in answer:
+        run.status = "optimal" if answer["lower_bound"] == answer["upper_bound"] else "feasible"
+        run.segments, run.bound = answer["upper_bound"], answer["lower_bound"]
+    elif complaints.strip():
+        run.error = complaints.strip().splitlines()[-1][:200]
+        if "Traceback (most recent call last)" in complaints:
+            run.error = f"Traceback: {run.error}"
+
+
+def drawn(kind: str, seed: int, folder: Path, limit: float) -> Run:
+    """The run of one random input, with the command whose turn it is."""
+    subject = KINDS[kind](seed)
+    variants = list(VARIANTS)
+    if not isinstance(subject, LabelledSurface):
+        variants.remove("check")
+    # The rounds are shifted, so that no command gets only what an even seed makes.
+    variant = variants[(seed + seed // len(variants)) % len(variants)]
+    suffix = ".surface.json" if isinstance(subject, LabelledSurface) else ".json"
+    file = folder / f"{kind.replace(' ', '_')}_{seed}{suffix}"
+    file.write_text(subject.to_json())
+    files = [file]
+    if variant == "check" and isinstance(subject, LabelledSurface):
+        files.append(_plan(subject, file))
+    run = measure(kind, seed, variant, files, limit)
+    for path in files:
+        path.unlink()
+    return run
+
+
+def _plan(surface: LabelledSurface, file: Path) -> Path:
+    """A plan beside a surface's file that takes for each vertex the first of its colors."""
+    plan = file.with_suffix(".plan.json")
+    colors = tuple(own[0] if own else None for own in surface.vertex_colors)
+    plan.write_text(Plan(colors).to_json())
+    return plan
+
+
+def given(file: Path, folder: Path, limit: float) -> Iterator[Run]:
+    """The runs of a file, with every command that takes it."""
+    for variant in VARIANTS:
+        files = [file]
+        if variant == "check":
+            if not file.name.endswith(".surface.json"):
+                continue
+            files.append(_plan(LabelledSurface.read(file), folder / file.name))
+        yield measure("files", str(file), variant, files, limit)
+
+
+def table(runs: list[Run]) -> Iterator[str]:
+    """Lines of Markdown: what each kind did, and what was worst.
+
+    Refused is what the command does not take, such as ``--all`` for cells with several live loops.
+    """
+    yield "| kind | runs | kept | worst s beyond | worst MB | refused | optimal | unknown | median gap |"
+    yield "|---|---|---|---|---|---|---|---|---|"
+    for kind in dict.fromkeys(run.kind for run in runs):
+        own = [run for run in runs if run.kind == kind]
+        gaps = [r.segments - r.bound for r in own if r.segments is not None and r.bound is not None]
+        cells = (
+            kind,
+            len(own),
+            sum(not run.broken for run in own),
+            f"{max(run.over for run in own):+.1f}",
+            f"{max(run.megabytes for run in own):.0f}",
+            sum(run.exit_code == 2 for run in own),
+            sum(run.status == "optimal" for run in own),
+            sum(run.status == "unknown" for run in own),
+            f"{median(gaps):g}" if gaps else "",
+        )
+        yield "| " + " | ".join(map(str, cells)) + " |"
+    offenders = sorted((run for run in runs if run.broken), key=lambda run: -run.over)
+    if offenders:
+        yield ""
+        yield f"The worst of {len(offenders)} runs that broke a promise:"
+        yield ""
+        yield "| kind | seed | command | s | CPU s | beyond | MB | end | exit | stage |"
+        yield "|---|---|---|---|---|---|---|---|---|---|"
+    for run in offenders[:SHOWN]:
+        what = f"| {run.kind} | {run.seed} | {run.variant} | {run.seconds} | {run.cpu} "
+        what += f"| {run.over:+.1f} | {run.megabytes:.0f} | {run.end} | {run.exit_code} "
+        yield f"{what}| {run.stage or run.error} |"
+
+
+def main() -> int:
+    """Run, print, and say by the exit code whether every promise was kept."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
+    parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
+    parser.add_argument("--count", type=int, default=200, help="inputs of each kind")
+    parser.add_argument("--seed", type=int, default=0, help="of the first one")
+    parser.add_argument("--limit", type=float, default=5.0, help="seconds")
+    parser.add_argument("--jobs", type=int, default=1, help="processes at a time")
+    parser.add_argument("-o", "--output", type=Path, help="each run as a line of JSON")
+    arguments = parser.parse_args()
+    limit, runs = arguments.limit, list[Run]()
+    with (
+        tempfile.TemporaryDirectory() as name,
+        ThreadPoolExecutor(arguments.jobs) as pool,
+        open(arguments.output or os.devnull, "w", encoding="utf-8") as lines,  # noqa: PTH123
+    ):
+        folder = Path(name)
+        if arguments.files:
+            results = (run for file in arguments.files for run in given(file, folder, limit))
+        else:
+            tasks = [
+                pool.submit(drawn, kind, arguments.seed + number, folder, limit)
+                for kind in arguments.kinds
+                for number in range(arguments.count)
+            ]
+            results = (task.result() for task in tasks)
+        for run in results:
+            runs.append(run)
+            lines.write(json.dumps(asdict(run)) + "\n")
+            lines.flush()
+            if sys.stderr.isatty():
+                print(f"\r{len(runs)} {run.kind} {run.seed}   ", end="", file=sys.stderr)
+    print("\n".join(table(runs)))
+    return int(any(run.broken for run in runs))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
