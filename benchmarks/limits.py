@@ -51,9 +51,11 @@ PROMISED_MEMORY_MB = 4096
 KILLED_AT_MB = 6144
 SHOWN = 12
 
-# A process that prints its stack on a signal, and is the command otherwise.
+# A process that prints its stack on a signal, and is the command otherwise. While it ends, when
+# nobody prints any more, the signal has to be ignored.
 COMMAND = """
 import faulthandler, signal, sys
+signal.signal(signal.SIGUSR1, signal.SIG_IGN)
 faulthandler.register(signal.SIGUSR1, all_threads=False)
 from cellcolor.cli import main
 sys.exit(main())
@@ -325,7 +327,7 @@ def table(runs: list[Run]) -> Iterator[str]:
 
     Refused is what the command does not take, such as ``--all`` for cells with several live loops.
     """
-    yield "| kind | runs | kept | worst s beyond | worst MB | refused | optimal | unknown | median gap |"
+    yield "| kind | runs | kept | s beyond | most MB | refused | optimal | unknown | median gap |"
     yield "|---|---|---|---|---|---|---|---|---|"
     for kind in dict.fromkeys(run.kind for run in runs):
         own = [run for run in runs if run.kind == kind]
