@@ -5,13 +5,14 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
+from cellcolor.check.cuts import cutting_paths
 from cellcolor.check.solution import Report, check_division, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status
 from cellcolor.errors import CellcolorError
 from cellcolor.solvers.bounds import set_cover
-from cellcolor.solvers.interface import Options, Progress, Solver
+from cellcolor.solvers.interface import Answer, Options, Progress, Solver
 
 __all__ = [
     "CONTENDERS",
@@ -98,7 +99,7 @@ def solve(
         seams=answer.seams,
         cells=answer.division,
         seconds=time.monotonic() - start,
-        cutting_paths=None if answer.cutting_paths_lower_bound is None else _cuts(answer.division),
+        cutting_paths=None if answer.cutting_paths_lower_bound is None else _cuts(instance, answer),
         cutting_paths_lower_bound=answer.cutting_paths_lower_bound,
         bounds=bounds,
         coverage=instance.coverage,
@@ -149,11 +150,10 @@ def _count(division: Division) -> int:
     return len({sub.segment for cell in division for sub in cell.subcells})
 
 
-def _cuts(division: Division | None) -> int | None:
-    """Cutting paths: the sub-cells of each cell beyond the first."""
-    if division is None:
+def _cuts(instance: Instance, answer: Answer) -> int | None:
+    if answer.division is None:
         return None
-    return sum(len(cell.subcells) - 1 for cell in division)
+    return cutting_paths(instance, answer.division, answer.seams)
 
 
 def _insist(report: Report, solver: str) -> None:

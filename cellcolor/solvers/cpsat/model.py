@@ -52,16 +52,22 @@ def build(
     return Model(model, variables, fixed_roots(graph, regions))
 
 
-def cut_paths(built: Model, segments: int) -> None:
-    """Turn the model into one of fewest cutting paths, with so many segments.
+def cut_paths(built: Model, graph: DartGraph, segments: int) -> None:
+    """Turn the model into one of fewest sub-cells, with so many segments.
 
-    Sub-cells are the segments and the joins of their trees; cutting paths are the sub-cells beyond
-    one a cell. So the fewest joins are wanted.
+    Sub-cells are the segments and the joins of their trees. What a seam parts is one sub-cell on
+    the surface, so joins across seams do not count.
     """
     model, v = built.model, built.variables
+    seams = {seam.id for seam in graph.seams}
+    joins = sum(
+        literal
+        for (edge, _), literal in v.joined.items()
+        if abs(graph.darts[edge].name[0]) not in seams
+    )
     model.add(sum(v.root) + sum(v.alone) == segments)
-    model.add(sum(v.joined.values()) >= len(v.alone) - segments)
-    model.minimize(sum(v.joined.values()))
+    model.add(joins >= len(v.alone) - segments)
+    model.minimize(joins)
 
 
 def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:

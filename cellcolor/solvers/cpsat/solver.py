@@ -14,6 +14,7 @@ from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds import color_regions, set_cover
+from cellcolor.solvers.cpsat.cuts import count_cuts
 from cellcolor.solvers.cpsat.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model import Model, add_hint, build, cut_paths, read_painting
@@ -239,12 +240,12 @@ class _Search:
 
     def _fewest_cuts(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> None:
         """Of the divisions with the fewest segments, one with the fewest cutting paths."""
-        if self._best is not None and _cuts(self._best[1]) == 0:
+        if self._best is not None and count_cuts(self._instance, *self._best) == 0:
             return
         graph = self._graph(strands, seams)
         built = build(graph, self._regions)
         self._hint(built, graph)
-        cut_paths(built, self._bound)
+        cut_paths(built, graph, self._bound)
         solver = self._runner.solver(None)
         status = self._runner.solve(solver, built.model)
         # As many joins as a forest needs: sub-cells less segments.
@@ -253,7 +254,8 @@ class _Search:
             self._cuts_bound = max(0, ceil(solver.best_objective_bound - 1e-6) - spare)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             painting = canonical(graph, read_painting(graph, built.variables, solver))
-            if self._best is None or _cuts(painting) < _cuts(self._best[1]):
+            cuts = count_cuts(self._instance, graph, painting)
+            if self._best is None or cuts < count_cuts(self._instance, *self._best):
                 self._best = graph, painting
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
@@ -290,7 +292,3 @@ class _Search:
         self._known = min(known, default=None)
         if self._progress is not None:
             self._progress(self._known, max(bound or 0, self._bound))
-
-
-def _cuts(painting: Painting) -> int:
-    return sum(len(blocks) - 1 for blocks in painting)

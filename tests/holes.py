@@ -1,0 +1,182 @@
+"""Divisions of cells with several loops straight from their definition, without seams.
+
+A division of a cell is drawn on a sphere as a graph: its loops and its sub-cells are points, each
+dart in state 1 a line between the two. Round a loop the lines leave in the order of its darts,
+round a sub-cell in any order. It can be drawn if some choice of these orders has genus 0.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+import random
+from collections.abc import Iterator, Sequence
+from functools import cache
+
+import networkx as nx
+
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.solution import Division, number_segments
+
+Loops = tuple[tuple[int, ...], ...]
+Blocks = frozenset[frozenset[int]]
+Painted = frozenset[tuple[int, frozenset[int]]]
+"""Sub-cells of one cell: color and darts in state 1."""
+
+
+def set_partitions(items: Sequence[int]) -> Iterator[list[list[int]]]:
+    """All of them."""
+    if not items:
+        yield []
+        return
+    for smaller in set_partitions(items[1:]):
+        yield [[items[0]], *smaller]
+        for number, block in enumerate(smaller):
+            yield [*smaller[:number], [items[0], *block], *smaller[number + 1 :]]
+
+
+@cache
+def can_be_drawn(loops: Loops, blocks: Blocks) -> bool:
+    """Whether connected sub-cells without crossings can hold these darts of a planar cell."""
+    ones = {dart for block in blocks for dart in block}
+    kept = [[dart for dart in loop if dart in ones] for loop in loops]
+    kept = [loop for loop in kept if loop]
+    graph: nx.Graph[object] = nx.Graph()
+    for number, loop in enumerate(kept):
+        graph.add_edges_from((number, block) for block in blocks for d in loop if d in block)
+    points = len(kept) + len(blocks)
+    corners = points - len(ones) - 2 * nx.number_connected_components(graph)
+    following = {
+        dart: loop[place - len(loop) + 1] for loop in kept for place, dart in enumerate(loop)
+    }
+    for orders in itertools.product(
+        *([[first, *rest] for rest in itertools.permutations(others)] for first, *others in blocks)
+    ):
+        after = {
+            d: order[place - len(order) + 1] for order in orders for place, d in enumerate(order)
+        }
+        # Along a face: out at a loop, at the sub-cell to the next line there, in at another loop.
+        step = {dart: following[after[dart]] for dart in ones}
+        faces = 0
+        while step:
+            faces += 1
+            dart = next(iter(step))
+            while dart in step:
+                dart = step.pop(dart)
+        if corners + faces == 0:
+            return True
+    return False
+
+
+def live_loops(instance: Instance, cell: Cell) -> Loops:
+    loops = (tuple(d for d in loop if instance.joinable(d)) for loop in cell.loops)
+    return tuple(loop for loop in loops if loop)
+
+
+def divisions_of(instance: Instance, cell: Cell) -> Iterator[Painted]:
+    """Every choice of darts in state 1, colors for them, and sub-cells that can be drawn."""
+    loops = live_loops(instance, cell)
+    darts = [dart for loop in loops for dart in loop]
+    for colors in itertools.product(*([None, *instance.joinable(dart)] for dart in darts)):
+        color = {d: c for d, c in zip(darts, colors, strict=True) if c is not None}
+        if any(-d in darts and color.get(-d) != c for d, c in color.items()):
+            continue
+        if not color:
+            yield from (frozenset([(own, frozenset[int]())]) for own in cell.colors)
+            continue
+        classes = [[d for d in color if color[d] == own] for own in sorted(set(color.values()))]
+        for chosen in itertools.product(*map(set_partitions, classes)):
+            blocks = [frozenset(block) for partition in chosen for block in partition]
+            if can_be_drawn(loops, frozenset(blocks)):
+                yield frozenset((color[min(block)], block) for block in blocks)
+
+
+def divisions(instance: Instance) -> Iterator[tuple[Painted, ...]]:
+    """Every division of every cell, edges in one state and color on both sides."""
+    options = [list(divisions_of(instance, cell)) for cell in instance.cells]
+
+    def extend(
+        chosen: list[Painted], color: dict[int, int | None]
+    ) -> Iterator[tuple[Painted, ...]]:
+        if len(chosen) == len(options):
+            yield tuple(chosen)
+            return
+        cell = instance.cells[len(chosen)]
+        darts = [dart for loop in live_loops(instance, cell) for dart in loop]
+        for painted in options[len(chosen)]:
+            own = dict.fromkeys(darts) | {d: c for c, block in painted for d in block}
+            if all(color.get(-d, own[d]) == own[d] for d in darts):
+                yield from extend([*chosen, painted], color | own)
+
+    return extend([], {})
+
+
+def as_division(division: Sequence[Painted]) -> Division:
+    return number_segments(
+        [[(c, tuple(sorted(d))) for c, d in sorted(cell, key=str)] for cell in division]
+    )
+
+
+def segments(division: Sequence[Painted]) -> int:
+    return len({sub.segment for cell in as_division(division) for sub in cell.subcells})
+
+
+@cache
+def paths(loops: Loops, blocks: Blocks) -> int:
+    """The fewest curves between sub-cells: of all ways to group the loops, that with most groups.
+
+    What curves connect is one group, and groups and sub-cells have to hang together like a tree.
+    """
+    best = math.inf
+    for groups in set_partitions(range(len(loops))):
+        tree: nx.Graph[object] = nx.Graph()
+        for number, group in enumerate(groups):
+            darts = {dart for loop in group for dart in loops[loop]}
+            tree.add_edges_from((number, block) for block in blocks if block & darts)
+        if not tree or nx.is_forest(tree):
+            best = min(best, len(blocks) - 1 + len(loops) - len(groups))
+    return int(best) if loops else 0
+
+
+def fewest(instance: Instance) -> tuple[int, int]:
+    """The fewest segments, and the fewest cutting paths of the divisions with so many."""
+    best = (len(instance.cells) * 100, 0)
+    loops = [live_loops(instance, cell) for cell in instance.cells]
+    for division in divisions(instance):
+        count = segments(division)
+        if count <= best[0]:
+            cuts = sum(
+                paths(own, frozenset(block for _, block in cell))
+                for own, cell in zip(loops, division, strict=True)
+            )
+            best = min(best, (count, cuts))
+    return best
+
+
+def holed(seed: int, darts: int, loops: int, colors: int) -> Instance:
+    """A cell with several loops, and around each of its darts, or of two, another cell."""
+    rng = random.Random(f"holed {seed} {darts} {loops} {colors}")
+    borders: list[list[int]] = [[dart] for dart in range(1, loops + 1)]
+    for dart in range(loops + 1, darts + 1):
+        rng.choice(borders).append(dart)
+    petals: list[list[int]] = []
+    for dart in rng.sample(range(1, darts + 1), darts):
+        if petals and len(petals[-1]) == 1 and rng.random() < 0.2:
+            petals[-1].append(dart)
+        else:
+            petals.append([dart])
+    many = tuple(range(colors))
+    sets = [tuple(sorted(rng.sample(many, 1 + (rng.random() < 0.2)))) for _ in petals]
+    cell_of = {dart: n for n, petal in enumerate(petals, start=1) for dart in petal}
+    return Instance(
+        f"holed_{seed}",
+        tuple(f"c{color}" for color in many),
+        (
+            Cell(0, many, tuple(map(tuple, borders))),
+            *(
+                Cell(n, own, (tuple(-dart for dart in petal),))
+                for n, (own, petal) in enumerate(zip(sets, petals, strict=True), start=1)
+            ),
+        ),
+        tuple(Edge(dart, 0, cell_of[dart]) for dart in range(1, darts + 1)),
+    )
