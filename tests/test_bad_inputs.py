@@ -212,8 +212,8 @@ def test_scene_without_the_front_end(
         monkeypatch.setitem(sys.modules, package, None)
     wok = str(INSTANCES / "scenes" / "wok.toml")
     out = str(tmp_path / "out.json")
-    refused(["solve", wok], capsys, wok, "pip install 'cellcolor[frontend]'")
-    refused(["build", wok, "-o", out], capsys, wok, "pip install 'cellcolor[frontend]'")
+    refused(["solve", wok], capsys, wok, "pip install 'fewest-lift-offs[frontend]'")
+    refused(["build", wok, "-o", out], capsys, wok, "pip install 'fewest-lift-offs[frontend]'")
     assert list(tmp_path.iterdir()) == []
 
 
@@ -288,8 +288,8 @@ def test_outputs_that_would_lose_a_file(tmp_path: Path, capsys: pytest.CaptureFi
     surface_path.write_text(text, encoding="utf-8")
     other = tmp_path / "sub" / "a.toml"
     other.parent.mkdir()
-    refused(["build", str(surface_path), "-o", str(surface_path)], capsys, "is the input itself")
-    refused(["solve", str(surface_path), "-o", str(surface_path)], capsys, "overwrite")
+    refused(["build", str(surface_path), "-o", str(surface_path)], capsys, "is an input")
+    refused(["solve", str(surface_path), "-o", str(surface_path)], capsys, "overwritten")
     both = ["solve", str(surface_path), str(other), "-o", str(tmp_path / "out")]
     refused(both, capsys, "would both go to")
     refused([*both[:-1], str(surface_path)], capsys, str(surface_path), "must be a folder")

@@ -12,7 +12,6 @@ from hypothesis import given
 from library import INSTANCES, PAPER
 from meshes import surfaces
 
-from cellcolor.data.files import write_text
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import (
@@ -376,19 +375,3 @@ def test_schemes_are_the_same_whatever_their_order() -> None:
     assert key == scheme_key((CellDivision(0, (other, swapped)),))
     assert key != scheme_key((CellDivision(0, (one, SubCell(2, (3, 4), 1))),))
     assert key != scheme_key((CellDivision(0, (one, SubCell(1, (3,), 1))),))
-
-
-def test_a_file_is_written_whole_or_not_at_all(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    path = tmp_path / "out.json"
-    write_text(path, "old")
-
-    def fail(_self: Path, _target: Path) -> None:
-        raise OSError(28, "No space left on device")
-
-    monkeypatch.setattr(Path, "replace", fail)
-    with pytest.raises(InputError, match="No space left"):
-        write_text(path, "new")
-    assert path.read_text(encoding="utf-8") == "old"
-    assert list(tmp_path.iterdir()) == [path]

@@ -367,7 +367,7 @@ class TestFiles:
 
     def test_an_existing_file_is_replaced_whole(self, tmp_path: Path) -> None:
         path = saved(DRAWN, tmp_path)
-        (tmp_path / "x.png").write_bytes(b"old")
+        (tmp_path / "x.png").touch()
         show(path, "-o", tmp_path / "x.png")
         assert (tmp_path / "x.png").read_bytes()[:4] == b"\x89PNG"
         assert sorted(tmp_path.iterdir()) == [path, tmp_path / "x.png"]

@@ -158,7 +158,7 @@ def test_library_not_installed(
         monkeypatch.delitem(sys.modules, f"cellcolor.viz.{module}", raising=False)
         monkeypatch.delattr(sys.modules["cellcolor.viz"], module, raising=False)
     arguments: list[object] = [path, "-o", tmp_path / f"x.{kind}"]
-    refused(arguments, capsys, library, "pip install 'cellcolor[viz]'")
+    refused(arguments, capsys, library, "pip install 'fewest-lift-offs[viz]'")
     assert list(tmp_path.iterdir()) == [path]
 
 
@@ -170,5 +170,5 @@ def test_front_end_not_installed(
     for package in ("pinocchio", "trimesh", "fcl"):
         monkeypatch.setitem(sys.modules, package, None)
     arguments: list[object] = [WOK, "--reason", "-o", tmp_path / "x.png"]
-    refused(arguments, capsys, str(WOK), "pip install 'cellcolor[frontend]'")
+    refused(arguments, capsys, str(WOK), "pip install 'fewest-lift-offs[frontend]'")
     assert list(tmp_path.iterdir()) == []

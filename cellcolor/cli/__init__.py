@@ -1,15 +1,16 @@
-"""The command line: ``cellcolor build``, ``solve``, ``check`` and the other commands."""
+"""The command line: ``cellcolor build``, ``solve``, ``check`` and the other commands.
+
+Little is imported before the signals have their handlers: until then Ctrl-C ends in a traceback.
+"""
 
 from __future__ import annotations
 
+import os
 import sys
 from collections.abc import Sequence
 
-import click
-
-from cellcolor.cli.commands import cellcolor
 from cellcolor.cli.exits import Exit
-from cellcolor.errors import CellcolorError
+from cellcolor.cli.interrupts import INTERRUPTS
 
 __all__ = ["main"]
 
@@ -24,21 +25,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code: 0 done, 1 found invalid, 2 bad usage or input, 3 stopped or not proved.
     """
     try:
-        code = cellcolor.main(
-            args=None if arguments is None else list(arguments),
-            prog_name="cellcolor",
-            standalone_mode=False,
-        )
-    except click.ClickException as error:
-        context = getattr(error, "ctx", None)
-        place = context.command_path if context else "cellcolor"
-        message = " ".join(error.format_message().split())
-        print(f"{place}: {message}", file=sys.stderr)
-        return Exit.BAD_INPUT
-    except CellcolorError as error:
-        print(f"cellcolor: {error}", file=sys.stderr)
-        return Exit.BAD_INPUT
-    except click.Abort:
+        with INTERRUPTS.end_the_command():
+            from cellcolor.cli.run import run
+
+            code = run(arguments)
+    except (KeyboardInterrupt, ImportError):
+        # In the moments before and after the command proper.
+        if not INTERRUPTS.seen:
+            raise
         print("cellcolor: interrupted", file=sys.stderr)
-        return Exit.STOPPED
-    return int(code or Exit.DONE)
+        code = Exit.STOPPED
+    if arguments is None:
+        # The process is about to end; a signal can only hasten that.
+        INTERRUPTS.handle_with(lambda *_: os._exit(code))
+    return code

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,6 +13,7 @@ from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.progress import progress_of
 from cellcolor.cli.tables import console
+from cellcolor.cli.terminal import complain, shown
 from cellcolor.errors import CellcolorError, InputError
 
 
@@ -31,11 +31,11 @@ def bench_files(files: Sequence[Path], time_limit: float) -> Exit:
                 runs = compare(instance, time_limit)
         except CellcolorError as error:
             named = isinstance(error, InputError) and error.file
-            print(f"cellcolor: {error if named else f'{file}: {error}'}", file=sys.stderr)
+            complain(error if named else f"{file}: {error}")
             codes.append(Exit.BAD_INPUT)
             continue
         table.add_row(
-            str(file),
+            shown(file),
             str(len(instance.cells)),
             str(max_live_darts(instance)),
             _minimum(runs),

@@ -8,41 +8,68 @@ from pathlib import Path, PurePath
 
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import build_scene, graph_of, is_scene, read_graph
-from cellcolor.data.files import write_text
+from cellcolor.cli.terminal import apart_from, say
+from cellcolor.data import instance as instance_file
+from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
+from cellcolor.data.output import SIDE_FILE, Output, check_output, is_stream, kind_of_format, write
 from cellcolor.errors import InputError
+
+_INSTANCE = kind_of_format(instance_file.FORMAT)
+_SURFACE = kind_of_format(surface_file.FORMAT)
 
 
 def build_instance(source: Path, output: Path) -> Exit:
     """Write an instance; for a scene its labelled surface and side file as well."""
-    if output.is_dir():
-        raise InputError(str(output), None, "is a folder, not a file to write")
-    if not output.parent.is_dir():
-        raise InputError(str(output), None, "its folder does not exist")
-    if is_scene(source):
-        scene = build_scene(source)
-        stem = output.name.removesuffix(".json")
-        surface_path = output.with_name(f"{stem}.surface.json")
-        side_path = output.with_name(f"{stem}.reasons.npz")
-        surface = replace(scene.surface, meta=scene.surface.meta | {"side_file": side_path.name})
-        instance = graph_of(surface, source, surface_path.name)
-        # The side file first: a surface never names one that is not there.
-        scene.write_side(side_path)
-        write_text(surface_path, surface.to_json())
-        print(scene.report)
-        print(f"wrote {surface_path}\nwrote {side_path}")
-    else:
-        if output.exists() and output.samefile(source):
-            raise InputError(str(output), None, "is the input itself")
-        found = read_graph(source)
-        if isinstance(found, Instance):
-            raise InputError(str(source), "format", "is an instance already")
-        surface = found
-        relative = os.path.relpath(source.resolve(), output.parent.resolve())
-        instance = graph_of(surface, source, PurePath(relative).as_posix())
-    write_text(output, instance.to_json())
-    print(
+    check_output(output, _INSTANCE, [source])
+    with apart_from(output):
+        if is_scene(source):
+            _build_scene(source, output)
+        else:
+            _build_surface(source, output)
+    return Exit.DONE
+
+
+def _build_scene(source: Path, output: Path) -> None:
+    stem = output.name.removesuffix(".json")
+    surface_path = output.with_name(f"{stem}.surface.json")
+    side_path = output.with_name(f"{stem}.reasons.npz")
+    alone = is_stream(output)  # nothing lies beside a pipe, and nothing can be named from there
+    if not alone:
+        check_output(surface_path, _SURFACE, [source])
+        check_output(side_path, SIDE_FILE, [source])
+    scene = build_scene(source)
+    surface = replace(scene.surface, meta=scene.surface.meta | {"side_file": side_path.name})
+    instance = graph_of(surface, source, None if alone else surface_path.name)
+    files = [Output(output, _INSTANCE, [instance.to_json().encode()])]
+    if not alone:
+        # The instance last: it carries the fingerprint of its surface.
+        files = [
+            Output(side_path, SIDE_FILE, [scene.side_file()]),
+            Output(surface_path, _SURFACE, [surface.to_json().encode()]),
+            *files,
+        ]
+    write(files, [source])
+    for line in scene.report.split("\n"):
+        say(line)
+    for file in files[:-1]:
+        say(f"wrote {file.path}")
+    _say_written(output, instance)
+
+
+def _build_surface(source: Path, output: Path) -> None:
+    found = read_graph(source)
+    if isinstance(found, Instance):
+        raise InputError(str(source), "format", "is an instance already")
+    relative = os.path.relpath(source.resolve(), output.parent.resolve())
+    reference = None if is_stream(output) else PurePath(relative).as_posix()
+    instance = graph_of(found, source, reference)
+    write([Output(output, _INSTANCE, [instance.to_json().encode()])], [source])
+    _say_written(output, instance)
+
+
+def _say_written(output: Path, instance: Instance) -> None:
+    say(
         f"wrote {output}: {len(instance.cells)} cells, {len(instance.edges)} edges, "
         f"{len(instance.colors)} colors"
     )
-    return Exit.DONE

@@ -16,13 +16,18 @@ from cellcolor.campaign.run import Outcome, campaign
 from cellcolor.campaign.summary import Kind, Summary
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.tables import console
+from cellcolor.cli.terminal import complain
+from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
-from cellcolor.data.files import write_text
+from cellcolor.data.output import Output, is_folder_or_nothing, kind_of_format, write
+from cellcolor.data.temporary import remove_strays
 from cellcolor.errors import InputError
 
 
 def run_campaign(count: int, seed: int, time_limit: float, jobs: int, output: Path) -> Exit:
     """Run a campaign, print what it looked at, and keep what went wrong."""
+    if is_folder_or_nothing(output):
+        remove_strays(output)
     summary = Summary()
     started = time.monotonic()
     interrupted = False
@@ -34,7 +39,7 @@ def run_campaign(count: int, seed: int, time_limit: float, jobs: int, output: Pa
                 advance(summary)
         except KeyboardInterrupt:
             interrupted = True
-            print("cellcolor: interrupted", file=sys.stderr)
+            complain("interrupted")
     _print(summary, seed, time.monotonic() - started)
     if summary.total.disagreements:
         return Exit.INVALID
@@ -51,8 +56,9 @@ def _keep(outcome: Outcome, seed: int, output: Path) -> None:
             output.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(str(output), None, error.strerror or "cannot be made") from error
-        write_text(output / name, wrong.document)
-        print(f"cellcolor: {output / name}: {wrong.message}", file=sys.stderr)
+        kind = kind_of_format(surface_file.FORMAT if mesh else instance_file.FORMAT)
+        write([Output(output / name, kind, [wrong.document.encode()])])
+        complain(f"{output / name}: {wrong.message}")
 
 
 @contextmanager

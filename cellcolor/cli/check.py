@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
 from cellcolor.check.solution import check_division, check_solution
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_graph
+from cellcolor.cli.terminal import print_json, say
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
@@ -24,7 +24,7 @@ def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) ->
     else:
         verdict = _check_plan(graph, subject, claim, time_limit)
     if as_json:
-        print(json.dumps({"file": str(claim)} | verdict, ensure_ascii=False))
+        print_json({"file": str(claim)} | verdict)
     else:
         _print(claim, verdict)
     return Exit.DONE if verdict["valid"] else Exit.INVALID
@@ -84,22 +84,22 @@ def _check_plan(
 
 
 def _print(claim: Path, verdict: dict[str, Any]) -> None:
-    print(f"{claim}: {'valid' if verdict['valid'] else 'not valid'}")
+    say(f"{claim}: {'valid' if verdict['valid'] else 'not valid'}")
     for problem in verdict["problems"]:
-        print(f"  {problem}")
+        say(f"  {problem}")
     if verdict["segments"] is not None:
-        print(f"  {verdict['segments']} segments, {verdict['lift_offs']} lift-offs")
+        say(f"  {verdict['segments']} segments, {verdict['lift_offs']} lift-offs")
     if "status" in verdict:
-        print(f"  status {verdict['status']}")
+        say(f"  status {verdict['status']}")
     if "schemes" in verdict:
-        print(f"  {verdict['schemes']} schemes")
+        say(f"  {verdict['schemes']} schemes")
     if verdict.get("lower_bound") is not None:
         lower, upper = verdict["lower_bound"], verdict["upper_bound"]
         least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"
-        print(f"  fewest segments on this surface: {least}")
+        say(f"  fewest segments on this surface: {least}")
         if verdict["optimal"]:
-            print("  optimal")
+            say("  optimal")
         elif verdict["beatable_by"]:
-            print(f"  {verdict['beatable_by']} fewer are enough")
+            say(f"  {verdict['beatable_by']} fewer are enough")
         else:
-            print("  not known to be optimal, not known to be beatable")
+            say("  not known to be optimal, not known to be beatable")

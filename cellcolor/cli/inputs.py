@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
+from cellcolor.cli.extras import extras_for
+from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.terminal import complain
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.data.files import read_document
@@ -15,8 +17,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-
-_FRONTEND_PACKAGES = {"coal", "fcl", "pinocchio", "scipy", "trimesh"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,13 +27,13 @@ class Scene:
         surface: what the front end made of it.
         report: what it has to say about that, several lines, warnings among them.
         warnings: what is probably not meant, a sentence each.
-        write_side: writes the surface's side file, reasons and configurations (``.npz``).
+        side_file: makes the bytes of the surface's side file, reasons and configurations.
     """
 
     surface: LabelledSurface
     report: str
     warnings: tuple[str, ...]
-    write_side: Callable[[Path], None]
+    side_file: Callable[[], bytes]
 
 
 def is_scene(path: Path) -> bool:
@@ -47,19 +47,14 @@ def build_scene(path: Path) -> Scene:
     Raises:
         InputError: the scene cannot be used, or the front end is not installed.
     """
-    try:
+    with extras_for(path):
         from cellcolor.frontend import build_surface
-        from cellcolor.frontend.sidefile import write_side_file
-    except ModuleNotFoundError as error:
-        missing = (error.name or "").partition(".")[0]
-        if missing not in _FRONTEND_PACKAGES:
-            raise
-        raise InputError(
-            str(path), None, f"scenes need {missing}: pip install 'cellcolor[frontend]'"
-        ) from error
+        from cellcolor.frontend.sidefile import side_file
+    INTERRUPTS.check()
     result = build_surface(path)
+    INTERRUPTS.check()
     report = result.report
-    return Scene(result.surface, str(report), report.warnings, partial(write_side_file, result))
+    return Scene(result.surface, str(report), report.warnings, partial(side_file, result))
 
 
 def read_graph(path: Path) -> Instance | LabelledSurface:
@@ -82,13 +77,13 @@ def read_graph(path: Path) -> Instance | LabelledSurface:
         raise error.in_file(str(path)) from error
 
 
-def graph_of(surface: LabelledSurface, path: Path, reference: str) -> Instance:
+def graph_of(surface: LabelledSurface, path: Path, reference: str | None) -> Instance:
     """The topological graph of a surface.
 
     Args:
         surface: the labelled surface.
         path: the file it came from, for errors.
-        reference: where the instance's file will say that the surface is.
+        reference: where the instance's file will say that the surface is; None leaves that out.
     """
     try:
         return decompose(surface, reference)
@@ -108,7 +103,7 @@ def read_instance(path: Path) -> Instance:
     if is_scene(path):
         scene = build_scene(path)
         for warning in scene.warnings:
-            print(f"cellcolor: {path}: warning: {warning}", file=sys.stderr)
+            complain(f"{path}: warning: {warning}")
         return graph_of(scene.surface, path, f"{path.stem}.surface.json")
     found = read_graph(path)
     return found if isinstance(found, Instance) else graph_of(found, path, path.name)

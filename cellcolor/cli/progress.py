@@ -7,20 +7,22 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from cellcolor.cli.terminal import shown
 from cellcolor.solvers.interface import Progress
 
 
 @contextmanager
 def progress_of(file: Path) -> Iterator[Progress | None]:
     """A line with the time spent, the best division and the bound; None without a terminal."""
-    with _line(f"{file.name}: solving") as show:
+    name = shown(file.name)
+    with _line(f"{name}: solving") as show:
         if show is None:
             yield None
             return
 
         def report(segments: int | None, lower_bound: int) -> None:
             best = "no division yet" if segments is None else f"best {segments}"
-            show(f"{file.name}: {best}, at least {lower_bound}")
+            show(f"{name}: {best}, at least {lower_bound}")
 
         yield report
 
@@ -28,11 +30,12 @@ def progress_of(file: Path) -> Iterator[Progress | None]:
 @contextmanager
 def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None] | None]:
     """A line with the time spent and the schemes found; None without a terminal."""
-    with _line(f"{file.name}: looking for schemes") as show:
+    name = shown(file.name)
+    with _line(f"{name}: looking for schemes") as show:
         if show is None:
             yield None
             return
-        yield lambda count: show(f"{file.name}: {count} schemes so far")
+        yield lambda count: show(f"{name}: {count} schemes so far")
 
 
 @contextmanager

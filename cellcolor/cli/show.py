@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,9 +9,12 @@ from typing import TYPE_CHECKING
 import click
 
 from cellcolor.cli.exits import Exit
+from cellcolor.cli.extras import extras_for
 from cellcolor.cli.inputs import graph_of, is_scene, read_graph
-from cellcolor.data.files import replacing
+from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.terminal import say
 from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.output import HTML, PNG, SVG, Output, check_output, write
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 
@@ -24,16 +25,7 @@ if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult
     from cellcolor.viz.picture import Picture2D, Picture3D
 
-_EXTRAS = {
-    "matplotlib": "viz",
-    "mpl_toolkits": "viz",
-    "plotly": "viz",
-    "coal": "frontend",
-    "fcl": "frontend",
-    "pinocchio": "frontend",
-    "scipy": "frontend",
-    "trimesh": "frontend",
-}
+_KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,15 +85,15 @@ class _Subject:
 
 def show_files(files: tuple[Path, ...], output: Path, view: View) -> Exit:
     """Draw one picture."""
-    if output.suffix not in (".html", ".png", ".svg"):
+    kind = _KINDS.get(output.suffix)
+    if kind is None:
         raise InputError(str(output), None, "must end in .html, .png or .svg")
-    if not output.parent.is_dir():
-        raise InputError(str(output), None, "its folder does not exist")
+    check_output(output, kind, files)
     if len(files) > 1 and is_scene(files[0]):
         raise click.UsageError("a solution goes with the instance that was solved, not a scene")
-    with _extras(files[0]):
+    with extras_for(files[0]):
         subject = _read(files[0])
-    with _extras(output):
+    with extras_for(output):
         picture = _picture(subject, files[1] if len(files) > 1 else None, view)
         if output.suffix == ".html":
             from cellcolor.viz import interactive
@@ -111,23 +103,10 @@ def show_files(files: tuple[Path, ...], output: Path, view: View) -> Exit:
             from cellcolor.viz import static
 
             content = static.render(picture, output.suffix[1:])
-    with replacing(output) as stream:
-        stream.buffer.write(content)
-    print(f"wrote {output}: {picture.title}")
+    INTERRUPTS.check()
+    write([Output(output, kind, [content])], files)
+    say(f"wrote {output}: {picture.title}")
     return Exit.DONE
-
-
-@contextmanager
-def _extras(path: Path) -> Iterator[None]:
-    """Turn the lack of an extra into a line that says what to install."""
-    try:
-        yield
-    except ModuleNotFoundError as error:
-        missing = (error.name or "").partition(".")[0]
-        if missing not in _EXTRAS:
-            raise
-        line = f"needs {missing}: pip install 'cellcolor[{_EXTRAS[missing]}]'"
-        raise InputError(str(path), None, line) from error
 
 
 def _read(path: Path) -> _Subject:

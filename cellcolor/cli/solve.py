@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from itertools import chain
 from pathlib import Path
 from typing import IO
 
@@ -19,15 +18,27 @@ import click
 from cellcolor.check.solution import check_solution
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
-from cellcolor.cli.interrupts import Interrupted, Interrupts
+from cellcolor.cli.interrupts import INTERRUPTS, Interrupted
 from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.tables import print_overview, print_solution
-from cellcolor.data.files import replacing, write_text
+from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
+from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
+from cellcolor.data.output import (
+    Output,
+    check_output,
+    is_folder,
+    is_folder_or_nothing,
+    is_stream,
+    kind_of_format,
+    write,
+)
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.solvers.interface import PORTFOLIO, Options, Start
+
+_SOLUTION = kind_of_format(solution_file.FORMAT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,9 +75,13 @@ def solve_files(request: Request) -> Exit:
     """Solve every file; a bad one does not stop the others."""
     targets = _targets(request)
     _warn_of_workers(request.options.workers)
+    with apart_from(request.output):
+        return _solve_files(request, targets)
+
+
+def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
     codes: list[Exit] = []
     solved: list[tuple[Path, Instance, Solution]] = []
-    interrupts = Interrupts()
     begun: float | None = request.begun
     for file, target in zip(request.files, targets, strict=True):
         deadline = Deadline.after(request.time_limit, begun)
@@ -74,7 +89,7 @@ def solve_files(request: Request) -> Exit:
         try:
             instance = read_instance(file)
             options = replace(request.options, deadline=deadline)
-            solution = _solve(instance, file, target, request, options, interrupts)
+            solution = _solve(instance, file, target, request, options)
         except Interrupted:
             _say_failed(request, file, f"{file}: interrupted, nothing found yet")
             codes.append(Exit.STOPPED)
@@ -85,7 +100,7 @@ def solve_files(request: Request) -> Exit:
             codes.append(Exit.BAD_INPUT)
             continue
         if request.as_json:
-            _print_json({"file": str(file)} | solution.to_document())
+            print_json({"file": str(file)} | solution.to_document())
         else:
             print_solution(instance, solution)
         solved.append((file, instance, solution))
@@ -95,7 +110,7 @@ def solve_files(request: Request) -> Exit:
             and solution.cutting_paths == solution.cutting_paths_lower_bound
         )
         codes.append(Exit.DONE if done else Exit.STOPPED)
-        if interrupts.seen:
+        if INTERRUPTS.seen or (target is None and unheard()):
             break
     if len(codes) < len(request.files):
         codes.append(Exit.STOPPED)
@@ -108,7 +123,7 @@ def _warn_of_workers(workers: int | None) -> None:
     """More workers than processors are useful in a portfolio, and slow beyond it."""
     cores = os.cpu_count() or 1
     if workers is not None and workers > max(cores, PORTFOLIO):
-        print(f"cellcolor: {workers} workers share {cores} processors", file=sys.stderr)
+        complain(f"{workers} workers share {cores} processors")
 
 
 def _start(instance: Instance, path: Path, options: Options) -> Start:
@@ -131,13 +146,9 @@ def _start(instance: Instance, path: Path, options: Options) -> Start:
 
 
 def _say_failed(request: Request, file: Path, message: str) -> None:
-    print(f"cellcolor: {message}", file=sys.stderr)
+    complain(message)
     if request.as_json:
-        _print_json({"file": str(file), "error": message})
-
-
-def _print_json(document: dict[str, object]) -> None:
-    print(json.dumps(document, ensure_ascii=False), flush=True)
+        print_json({"file": str(file), "error": message})
 
 
 def _targets(request: Request) -> list[Path | None]:
@@ -145,23 +156,23 @@ def _targets(request: Request) -> list[Path | None]:
     output = request.output
     if output is None:
         return [None] * len(request.files)
-    if len(request.files) == 1 and not output.is_dir():
-        if not output.parent.is_dir():
-            raise InputError(str(output), None, "its folder does not exist")
-        targets = [output]
-    else:
-        if output.exists() and not output.is_dir():
-            raise InputError(str(output), None, "must be a folder for several inputs")
-        suffix = ".solution.jsonl" if request.every else ".solution.json"
-        targets = [output / (file.stem + suffix) for file in request.files]
-    inputs = {file.resolve() for file in request.files}
+    if len(request.files) == 1 and not is_folder(output):
+        check_output(output, _SOLUTION, _inputs(request))
+        return [output]
+    there = is_folder_or_nothing(output)
+    suffix = ".solution.jsonl" if request.every else ".solution.json"
+    targets = [output / (file.stem + suffix) for file in request.files]
     for number, target in enumerate(targets):
-        if target.resolve() in inputs:
-            raise InputError(str(target), None, "is an input; -o would overwrite it")
         if target in targets[:number]:
             other = request.files[targets.index(target)]
             raise click.UsageError(f"{other} and {request.files[number]} would both go to {target}")
+        if there:
+            check_output(target, _SOLUTION, _inputs(request))
     return list(targets)
+
+
+def _inputs(request: Request) -> list[Path]:
+    return [*request.files, *([] if request.warm_start is None else [request.warm_start])]
 
 
 def _solve(
@@ -170,7 +181,6 @@ def _solve(
     target: Path | None,
     request: Request,
     options: Options,
-    interrupts: Interrupts,
 ) -> Solution:
     """Solve one instance and write what was found."""
     from cellcolor.solvers.run import solve
@@ -179,24 +189,25 @@ def _solve(
         _refuse_schemes(instance)
     if request.warm_start is not None:
         options = replace(options, start=_start(instance, request.warm_start, options))
-    with progress_of(file) as report, interrupts.end_the_search():
+    with progress_of(file) as report, INTERRUPTS.end_the_search():
         solution = solve(instance, options, request.solver, report)
     if not request.every:
         if target is not None:
             _make_folder(target)
-            write_text(target, solution.to_json())
+            content = [solution.to_json().encode()]
+            write([Output(target, _SOLUTION, content)], _inputs(request))
         return solution
     with _spool(target) as spool:
-        if interrupts.seen:
+        if INTERRUPTS.seen:
             solution = replace(solution, schemes=0, complete=False)
         else:
-            with scheme_progress_of(file) as count, interrupts.end_the_search():
+            with scheme_progress_of(file) as count, INTERRUPTS.end_the_search():
                 solution = _with_schemes(instance, solution, request, options, spool, count)
         if target is not None and spool is not None:
             spool.seek(0)
-            with replacing(target) as stream:
-                stream.write(json.dumps(solution.to_document(), ensure_ascii=False) + "\n")
-                shutil.copyfileobj(spool, stream)
+            head = json.dumps(solution.to_document(), ensure_ascii=False) + "\n"
+            output = Output(target, _SOLUTION, chain([head.encode()], spool))
+            write([output], _inputs(request))
     return solution
 
 
@@ -219,20 +230,22 @@ def _make_folder(target: Path) -> None:
 
 
 @contextmanager
-def _spool(target: Path | None) -> Iterator[IO[str] | None]:
-    """A file beside the target, where schemes wait for the solution that goes before them."""
+def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
+    """A file without a name, where schemes wait for the solution that goes before them.
+
+    It is beside the target if it can, where there should be room for it.
+    """
     if target is None:
         yield None
         return
     _make_folder(target)
+    folder = None if is_stream(target) else target.resolve().parent
     try:
-        spool = tempfile.NamedTemporaryFile(  # noqa: SIM115
-            "w+", encoding="utf-8", dir=target.parent, prefix=f".{target.name}.schemes."
-        )
+        spool = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115
     except OSError as error:
         raise InputError(str(target), None, error.strerror or "cannot be written") from error
-    with spool as stream:
-        yield stream.file
+    with spool:
+        yield spool
 
 
 def _with_schemes(
@@ -240,7 +253,7 @@ def _with_schemes(
     solution: Solution,
     request: Request,
     options: Options,
-    spool: IO[str] | None,
+    spool: IO[bytes] | None,
     report: Callable[[int], None] | None,
 ) -> Solution:
     """The solution with all optimal schemes counted, each written as soon as it is found.
@@ -260,8 +273,7 @@ def _with_schemes(
                 break
             count += 1
             if spool is not None:
-                spool.write(scheme_line(division) + "\n")
-                spool.flush()
+                spool.write(scheme_line(division).encode() + b"\n")
             if report is not None:
                 report(count)
     except OutOfTime:

@@ -11,6 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from cellcolor.cli.terminal import shown
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 
@@ -29,7 +30,7 @@ def print_solution(instance: Instance, solution: Solution) -> None:
     """One solution: its segments, then what is known about their number."""
     out = console()
     out.print(
-        Text(instance.name, style="bold"),
+        Text(shown(instance.name), style="bold"),
         f"{len(instance.cells)} cells, {len(instance.edges)} edges, {len(instance.colors)} colors",
     )
     if solution.cells:
@@ -54,7 +55,7 @@ def print_overview(solved: Sequence[tuple[Path, Instance, Solution]]) -> None:
     table.add_column("seconds", justify="right")
     for file, instance, solution in solved:
         table.add_row(
-            str(file),
+            shown(file),
             str(len(instance.cells)),
             _number(solution.segments),
             _number(solution.lift_offs),
@@ -92,7 +93,7 @@ def _segments(instance: Instance, solution: Solution) -> Table:
         most = least + sum(weights[cell] for cell in parts)
         table.add_row(
             str(segment),
-            instance.colors[color],
+            shown(instance.colors[color]),
             _cell_list(whole, parts),
             _share(least / sum(weights), most / sum(weights)),
         )

@@ -1,14 +1,11 @@
-"""Reading and writing the JSON files: strict, atomic, and with the field named in every error."""
+"""JSON files as text and back: strict, and with the field named in every error."""
 
 from __future__ import annotations
 
 import json
-import os
-import tempfile
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, TextIO, TypeVar
+from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -44,6 +41,9 @@ def parse_json(text: str) -> dict[str, Any]:
         ) from error
     except RecursionError as error:
         raise InputError(None, None, "not usable JSON: nested too deeply") from error
+    except ValueError as error:
+        # Python converts no integers with thousands of digits; it takes too long.
+        raise InputError(None, None, "not usable JSON: a number with too many digits") from error
     if not isinstance(document, dict):
         raise InputError(None, None, "must be a JSON object")
     return document
@@ -61,6 +61,8 @@ def read_text(path: Path) -> str:
         raise InputError(str(path), None, "not UTF-8 text") from error
     except OSError as error:
         raise InputError(str(path), None, error.strerror or "cannot be read") from error
+    except ValueError as error:  # a name with a zero character
+        raise InputError(str(path), None, "is no name of a file") from error
 
 
 def read_document(path: Path) -> dict[str, Any]:
@@ -125,39 +127,6 @@ def field_name(location: tuple[int | str, ...]) -> str:
         elif part.replace("_", "").isalnum():
             text += f".{part}" if text else part
     return text
-
-
-@contextmanager
-def replacing(path: Path) -> Iterator[TextIO]:
-    """Write a whole file or nothing: to a temporary name beside it, then rename.
-
-    Raises:
-        InputError: the place cannot be written to.
-    """
-    try:
-        handle, temporary = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-    except OSError as error:
-        raise InputError(str(path), None, error.strerror or "cannot be written") from error
-    try:
-        with os.fdopen(handle, "w", encoding="utf-8") as stream:
-            yield stream
-        # mkstemp makes private files; what is written here is meant to be read by others.
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(temporary).chmod(0o666 & ~umask)
-        Path(temporary).replace(path)
-    except OSError as error:
-        Path(temporary).unlink(missing_ok=True)
-        raise InputError(str(path), None, error.strerror or "cannot be written") from error
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-
-
-def write_text(path: Path, text: str) -> None:
-    """Write a whole file or nothing; see :func:`replacing`."""
-    with replacing(path) as stream:
-        stream.write(text)
 
 
 def dump_lines(document: dict[str, Any], one_per_line: frozenset[str]) -> str:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
+from cellcolor.data.output import MARKER
 from cellcolor.viz.palette import INK
 from cellcolor.viz.picture import Array, Layer, Picture2D, Picture3D, Segments
 
@@ -50,7 +51,7 @@ def render(picture: Picture2D | Picture3D) -> bytes:
         default_height="92vh",
         config={"displaylogo": False, "responsive": True},
     )
-    return page.encode()
+    return page.replace("<head>", f'<head><meta name="generator" content="{MARKER}" />', 1).encode()
 
 
 def _plain(text: str) -> str:

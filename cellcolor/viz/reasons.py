@@ -59,11 +59,15 @@ def read_verdicts(surface: LabelledSurface, path: Path) -> Verdicts:
                 archive["reasons"],
                 archive["node_color"].astype(np.int64),
             )
+            about = str(archive["surface_sha256"]) if "surface_sha256" in archive else None
     except OSError as error:
         reason = error.strerror or "cannot be read"
         raise InputError(str(side), None, f"{reason}; build the scene again or give it") from error
     except (KeyError, ValueError, EOFError, AttributeError, zipfile.BadZipFile) as error:
         raise InputError(str(side), None, f"is no side file: {error}") from error
+    if about is not None and about != surface.sha256:
+        message = "is of another surface; build the scene again"
+        raise InputError(str(side), "surface_sha256", message)
     shape = (len(surface.vertices), len(verdicts.branches))
     if verdicts.reasons.shape != shape or verdicts.node_color.shape != shape:
         raise InputError(str(side), "reasons", f"needs shape {shape}: it is of another surface")

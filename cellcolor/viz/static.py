@@ -16,6 +16,7 @@ from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
 from mpl_toolkits.mplot3d.axes3d import Axes3D
 
+from cellcolor.data.output import MARKER
 from cellcolor.viz.palette import INK
 from cellcolor.viz.picture import Array, Layer, Picture2D, Picture3D
 
@@ -46,7 +47,8 @@ def render(picture: Picture2D | Picture3D, kind: str) -> bytes:
         figure.suptitle(picture.title, x=0.02, ha="left", fontsize=12)
         _side(figure, legend, picture.notes)
         stream = io.BytesIO()
-        figure.savefig(stream, format=kind, metadata={"Date": None} if kind == "svg" else None)
+        metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
+        figure.savefig(stream, format=kind, metadata=metadata)
     return stream.getvalue()
 
 
