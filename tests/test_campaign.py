@@ -83,7 +83,7 @@ def test_instances_are_a_function_of_seed_and_number() -> None:
 
 
 def test_the_command_on_two_processes() -> None:
-    command = [sys.executable, "-m", "cellcolor.cli", "campaign", "--count", "4", "--jobs", "2"]
+    command = [sys.executable, "-m", "cellcolor", "campaign", "--count", "4", "--jobs", "2"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     expected = Summary()

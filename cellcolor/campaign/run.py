@@ -8,6 +8,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import partial
+from multiprocessing import resource_tracker
 from typing import Any
 
 from cellcolor.campaign.compare import Finding, MeshFinding, compare, compare_on_mesh, complaint
@@ -77,12 +78,14 @@ def campaign(count: int, seed: int, time_limit: float, jobs: int) -> Iterator[Ou
         return
     # Not forked: the parent may run threads, and OR-Tools has some of its own.
     context = multiprocessing.get_context("spawn")
-    # Ctrl-C goes to the whole process group; only the parent is to act on it, from the start.
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Ctrl-C goes to the whole process group; only the parent is to act on it, from the start. New
+    # processes inherit that the signal is blocked, and here it waits for the end of the block.
+    resource_tracker.ensure_running()  # would lift the block when the first process starts
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         pool = context.Pool(jobs)
     finally:
-        signal.signal(signal.SIGINT, before)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
     with pool:
         yield from pool.imap_unordered(work, range(count), chunksize=4)
 

@@ -1,23 +1,33 @@
-"""Ctrl-C and SIGTERM: the end of the command, and while a solver works the end of its time."""
+"""Ctrl-C and SIGTERM: the end of the command.
+
+Imported before everything else, and quickly: until the signals have their handlers they end in
+Python's own way, with a traceback or none.
+"""
 
 from __future__ import annotations
 
 import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from types import FrameType
-from typing import Any
 
-from cellcolor.deadline import OutOfTime
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+    from types import FrameType
+    from typing import Any
+
+    Handler = Callable[[int, FrameType | None], Any]
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
-_Handler = Callable[[int, FrameType | None], Any]
 
 
-class Interrupted(OutOfTime, KeyboardInterrupt):
-    """A signal that a solver takes for the time limit; it hands over the best it has."""
+class Stopped(KeyboardInterrupt):
+    """A signal that ends the command.
+
+    Not plain ``KeyboardInterrupt``: where that leaves code compiled from a string (``dataclasses``
+    runs such code), CPython 3.11 remembers it as unhandled, and ends with exit code 130.
+    """
 
 
 class Interrupts:
@@ -32,11 +42,11 @@ class Interrupts:
 
     @contextmanager
     def end_the_command(self) -> Iterator[None]:
-        """Turn signals into ``KeyboardInterrupt``, and forget those of earlier commands."""
+        """Turn signals into :class:`Stopped`, and forget those of earlier commands."""
 
         def handle(_number: int, _frame: FrameType | None) -> None:
             self.seen = True
-            raise KeyboardInterrupt
+            raise Stopped
 
         self.seen = False
         # Where nothing can be raised (a finalizer), Python reports what was: not worth a line.
@@ -48,23 +58,12 @@ class Interrupts:
 
         sys.unraisablehook = quiet
         try:
-            with _handled_by(handle):
+            with handled_by(handle):
                 yield
         finally:
             sys.unraisablehook = report
 
-    @contextmanager
-    def end_the_search(self) -> Iterator[None]:
-        """Turn signals into :class:`Interrupted` for a while."""
-
-        def handle(_number: int, _frame: FrameType | None) -> None:
-            self.seen = True
-            raise Interrupted("interrupted")
-
-        with _handled_by(handle):
-            yield
-
-    def handle_with(self, handler: _Handler) -> None:
+    def handle_with(self, handler: Handler) -> None:
         """Replace the signals' handlers for good."""
         if threading.current_thread() is threading.main_thread():
             for number in _SIGNALS:
@@ -74,10 +73,10 @@ class Interrupts:
         """Raise what a library has swallowed: some catch everything, when imported above all.
 
         Raises:
-            KeyboardInterrupt: a signal has come.
+            Stopped: a signal has come.
         """
         if self.seen:
-            raise KeyboardInterrupt
+            raise Stopped
 
 
 INTERRUPTS = Interrupts()
@@ -85,7 +84,7 @@ INTERRUPTS = Interrupts()
 
 
 @contextmanager
-def _handled_by(handler: _Handler) -> Iterator[None]:
+def handled_by(handler: Handler) -> Iterator[None]:
     """Replace the signals' handlers; only the main thread can, and only there they run."""
     if threading.current_thread() is not threading.main_thread():
         yield

@@ -18,8 +18,9 @@ import click
 from cellcolor.check.solution import check_solution
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
-from cellcolor.cli.interrupts import INTERRUPTS, Interrupted
+from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
+from cellcolor.cli.searching import Interrupted, end_the_search
 from cellcolor.cli.tables import print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
 from cellcolor.data import solution as solution_file
@@ -189,7 +190,7 @@ def _solve(
         _refuse_schemes(instance)
     if request.warm_start is not None:
         options = replace(options, start=_start(instance, request.warm_start, options))
-    with progress_of(file) as report, INTERRUPTS.end_the_search():
+    with progress_of(file) as report, end_the_search():
         solution = solve(instance, options, request.solver, report)
     if not request.every:
         if target is not None:
@@ -201,7 +202,7 @@ def _solve(
         if INTERRUPTS.seen:
             solution = replace(solution, schemes=0, complete=False)
         else:
-            with scheme_progress_of(file) as count, INTERRUPTS.end_the_search():
+            with scheme_progress_of(file) as count, end_the_search():
                 solution = _with_schemes(instance, solution, request, options, spool, count)
         if target is not None and spool is not None:
             spool.seek(0)

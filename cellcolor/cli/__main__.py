@@ -1,7 +1,0 @@
-"""``python -m cellcolor.cli`` for where the script ``cellcolor`` is not on the path."""
-
-import sys
-
-from cellcolor.cli import main
-
-sys.exit(main())

@@ -1,0 +1,70 @@
+"""What the package is called where it is installed, imported and started."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+
+import cellcolor
+from cellcolor.cli import extras
+
+ROOT = Path(__file__).parents[1]
+TEXTS = [
+    ROOT / "pyproject.toml",
+    *ROOT.glob("*.md"),
+    *(ROOT / "docs").rglob("*.md"),
+    *(ROOT / "cellcolor").rglob("*.py"),
+    *(ROOT / "benchmarks").rglob("*.py"),
+    *(ROOT / "models").rglob("*.toml"),
+]
+DISTRIBUTION = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]["name"]
+
+
+def test_the_distribution_is_not_somebody_elses() -> None:
+    assert DISTRIBUTION == extras.DISTRIBUTION != "cellcolor"
+
+
+@pytest.mark.parametrize("path", TEXTS, ids=lambda path: str(path.relative_to(ROOT)))
+def test_nothing_says_to_install_somebody_elses(path: Path) -> None:
+    """Neither ``pip install cellcolor`` nor an extra of it, however it is quoted."""
+    text = path.read_text(encoding="utf-8")
+    assert not re.search(r"install\s[^\n]*(?<![-\w/.])cellcolor\b(?! solve)", text)
+    assert not re.search(r"\bcellcolor\[", text)
+
+
+def test_messages_name_it(tmp_path: Path) -> None:
+    for package, extra in (("plotly", "viz"), ("pinocchio", "frontend")):
+        with pytest.raises(Exception, match=f"pip install '{re.escape(DISTRIBUTION)}.{extra}.'"):  # noqa: SIM117
+            with extras.extras_for(tmp_path):
+                raise ModuleNotFoundError(name=f"{package}.part")
+
+
+def test_extras_that_messages_name_exist() -> None:
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+    assert set(extras._EXTRAS.values()) <= set(project["optional-dependencies"])
+
+
+def test_as_a_module() -> None:
+    command = [sys.executable, "-m", "cellcolor", "--version"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == f"cellcolor {cellcolor.__version__}\n"
+
+
+def test_the_readme_has_one_test_command() -> None:
+    """The line that ``.ci/run`` looks for."""
+    lines = (ROOT / "README.md").read_text(encoding="utf-8").splitlines()
+    pattern = r"python3 -m venv .* && \.venv/bin/pytest"
+    assert len([line for line in lines if re.fullmatch(pattern, line)]) == 1
+
+
+def test_the_first_command_allows_all_that_follows() -> None:
+    """It activates the environment, and installs what drawing needs as well."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    first = next(line for line in text.splitlines() if line.startswith("python3 -m venv"))
+    assert ". .venv/bin/activate" in first and "'.[all]'" in first
+    assert "cellcolor show" in text
