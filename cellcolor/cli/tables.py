@@ -13,6 +13,7 @@ from rich.text import Text
 
 from cellcolor.cli.terminal import shown
 from cellcolor.data.instance import Instance
+from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, Shares, percent, shares_of
 from cellcolor.data.solution import Solution
 
 _CELLS_SHOWN = 12
@@ -34,8 +35,9 @@ def print_solution(instance: Instance, solution: Solution) -> None:
         f"{len(instance.cells)} cells, {len(instance.edges)} edges, {len(instance.colors)} colors",
     )
     if solution.cells:
-        out.print(_segments(instance, solution))
-        if any(len({sub.segment for sub in cell.subcells}) > 1 for cell in solution.cells):
+        shares = shares_of(instance, solution)
+        out.print(_segments(instance, solution, shares))
+        if not shares.certain:
             out.print("ranges: where the cut runs through a divided cell is free, between its ends")
             out.print()
     summary = Table(box=None, show_header=False, pad_edge=False)
@@ -66,21 +68,17 @@ def print_overview(solved: Sequence[tuple[Path, Instance, Solution]]) -> None:
     console().print(table)
 
 
-def _segments(instance: Instance, solution: Solution) -> Table:
-    """Color, cells and share of the area of each segment.
+_BASES = {"surface": "share of surface", "cells": "share of area", "number": "share of cells"}
 
-    How a divided cell's area falls to its sub-cells is not known, hence the ranges.
-    """
-    areas = [cell.area for cell in instance.cells]
-    known = [area for area in areas if area is not None]
-    measured = len(known) == len(areas) and sum(known) > 0
-    weights = known if measured else [1.0] * len(areas)
+
+def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
+    """Color, cells and share of each segment, and what is in none."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("segment", justify="right")
     table.add_column("color")
     table.add_column("cells", overflow="fold")
-    table.add_column("share of area" if measured else "share of cells", justify="right")
-    for segment in range(solution.segments or 0):
+    table.add_column(_BASES[shares.of], justify="right")
+    for segment, share in enumerate(shares.segments):
         whole: list[int] = []
         parts: list[int] = []
         color = 0
@@ -89,14 +87,16 @@ def _segments(instance: Instance, solution: Solution) -> Table:
             if own:
                 color = own[0].color
                 (whole if len(own) == len(cell.subcells) else parts).append(cell.id)
-        least = sum(weights[cell] for cell in whole)
-        most = least + sum(weights[cell] for cell in parts)
         table.add_row(
             str(segment),
             shown(instance.colors[color]),
             _cell_list(whole, parts),
-            _share(least / sum(weights), most / sum(weights)),
+            percent(*share),
         )
+    if shares.of == "surface":
+        table.add_row("", UNREACHABLE, "", percent(shares.unreachable, shares.unreachable))
+        if shares.given_up:
+            table.add_row("", GIVEN_UP, "", percent(shares.given_up, shares.given_up))
     return table
 
 
@@ -106,11 +106,6 @@ def _cell_list(whole: list[int], parts: list[int]) -> str:
     if len(names) > _CELLS_SHOWN:
         return f"{', '.join(names[:_CELLS_SHOWN])}, … ({len(names)} cells)"
     return ", ".join(names)
-
-
-def _share(least: float, most: float) -> str:
-    low, high = f"{100 * least:.1f}", f"{100 * most:.1f}"
-    return f"{low} %" if low == high else f"{low}–{high} %"
 
 
 def _summary(solution: Solution) -> list[tuple[str, str]]:

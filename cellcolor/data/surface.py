@@ -58,6 +58,9 @@ class LabelledSurface:
         vertex_colors: color ids of each vertex, ascending; empty where unreachable.
         cracks: see :class:`Crack`.
         meta: free, JSON-able.
+        given_up: vertices, ascending, that a configuration reaches and whose colors were all
+            taken away on purpose, as by a sliver policy; the others without a color are
+            unreachable.
 
     Raises:
         InputError: anything that ``docs/formats.md`` forbids, with field and element.
@@ -70,6 +73,7 @@ class LabelledSurface:
     vertex_colors: tuple[tuple[int, ...], ...]
     cracks: tuple[Crack, ...] = ()
     meta: dict[str, Any] = field(default_factory=dict)
+    given_up: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
         settle(self, ("vertices", "faces"))
@@ -96,6 +100,7 @@ class LabelledSurface:
         self._check_colors()
         _ = self.left_of  # refuses what is not an oriented 2-manifold
         self._check_cracks()
+        self._check_given_up()
 
     def _check_colors(self) -> None:
         for vertex, colors in enumerate(self.vertex_colors):
@@ -128,6 +133,16 @@ class LabelledSurface:
                         f"color {color} is not shared by vertices {crack.i} and {crack.j}",
                     )
 
+    def _check_given_up(self) -> None:
+        for place, vertex in enumerate(self.given_up):
+            where = f"given_up[{place}]"
+            if not 0 <= vertex < len(self.vertices):
+                raise InputError(None, where, f"there is no vertex {vertex}")
+            if self.vertex_colors[vertex]:
+                raise InputError(None, where, f"vertex {vertex} has colors")
+            if vertex in self.given_up[place - 1 : place]:
+                raise InputError(None, where, f"vertex {vertex} stands twice")
+
     @cached_property
     def left_of(self) -> dict[tuple[int, int], int]:
         """``{(i, j): k}`` for every triangle (i, j, k): see :func:`directed_edges`."""
@@ -146,13 +161,14 @@ class LabelledSurface:
                 "vertex_colors": self.vertex_colors,
                 "cracks": sorted([crack.i, crack.j, list(crack.colors)] for crack in self.cracks),
             }
+            | ({"given_up": self.given_up} if self.given_up else {})
         )
 
     def to_json(self) -> str:
         """The file's text."""
         document: dict[str, Any] = {
             "format": FORMAT,
-            "version": 1,
+            "version": 2,
             "name": self.name,
             "colors": self.colors,
             "vertices": self.vertices.tolist(),
@@ -160,6 +176,8 @@ class LabelledSurface:
             "vertex_colors": self.vertex_colors,
             "cracks": [[c.i, c.j, c.colors] for c in self.cracks],
         }
+        if self.given_up:
+            document["given_up"] = self.given_up
         if self.meta:
             document["meta"] = self.meta
         return dump_lines(document, frozenset())
@@ -167,7 +185,7 @@ class LabelledSurface:
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> LabelledSurface:
         """A surface from a parsed JSON object."""
-        raw = validate(_ADAPTER, take_body(document, FORMAT))
+        raw = validate(_ADAPTER, take_body(document, FORMAT, ("given_up",)))
         return cls(
             raw.name,
             raw.colors,
@@ -176,6 +194,7 @@ class LabelledSurface:
             tuple(raw.vertex_colors),
             tuple([Crack(i, j, colors) for i, j, colors in raw.cracks]),
             raw.meta,
+            tuple(sorted(raw.given_up)),
         )
 
     @classmethod
@@ -204,6 +223,7 @@ class _SurfaceFile:
     vertex_colors: list[tuple[int, ...]]
     cracks: list[tuple[int, int, tuple[int, ...]]] = field(default_factory=list)
     meta: dict[str, Any] = field(default_factory=dict)
+    given_up: tuple[int, ...] = ()
 
 
 _ADAPTER = TypeAdapter(_SurfaceFile)

@@ -12,6 +12,7 @@ from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, SurfaceRefere
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
+from cellcolor.decomposition.coverage import coverage_of, vertex_areas
 from cellcolor.errors import InputError
 
 
@@ -68,7 +69,13 @@ def decompose(
     if path is not None:
         reference = SurfaceReference(str(path), tuple(area[: mesh.real_count]), surface.sha256)
     return Instance(
-        surface.name, surface.colors, cells, tuple(edges), surface.meta or None, reference
+        surface.name,
+        surface.colors,
+        cells,
+        tuple(edges),
+        surface.meta or None,
+        reference,
+        coverage=coverage_of(surface),
     )
 
 
@@ -169,12 +176,10 @@ class _DualMeasure:
 
     def areas(self, area: list[int]) -> list[float]:
         """Square metres of each cell."""
-        corners = self._surface.vertices[self._surface.faces]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        thirds = np.repeat(np.linalg.norm(normals, axis=1) / 6.0, 3)
-        owner = np.array(area)[self._surface.faces.ravel()]
+        owner = np.array(area[: self._mesh.real_count])
         reached = owner != OUTSIDE
-        sums = np.bincount(owner[reached], weights=thirds[reached], minlength=max(area) + 1)
+        weights = vertex_areas(self._surface)[reached]
+        sums = np.bincount(owner[reached], weights=weights, minlength=max(area) + 1)
         return [round(float(value), 12) for value in sums]
 
     def lengths(self, curves: list[Curve]) -> list[float]:

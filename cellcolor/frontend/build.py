@@ -156,6 +156,7 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
         vertex_colors=_vertex_colors(coloring),
         cracks=cracks,
         meta=_meta(scene, setup, seconds, slivers),
+        given_up=_given_up(valid, coloring),
     )
     where = survey(surface, stage.geometry)
     report = make_report(
@@ -189,6 +190,12 @@ def _vertex_colors(coloring: Coloring) -> tuple[tuple[int, ...], ...]:
     return tuple(
         tuple(sorted(int(number) for number in row if number >= 0)) for row in coloring.node_color
     )
+
+
+def _given_up(valid: Mask, coloring: Coloring) -> tuple[int, ...]:
+    """The vertices that are reachable and were left without any color."""
+    lost = valid.any(axis=1) & (coloring.node_color < 0).all(axis=1)
+    return tuple(np.flatnonzero(lost).tolist())
 
 
 def _meta(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Set
 
-__all__ = ["AREAS", "FAINT", "INK", "LINES", "REASONS", "WARNING", "assign"]
+__all__ = ["AREAS", "FAINT", "GREY", "INK", "LINES", "REASONS", "WARNING", "assign"]
 
 AREAS = (
     "#77AADD",
@@ -39,6 +39,7 @@ REASONS = (
 """For classes with a fixed meaning (Paul Tol: "muted", with a grey)."""
 
 FAINT = "#DDDDDD"
+GREY = "#AAAAAA"
 INK = "#222222"
 WARNING = "#CC3311"
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from cellcolor.data.shares import GIVEN_UP
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.viz.paintings import shares
@@ -95,7 +96,7 @@ def by_reason(surface: LabelledSurface, verdicts: Verdicts, branch: int | None =
     labels[valid & (colors < 0).all(axis=1)] = given_up
     share = shares(surface, labels, given_up + 1)
     counts = np.bincount(labels, minlength=given_up + 1)
-    names = [*verdicts.reason_names, "given up by the sliver policy"]
+    names = [*verdicts.reason_names, GIVEN_UP]
     names[_VALID] = "reachable" if branch is None else "valid"
     fills = [REASONS[(code - 1) % len(REASONS)] for code in range(given_up + 1)]
     fills[_VALID] = FAINT
@@ -104,7 +105,7 @@ def by_reason(surface: LabelledSurface, verdicts: Verdicts, branch: int | None =
         for code in range(given_up + 1)
     ]
     who = "any branch" if branch is None else verdicts.branches[branch]
-    notes = ["Shares of the area."]
+    notes = ["Shares of the surface."]
     if branch is None:
         notes.insert(0, "Reason of the branch that came farthest through the tests.")
     title = f"{surface.name}: reach of {who}"

@@ -7,15 +7,19 @@ nearest joined border, which shows the sub-cells' places and not the cut.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import networkx as nx
 import numpy as np
 
 from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.shares import percent, shares_of
 from cellcolor.data.solution import CellDivision, DartName, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Step
-from cellcolor.viz.paintings import UNREACHABLE, neighboring, shares
-from cellcolor.viz.palette import AREAS, FAINT, assign
+from cellcolor.decomposition.coverage import coverage_of, vertex_areas
+from cellcolor.viz.paintings import bare_areas, bare_labels, neighboring, shares
+from cellcolor.viz.palette import AREAS, assign
 from cellcolor.viz.surface import Area, Labels, Painting
 
 __all__ = ["by_solution"]
@@ -36,7 +40,7 @@ def by_solution(
         solution: a valid solution of the instance, one that was found.
     """
     count = solution.segments or 0
-    labels = np.full(len(cells), count + 1, dtype=np.int64)
+    labels = bare_labels(surface, count + 1)
     color: dict[int, int] = {}
     near: list[int] = []
     cut: list[int] = []
@@ -50,19 +54,23 @@ def by_solution(
         painted = _nearest(surface, own, cell, solution.strands, curves)
         labels[own] = count if painted is None else painted
         (cut if painted is None else near).append(cell.id)
-    share = shares(surface, labels, count + 2)
+    share = shares_of(_measured(surface, instance, cells), solution)
+    bare = shares(surface, labels, count + 3)[count + 1 :]
     fills = assign(neighboring(surface, labels, count))
     areas = [
         Area(
-            f"segment {number}: {instance.colors[color[number]]}  {share[number]}",
+            f"segment {number}: {instance.colors[color[number]]}  "
+            f"{percent(*share.segments[number])}",
             fills[number],
             str(number),
         )
         for number in range(count)
     ]
-    areas.append(Area(f"cut between segments  {share[count]}", _CUT))
-    areas.append(Area(f"{UNREACHABLE}  {share[count + 1]}", FAINT))
-    notes = [f"Status: {solution.status}. Shares of the area. Black lines: borders of cells."]
+    areas.append(Area("cut between segments", _CUT))
+    areas += bare_areas(*bare)
+    notes = [f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells."]
+    if not share.certain:
+        notes.append("Ranges: where the cut runs through a divided cell is free.")
     if count > len(AREAS):
         notes.append("Fills repeat: the numbers tell segments apart.")
     if near:
@@ -79,6 +87,17 @@ def by_solution(
     )
     cracks = [(crack.i, crack.j) for crack in surface.cracks]
     return Painting(title, labels, areas, borders=cells, cracks=cracks, notes=tuple(notes))
+
+
+def _measured(surface: LabelledSurface, instance: Instance, cells: Labels) -> Instance:
+    """The instance with the areas and the coverage that its surface gives it."""
+    reached = cells != OUTSIDE
+    areas = vertex_areas(surface)[reached]
+    areas = np.bincount(cells[reached], areas, len(instance.cells))
+    own = tuple(
+        replace(cell, area=float(area)) for cell, area in zip(instance.cells, areas, strict=True)
+    )
+    return replace(instance, cells=own, coverage=coverage_of(surface))
 
 
 def _listed(cells: list[int]) -> str:

@@ -1,0 +1,72 @@
+"""What share of a surface each segment of a solution has; the same numbers wherever they stand."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Solution
+
+__all__ = ["GIVEN_UP", "UNREACHABLE", "Range", "Shares", "percent", "shares_of"]
+
+UNREACHABLE = "unreachable"
+GIVEN_UP = "given up by the sliver policy"
+
+Range = tuple[float, float]
+"""The least and the greatest share, 0 to 1."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shares:
+    """How a surface falls to the segments and to nobody.
+
+    Attributes:
+        of: what the shares are of: the whole ``surface``; the ``cells`` where it is not known how
+            much of the surface these are; the ``number`` of cells where their areas are not known
+            either.
+        segments: of each segment. How a cell that is divided between segments falls to them is
+            not known: where the cut runs is free, so each of them has from nothing to all of it.
+        unreachable: of what no color reaches; 0 where ``of`` is not the surface.
+        given_up: of what a sliver policy took away; 0 where ``of`` is not the surface.
+    """
+
+    of: Literal["surface", "cells", "number"]
+    segments: tuple[Range, ...]
+    unreachable: float = 0.0
+    given_up: float = 0.0
+
+    @property
+    def certain(self) -> bool:
+        """No cell is divided between segments."""
+        return all(least == most for least, most in self.segments)
+
+
+def shares_of(instance: Instance, solution: Solution) -> Shares:
+    """The shares of a solution that was found."""
+    areas = [cell.area for cell in instance.cells]
+    known = [area for area in areas if area is not None]
+    coverage = instance.coverage
+    measured = len(known) == len(areas) and sum(known) > 0
+    weights = known if measured else [1.0] * len(areas)
+    least = [0.0] * (solution.segments or 0)
+    most = list(least)
+    for cell, weight in zip(solution.cells or (), weights, strict=True):
+        own = {sub.segment for sub in cell.subcells}
+        for segment in own:
+            most[segment] += weight
+            least[segment] += weight if len(own) == 1 else 0.0
+    whole = sum(weights)
+    if measured and coverage is not None:
+        # Of the surface, and so that cells, unreachable and given up are the whole.
+        whole /= max(1 - coverage.unreachable - coverage.given_up, 1e-12)
+    segments = tuple((low / whole, high / whole) for low, high in zip(least, most, strict=True))
+    if measured and coverage is not None:
+        return Shares("surface", segments, coverage.unreachable, coverage.given_up)
+    return Shares("cells" if measured else "number", segments)
+
+
+def percent(least: float, most: float) -> str:
+    """A share as text, a range only where one can be told."""
+    low, high = f"{100 * least:.1f}", f"{100 * most:.1f}"
+    return f"{low} %" if low == high else f"{low}–{high} %"
