@@ -10,13 +10,14 @@ Document = dict[str, Any]
 
 SURFACE: Document = {
     "format": "cellcolor/labelled-surface",
-    "version": 1,
+    "version": 2,
     "name": "square",
     "colors": ["red", "blue"],
     "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]],
     "faces": [[0, 1, 2], [0, 2, 3]],
     "vertex_colors": [[0, 1], [0, 1], [0, 1], []],
     "cracks": [[0, 2, [0]]],
+    "given_up": [3],
     "meta": {"made": "by hand"},
 }
 

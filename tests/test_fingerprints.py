@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from documents import INSTANCE, SOLUTION, Document, broken, drop, put
+from documents import INSTANCE, SOLUTION, SURFACE, Document, broken, drop, put
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
@@ -115,6 +115,8 @@ def test_fingerprint_of_a_surface(mesh: LabelledSurface, random: Any) -> None:
     }
     text = json.dumps(dict(sorted(content.items()))).replace(" ", "")
     assert mesh.sha256 == hashlib.sha256(text.encode()).hexdigest()
+    bare = tuple(v for v, colors in enumerate(mesh.vertex_colors) if not colors)
+    assert (replace(mesh, given_up=bare).sha256 == mesh.sha256) == (not bare)
     moved = mesh.vertices.copy()
     moved[0, 2] += 1e-9
     assert replace(mesh, vertices=moved).sha256 != mesh.sha256
@@ -178,6 +180,7 @@ class TestVersion1:
 @pytest.mark.parametrize(
     ("document", "kind", "field"),
     [
+        (SURFACE, LabelledSurface, "given_up"),
         (INSTANCE, Instance, "coverage"),
         (broken(INSTANCE, drop("coverage")), Instance, "surface.sha256"),
         (SOLUTION, Solution, "bounds"),
@@ -186,7 +189,7 @@ class TestVersion1:
     ],
 )
 def test_version_1_has_no_members_of_version_2(
-    document: Document, kind: type[Instance] | type[Solution], field: str
+    document: Document, kind: type[LabelledSurface | Instance | Solution], field: str
 ) -> None:
     old = broken(document, put("version", to=1))
     with pytest.raises(InputError, match="is a member of version 2") as refusal:

@@ -192,6 +192,9 @@ SURFACE_FAULTS = {
     ),
     "crack of no color": (put("cracks", 0, to=[0, 2, []]), "cracks[0]", "one color or more"),
     "crack of a color twice": (put("cracks", 0, to=[0, 2, [1, 1]]), "cracks[0]", "each once"),
+    "no such vertex given up": (put("given_up", to=[4]), "given_up[0]", "no vertex 4"),
+    "vertex with colors given up": (put("given_up", to=[2, 3]), "given_up[0]", "has colors"),
+    "vertex given up twice": (put("given_up", to=[3, 3]), "given_up[1]", "twice"),
     "no name": (drop("name"), "name", "required"),
 }
 

@@ -8,7 +8,8 @@ from pathlib import Path, PurePath
 
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import build_scene, graph_of, is_scene, read_graph
-from cellcolor.cli.terminal import apart_from, say
+from cellcolor.cli.tables import nothing_to_cover
+from cellcolor.cli.terminal import apart_from, complain, say
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
@@ -23,14 +24,18 @@ def build_instance(source: Path, output: Path) -> Exit:
     """Write an instance; for a scene its labelled surface and side file as well."""
     check_output(output, _INSTANCE, [source])
     with apart_from(output):
-        if is_scene(source):
-            _build_scene(source, output)
-        else:
-            _build_surface(source, output)
+        instance = (_build_scene if is_scene(source) else _build_surface)(source, output)
+        say(
+            f"wrote {output}: {len(instance.cells)} cells, {len(instance.edges)} edges, "
+            f"{len(instance.colors)} colors"
+        )
+    if instance.nothing_to_cover:
+        complain(f"{source}: {nothing_to_cover(instance)}")
+        return Exit.STOPPED
     return Exit.DONE
 
 
-def _build_scene(source: Path, output: Path) -> None:
+def _build_scene(source: Path, output: Path) -> Instance:
     stem = output.name.removesuffix(".json")
     surface_path = output.with_name(f"{stem}.surface.json")
     side_path = output.with_name(f"{stem}.reasons.npz")
@@ -54,10 +59,10 @@ def _build_scene(source: Path, output: Path) -> None:
         say(line)
     for file in files[:-1]:
         say(f"wrote {file.path}")
-    _say_written(output, instance)
+    return instance
 
 
-def _build_surface(source: Path, output: Path) -> None:
+def _build_surface(source: Path, output: Path) -> Instance:
     found = read_graph(source)
     if isinstance(found, Instance):
         raise InputError(str(source), "format", "is an instance already")
@@ -65,11 +70,4 @@ def _build_surface(source: Path, output: Path) -> None:
     reference = None if is_stream(output) else PurePath(relative).as_posix()
     instance = graph_of(found, source, reference)
     write([Output(output, _INSTANCE, [instance.to_json().encode()])], [source])
-    _say_written(output, instance)
-
-
-def _say_written(output: Path, instance: Instance) -> None:
-    say(
-        f"wrote {output}: {len(instance.cells)} cells, {len(instance.edges)} edges, "
-        f"{len(instance.colors)} colors"
-    )
+    return instance

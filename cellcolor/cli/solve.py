@@ -21,7 +21,7 @@ from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.searching import Interrupted, end_the_search
-from cellcolor.cli.tables import print_overview, print_solution
+from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
 from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
@@ -104,6 +104,8 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             print_json({"file": str(file)} | solution.to_document())
         else:
             print_solution(instance, solution)
+        if instance.nothing_to_cover:
+            complain(f"{file}: {nothing_to_cover(instance)}")
         solved.append((file, instance, solution))
         done = (
             solution.status == "optimal"

@@ -108,6 +108,16 @@ def _cell_list(whole: list[int], parts: list[int]) -> str:
     return ", ".join(names)
 
 
+def nothing_to_cover(instance: Instance) -> str:
+    """What to say loudly of an instance made of a surface without any color."""
+    assert instance.coverage is not None
+    unreachable, given_up = instance.coverage.unreachable, instance.coverage.given_up
+    return (
+        f"NOTHING CAN BE COVERED: {percent(unreachable, unreachable)} of the surface {UNREACHABLE}"
+        + (f", {percent(given_up, given_up)} {GIVEN_UP}" if given_up else "")
+    )
+
+
 def _summary(solution: Solution) -> list[tuple[str, str]]:
     lines = [
         ("segments", _number(solution.segments)),
@@ -124,6 +134,7 @@ def _summary(solution: Solution) -> list[tuple[str, str]]:
         fewest = solution.cutting_paths == solution.cutting_paths_lower_bound
         proof = "fewest" if fewest else f"at least {solution.cutting_paths_lower_bound}"
         lines.insert(2, ("cutting paths", f"{solution.cutting_paths} ({proof})"))
+    lines += [("note", note) for note in solution.notes]
     if solution.schemes is not None:
         lines.insert(3, ("schemes", f"{solution.schemes} ({_extent(solution)})"))
     return lines

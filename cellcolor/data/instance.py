@@ -265,6 +265,14 @@ class Instance:
         edge = self.edge(dart)
         return edge.right if dart > 0 else edge.left
 
+    @property
+    def nothing_to_cover(self) -> bool:
+        """It was made of a surface no point of which has a color.
+
+        An instance without cells and without a surface asks for nothing, which takes 0 segments.
+        """
+        return not self.cells and self.coverage is not None and self.coverage.area_m2 > 0
+
     def to_json(self) -> str:
         """The file's text, as ``build`` writes it."""
         document = {"format": FORMAT, "version": 2} | self._body()

@@ -55,7 +55,7 @@ class LabelledSurface:
         colors: the names of the colors.
         vertices: (n, 3) float64, metres.
         faces: (m, 3) int64, counter-clockwise seen from outside.
-        vertex_colors: color ids of each vertex, ascending; empty where unreachable.
+        vertex_colors: color ids of each vertex, ascending; empty where unreachable or given up.
         cracks: see :class:`Crack`.
         meta: free, JSON-able.
         given_up: vertices, ascending, that a configuration reaches and whose colors were all
@@ -81,6 +81,7 @@ class LabelledSurface:
             ("vertices", _rows(self.vertices, "vertices", float)),
             ("faces", _rows(self.faces, "faces", int)),
             ("vertex_colors", tuple([tuple(sorted(colors)) for colors in self.vertex_colors])),
+            ("given_up", tuple(sorted(self.given_up))),
             ("meta", json_content(self.meta, "meta")),
         ):
             object.__setattr__(self, name, content)
@@ -194,7 +195,7 @@ class LabelledSurface:
             tuple(raw.vertex_colors),
             tuple([Crack(i, j, colors) for i, j, colors in raw.cracks]),
             raw.meta,
-            tuple(sorted(raw.given_up)),
+            raw.given_up,
         )
 
     @classmethod

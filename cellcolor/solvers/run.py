@@ -75,6 +75,10 @@ def solve(
     chosen = make_solver(solver)
     start = time.monotonic()
     answer = chosen.minimize(instance, options, progress)
+    if instance.nothing_to_cover:
+        # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
+        note = "No point of the surface can be covered: there is nothing to divide."
+        answer = Answer(None, (), (), notes=(*answer.notes, note))
     cover = len(set_cover(instance)) if instance.cells else 0
     bounds = _needed((Bound("cover", cover, "surface"), *answer.bounds))
     surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")

@@ -76,7 +76,7 @@ def by_solution(
     if near:
         notes += [
             f"Divided: {_listed(near)}. Each vertex there is painted as the",
-            "nearest joined border; where exactly the cut runs is free.",
+            "nearest joined border.",
         ]
     if cut:
         notes.append(f"Divided, not painted: {_listed(cut)}.")

@@ -200,3 +200,16 @@ def test_thresholds_are_checked(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="less than 1") as caught:
         load_setup(tmp_path / "s.toml")
     assert caught.value.field == "slivers.simplify_below_share"
+
+
+def test_given_up_vertices_are_told_from_unreachable_ones(results: dict[str, BuildResult]) -> None:
+    raw, policy = results["raw"].surface, results["policy"].surface
+    report = results["policy"].report
+    assert raw.given_up == ()
+    lost = [v for v, own in enumerate(raw.vertex_colors) if own and not policy.vertex_colors[v]]
+    assert list(policy.given_up) == lost and lost
+    coverage = decompose(policy).coverage
+    assert coverage is not None and report.slivers is not None
+    assert coverage.given_up == pytest.approx(report.slivers.given_up_area_m2 / report.area_m2)
+    unreachable = 1 - report.reachable_area_m2 / report.area_m2
+    assert coverage.unreachable == pytest.approx(unreachable, abs=1e-12)
