@@ -39,6 +39,12 @@ class Coverage:
         if self.unreachable + self.given_up > 1 + _ROUNDING:
             raise InputError(None, "coverage", "unreachable and given_up are more than the whole")
 
+    @property
+    def covered(self) -> float:
+        """The share of the cells, 0 to 1."""
+        share = 1 - self.unreachable - self.given_up
+        return share if share > _ROUNDING else 0.0
+
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
         return {

@@ -271,7 +271,7 @@ class Instance:
 
         An instance without cells and without a surface asks for nothing, which takes 0 segments.
         """
-        return not self.cells and self.coverage is not None and self.coverage.area_m2 > 0
+        return not self.cells and self.coverage is not None and self.coverage.covered == 0
 
     def to_json(self) -> str:
         """The file's text, as ``build`` writes it."""

@@ -56,14 +56,15 @@ def shares_of(instance: Instance, solution: Solution) -> Shares:
         for segment in own:
             most[segment] += weight
             least[segment] += weight if len(own) == 1 else 0.0
-    whole = sum(weights)
-    if measured and coverage is not None:
-        # Of the surface, and so that cells, unreachable and given up are the whole.
-        whole /= max(1 - coverage.unreachable - coverage.given_up, 1e-12)
-    segments = tuple((low / whole, high / whole) for low, high in zip(least, most, strict=True))
-    if measured and coverage is not None:
+
+    def parts_of(whole: float) -> tuple[Range, ...]:
+        return tuple((low / whole, high / whole) for low, high in zip(least, most, strict=True))
+
+    if measured and coverage is not None and coverage.covered > 0:
+        # Cells, unreachable and given up are the whole surface.
+        segments = parts_of(sum(weights) / coverage.covered)
         return Shares("surface", segments, coverage.unreachable, coverage.given_up)
-    return Shares("cells" if measured else "number", segments)
+    return Shares("cells" if measured else "number", parts_of(sum(weights)))
 
 
 def percent(least: float, most: float) -> str:
