@@ -8,8 +8,11 @@ from dataclasses import replace
 import pytest
 from library import PAPER
 
+from cellcolor.check.numbers import claims
 from cellcolor.check.plan import check_plan
 from cellcolor.check.solution import check_division, check_solution
+from cellcolor.data.bound import Bound
+from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import (
@@ -22,6 +25,8 @@ from cellcolor.data.solution import (
     SubCell,
 )
 from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.run import solve
 
 RED, BLUE = 0, 1
 SPLIT = Instance.read(PAPER / "split-cell.json")
@@ -89,6 +94,101 @@ def test_a_right_solution_is_valid() -> None:
 def test_numbers_are_checked(change: dict[str, object], expected: str) -> None:
     report = check_solution(SPLIT, replace(split_solution(), **change))  # type: ignore[arg-type]
     assert any(problem.startswith(expected) for problem in report.problems), report.problems
+
+
+UNKNOWN: dict[str, object] = {
+    "status": "unknown",
+    "segments": None,
+    "lift_offs": None,
+    "cells": None,
+    "proved_for_surface": False,
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({"lower_bound": 1, "status": "feasible"}, "lower_bound: 1 cannot be below"),
+        ({"bounds": ()}, "lower_bound: says 2, the greatest of bounds is 0"),
+        (
+            {"bounds": (Bound("cover", 2, "surface"), Bound("model", 3, "strands"))},
+            "lower_bound: says 2, the greatest of bounds is 3",
+        ),
+        ({"bounds": (Bound("model", 2, "strands"),)}, "surface_lower_bound: says 2"),
+        ({"cutting_paths": 7, "cutting_paths_lower_bound": 0}, "cutting_paths: says 7"),
+        (
+            {"cutting_paths": 1, "cutting_paths_lower_bound": 2},
+            "cutting_paths_lower_bound: 2 cannot be above the 1 found",
+        ),
+        ({"cutting_paths": 1}, "cutting_paths: goes with"),
+        ({"cutting_paths_lower_bound": 1}, "cutting_paths: goes with"),
+        ({"schemes": 1}, "schemes: goes with complete"),
+        ({"complete": True}, "schemes: goes with complete"),
+        ({"schemes": 0, "complete": True}, "schemes: cannot be 0 and complete"),
+        (
+            {"schemes": 1, "complete": True, "search_space": "surface", "strands": 2},
+            "schemes: are defined in search space 'paper' only",
+        ),
+        (
+            {"schemes": 1, "complete": False, "status": "feasible"},
+            "schemes: cannot be known to be optimal",
+        ),
+        ({"strands": 10**6, "search_space": "surface"}, "strands: would make 8000000 darts"),
+        ({"seams": (Seam(99, 0, 1, 3, 10**9),)}, "strands: would make 2000000008 darts"),
+        (UNKNOWN | {"proved_for_surface": True}, "proved_for_surface: must be false"),
+        (
+            # Blue in the cells 0, 1, 2 and red in 3 and 4 apart from each other.
+            UNKNOWN | {"lower_bound": 4, "surface_lower_bound": 4},
+            "lower_bound: 4 cannot be above the 3 segments whole cells can be painted in",
+        ),
+        (UNKNOWN | {"surface_lower_bound": 10**9}, "surface_lower_bound: 1000000000 cannot"),
+        (UNKNOWN | {"seams": (Seam(99, 0, 1, 3, 1),)}, "seams: there are none"),
+        (UNKNOWN | {"cutting_paths": 0}, "cutting_paths: cannot be known"),
+        (UNKNOWN | {"cutting_paths_lower_bound": 1}, "cutting_paths: cannot be known"),
+    ],
+)
+def test_contradictions_are_refused(change: dict[str, object], expected: str) -> None:
+    report = check_solution(SPLIT, replace(split_solution(), **change))  # type: ignore[arg-type]
+    assert any(problem.startswith(expected) for problem in report.problems), report.problems
+
+
+def test_numbers_that_are_right() -> None:
+    right = replace(
+        split_solution(),
+        cutting_paths=1,
+        cutting_paths_lower_bound=1,
+        schemes=1,
+        complete=True,
+        bounds=(Bound("cover", 2, "surface"),),
+    )
+    assert check_solution(SPLIT, right).problems == ()
+    nothing = replace(right, **UNKNOWN, cutting_paths=None, cutting_paths_lower_bound=0)  # type: ignore[arg-type]
+    nothing = replace(nothing, schemes=0, complete=False)
+    assert check_solution(SPLIT, nothing).problems == ()
+
+
+def test_coverage_is_the_instance_s() -> None:
+    coverage = Coverage(1.0, 0.25, 0.125)
+    covered = replace(SPLIT, coverage=coverage)
+    assert check_solution(covered, replace(split_solution(), coverage=coverage)).valid
+    other = replace(split_solution(), coverage=Coverage(1.0, 0.125, 0.25))
+    assert check_solution(covered, other).problems == ("coverage: is not that of the instance",)
+    # An instance that says nothing of it cannot contradict; the number is a claim.
+    assert check_solution(SPLIT, other).valid and "coverage" in claims(SPLIT, other)
+    assert "coverage" not in claims(covered, replace(split_solution(), coverage=coverage))
+
+
+def test_what_nobody_has_verified_is_named() -> None:
+    assert claims(SPLIT, split_solution()) == {
+        "lower_bound": 2,
+        "surface_lower_bound": 2,
+        "status": "optimal",
+        "proved_for_surface": True,
+    }
+    # One segment is needed for a cell, so this proof is complete.
+    one = Instance("one", ("red",), (Cell(0, (RED,), ()),), ())
+    solution = solve(one, Options())
+    assert (solution.status, claims(one, solution)) == ("optimal", {})
 
 
 def test_a_weaker_status_than_the_proof_is_no_fault() -> None:
@@ -216,6 +316,23 @@ def test_zeros_must_be_able_to_differ(joined: list[int], valid: bool) -> None:
 def test_an_edge_between_two_cells_of_one_color_has_to_be_joined() -> None:
     apart = divide([(RED, [], 0)], [(RED, [], 1)])
     assert "edge 2: shows one joinable color" in check_division(CRACK, apart).problems[0]
+
+
+@pytest.mark.parametrize("colors", [(RED, BLUE), (BLUE, RED)])
+def test_sub_cells_without_darts_are_alone(colors: tuple[int, int]) -> None:
+    """Which of the two would the edge show? Once that hung on their order."""
+    pair = Instance(
+        "pair",
+        ("red", "blue"),
+        (Cell(0, (RED, BLUE), ((1,),)), Cell(1, (RED, BLUE), ((-1,),))),
+        (Edge(1, 0, 1),),
+    )
+    both = divide([(colors[0], [], 0), (colors[1], [], 1)], [(RED, [], 2)])
+    assert check_division(pair, both).problems == (
+        "cells[0].subcells[0].darts: empty, though the cell has other sub-cells",
+        "cells[0].subcells[1].darts: empty, though the cell has other sub-cells",
+    )
+    assert check_division(pair, divide([(BLUE, [], 0)], [(RED, [], 1)])).segments == 2
 
 
 def test_superfluous_sub_cells_are_legal_but_no_scheme() -> None:

@@ -15,6 +15,15 @@ class BadSeams(Exception):
     """The seams do not make one cyclic list of a cell's loops."""
 
 
+class TooManyDarts(Exception):
+    """So many strands that checking them would not fit into memory."""
+
+
+MOST_DARTS = 500_000
+"""Live darts, strands counted; they take up to 3 kB each (10,000 cells with 4 strands an edge have
+a quarter million)."""
+
+
 def strand_of(name: DartName) -> Strand:
     """A dart as a solution writes it; without strands it is its edge's only one."""
     return (name, 1) if isinstance(name, int) else name
@@ -35,8 +44,13 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
 
     Raises:
         BadSeams: a seam is not where it can be, or loops with live darts stay unconnected.
+        TooManyDarts: more than can be checked in bounded memory.
     """
     counts = {edge.id: strands if instance.joinable(edge.id) else 0 for edge in instance.edges}
+    darts = 2 * sum(counts.values())  # what is joinable has a cell on both sides
+    darts += sum(2 * seam.strands for seam in seams)
+    if darts > MOST_DARTS:
+        raise TooManyDarts(f"would make {darts} darts, at most {MOST_DARTS} are checked")
     loops = {cell.id: [list(loop) for loop in cell.loops] for cell in instance.cells}
     highest = max((edge.id for edge in instance.edges), default=0)
     for seam in seams:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -35,7 +36,7 @@ class Painted:
 def crossing(cell: Painted) -> tuple[int, int] | None:
     """Two sub-cells whose darts interleave around the border, so that their cuts would cross."""
     blocks = [cell.block_of[dart] for dart in cell.joined()]
-    remaining = {block: blocks.count(block) for block in blocks}
+    remaining = Counter(blocks)
     stack: list[int] = []
     for block in blocks:
         if not stack or stack[-1] != block:

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import networkx as nx
 
-from cellcolor.check.lists import BadSeams, Strand, live_lists, strand_of, twin
+from cellcolor.check.lists import BadSeams, Strand, TooManyDarts, live_lists, strand_of, twin
+from cellcolor.check.numbers import number_problems
 from cellcolor.check.scheme import (
     Joinable,
     Painted,
@@ -65,6 +66,8 @@ def check_division(
         lists = live_lists(instance, seams, strands)
     except BadSeams as error:
         return Report((f"seams: {error}",), (), None)
+    except TooManyDarts as error:
+        return Report((f"strands: {error}",), (), None)
     own_colors = {seam.id: frozenset(instance.cells[seam.cell].colors) for seam in seams}
 
     def joinable(strand: Strand) -> frozenset[int]:
@@ -95,7 +98,8 @@ def check_division(
 def check_solution(instance: Instance, solution: Solution) -> Report:
     """Hold a solution against its instance: its division, and every number in it.
 
-    The lower bounds themselves are taken on trust; that nothing is claimed beyond them is not.
+    The lower bounds themselves are taken on trust (:func:`~cellcolor.check.numbers.claims` names
+    what is); that they contradict nothing is not.
     """
     problems: list[str] = []
     reference = solution.instance
@@ -105,40 +109,15 @@ def check_solution(instance: Instance, solution: Solution) -> Report:
     if solution.search_space == "paper" and solution.strands != 1:
         problems.append("strands: must be 1 in search space 'paper'")
     if solution.cells is None:
+        if solution.seams:
+            problems.append("seams: there are none without a division")
+        problems += number_problems(instance, solution, None)
         return Report(tuple(problems), (), None)
     report = check_division(instance, solution.cells, solution.seams, solution.strands)
     problems += report.problems
     if report.segments is not None:
-        problems += _number_problems(solution, report.segments)
+        problems += number_problems(instance, solution, report.segments)
     return Report(tuple(problems), report.not_canonical, report.segments)
-
-
-def _number_problems(solution: Solution, segments: int) -> list[str]:
-    problems = []
-    if solution.segments != segments:
-        problems.append(f"segments: says {solution.segments}, the division has {segments}")
-    if solution.lift_offs != max(0, segments - 1):
-        problems.append(f"lift_offs: says {solution.lift_offs}, must be {max(0, segments - 1)}")
-    for name, bound in (
-        ("lower_bound", solution.lower_bound),
-        ("surface_lower_bound", solution.surface_lower_bound),
-    ):
-        if bound > segments:
-            problems.append(f"{name}: {bound} cannot be above the {segments} segments found")
-    proved = segments == solution.surface_lower_bound
-    if solution.proved_for_surface != proved:
-        problems.append(
-            f"proved_for_surface: must be {str(proved).lower()}, since surface_lower_bound is "
-            f"{solution.surface_lower_bound} and the division has {segments} segments"
-        )
-    bound = (
-        solution.lower_bound if solution.search_space == "paper" else solution.surface_lower_bound
-    )
-    if solution.status == "optimal" and bound != segments:
-        problems.append(
-            f"status: {segments} segments are not proved optimal by a lower bound of {bound}"
-        )
-    return problems
 
 
 def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Strand]) -> list[str]:
@@ -151,6 +130,9 @@ def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Stran
         where = f"cells[{cell.id}].subcells[{number}]"
         if sub.color not in instance.cells[cell.id].colors:
             problems.append(f"{where}.color: cell {cell.id} cannot be painted in color {sub.color}")
+        if not sub.darts and len(cell.subcells) > 1:
+            # What it would show to the darts in state 0 could not be told (semantics, section 3).
+            problems.append(f"{where}.darts: empty, though the cell has other sub-cells")
         for name in sub.darts:
             dart = strand_of(name)
             if dart not in own:
