@@ -5,6 +5,8 @@ from __future__ import annotations
 import itertools
 from pathlib import Path
 
+import numpy as np
+import pinocchio as pin
 import pytest
 from shipped import SCENES, at_resolution
 
@@ -12,7 +14,8 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
-from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import load_scene
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.run import solve
@@ -41,6 +44,17 @@ def covers(surface: LabelledSurface, count: int) -> list[set[str]]:
         for colors in chosen
         if all(need & set(colors) for need in needs)
     ]
+
+
+def wrist_above(robot: Robot, configurations: Array) -> list[bool]:
+    """Whether the crossing of axes 5 and 6 is above the forearm's line, seen along axis 3."""
+    data, above = robot.model.createData(), []
+    for joints in configurations:
+        pin.forwardKinematics(robot.model, data, joints)
+        elbow, wrist, knuckle = (data.oMi[joint].translation for joint in (3, 4, 5))
+        normal = np.cross(data.oMi[3].rotation[:, 2], wrist - elbow)  # the joints turn about z
+        above.append(bool((knuckle - wrist) @ normal * normal[2] > 0))
+    return above
 
 
 def test_one_setup_for_all() -> None:
@@ -89,16 +103,19 @@ def test_lift_offs_at_higher_resolutions(name: str, vertices: int, tmp_path: Pat
     assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
 
 
-def test_flat_hemisphere_is_not_fully_reachable(tmp_path: Path) -> None:
-    report = built("hemisphere_flat", tmp_path, 500).report
-    assert report.reachable_area_m2 < 0.9 * report.area_m2
+def test_flat_hemisphere_is_not_fully_reachable_and_needs_four_colors(tmp_path: Path) -> None:
+    result = built("hemisphere_flat", tmp_path, 500)
+    assert result.report.reachable_area_m2 < 0.9 * result.report.area_m2
+    assert covers(result.surface, 4) and not covers(result.surface, 3)
 
 
-def test_tilted_hemisphere_is_reachable_and_covered(tmp_path: Path) -> None:
-    report = built("hemisphere_tilted", tmp_path, 500).report
+def test_tilted_hemisphere_is_reachable_and_covered_by_three_colors(tmp_path: Path) -> None:
+    result = built("hemisphere_tilted", tmp_path, 500)
+    report = result.report
     assert report.slivers is not None
     covered = report.reachable_area_m2 - report.slivers.given_up_area_m2
     assert covered >= 0.98 * report.area_m2
+    assert covers(result.surface, 3) and not covers(result.surface, 2)
 
 
 def test_trap_of_the_half_pipe(tmp_path: Path) -> None:
@@ -114,7 +131,53 @@ def test_trap_of_the_half_pipe(tmp_path: Path) -> None:
 
 
 def test_two_colors_cover_the_square_alone(tmp_path: Path) -> None:
-    assert covers(built("square", tmp_path, 500).surface, 1) == [
+    """Two more reach part of it, as in the paper; but here these have the same shoulder."""
+    result = built("square", tmp_path, 500)
+    assert covers(result.surface, 1) == [
         {"shoulder-left elbow-up wrist-unflipped"},
         {"shoulder-left elbow-up wrist-flipped"},
     ]
+    area = result.report.area_m2
+    partial = {color.name for color in result.report.colors if color.area_m2 < 0.95 * area}
+    assert partial == {
+        "shoulder-right elbow-up wrist-unflipped",
+        "shoulder-right elbow-up wrist-flipped",
+    }
+
+
+def test_three_colors_over_the_wok_with_the_obstacle(robot: Robot) -> None:
+    """Three are needed; cells of the first alone have the wrist below the forearm (caption f)."""
+    result = build_surface(SCENES / "wok_obstacle.toml")
+    surface = result.surface
+    brown = "shoulder-left elbow-up wrist-unflipped"
+    chosen = {
+        brown,
+        "shoulder-right elbow-up wrist-unflipped",
+        "shoulder-right elbow-up wrist-flipped",
+    }
+    assert not covers(surface, 2) and covers(surface, 3) == [chosen]
+    number, branch = surface.colors.index(brown), result.branches.index(brown)
+    assert (number,) in surface.vertex_colors
+    rows = np.flatnonzero(result.node_color[:, branch] == number)
+    assert not any(wrist_above(robot, result.configurations[rows, branch]))
+
+
+def test_collisions_over_the_wok_do_not_ask_for_the_wrist_above(
+    robot: Robot, tmp_path: Path
+) -> None:
+    """What differs from the paper: of two wrists, the one above the forearm is lost more often."""
+    result = built("wok", tmp_path, 500)
+    solved = ~np.isnan(result.configurations[:, :, 0])
+    valid = result.reasons == Reason.VALID
+    above = np.zeros(solved.shape, dtype=bool)
+    above[solved] = wrist_above(robot, result.configurations[solved])
+    assert 0.4 < above[valid].mean() < 0.5
+    only_above = only_below = 0
+    for first in range(0, 8, 2):  # the two wrists of each shoulder and elbow
+        pair = slice(first, first + 2)
+        mixed = solved[:, pair].all(axis=1) & (above[:, first] != above[:, first + 1])
+        one = mixed & (valid[:, first] != valid[:, first + 1])
+        survivor = (above[:, pair] & valid[:, pair]).any(axis=1)
+        only_above += int((one & survivor).sum())
+        only_below += int((one & ~survivor).sum())
+    assert only_below > 4 * only_above
