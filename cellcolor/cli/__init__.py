@@ -5,6 +5,7 @@ Little is imported before the signals have their handlers: until then Ctrl-C end
 
 from __future__ import annotations
 
+import atexit
 import os
 import sys
 
@@ -27,6 +28,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit code: 0 done, 1 found invalid, 2 bad usage or input, 3 stopped or not proved.
     """
+    if arguments is None:
+        atexit.register(INTERRUPTS.ignore)  # the first registered is the last called
     try:
         with INTERRUPTS.end_the_command():
             from cellcolor.cli.run import run
@@ -39,6 +42,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print("cellcolor: interrupted", file=sys.stderr)
         code = Exit.STOPPED
     if arguments is None:
-        # The process is about to end; a signal can only hasten that.
+        # The work is done; a signal can only hasten the end of the process.
         INTERRUPTS.handle_with(lambda *_: os._exit(code))
     return code

@@ -69,6 +69,12 @@ class Interrupts:
             for number in _SIGNALS:
                 signal.signal(number, handler)
 
+    def ignore(self) -> None:
+        """Leave the signals alone: what Python does last would lose the exit code."""
+        if threading.current_thread() is threading.main_thread():
+            for number in _SIGNALS:
+                signal.signal(number, signal.SIG_IGN)
+
     def check(self) -> None:
         """Raise what a library has swallowed: some catch everything, when imported above all.
 
