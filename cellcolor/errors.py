@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-__all__ = ["CellcolorError", "InputError"]
+__all__ = ["CellcolorError", "InputError", "TooLarge"]
 
 
 class CellcolorError(Exception):
@@ -27,3 +27,7 @@ class InputError(CellcolorError):
     def in_file(self, file: str) -> InputError:
         """The same error with the file named, for data that learns its file late."""
         return InputError(file, self.field, self.message)
+
+
+class TooLarge(CellcolorError):
+    """What was asked for would take more memory than anybody means to spend; it was not begun."""

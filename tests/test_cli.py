@@ -17,6 +17,7 @@ from documents import INSTANCE
 from library import INSTANCES, PAPER
 
 import cellcolor.cli.commands
+import cellcolor.solvers.cpsat.enumeration
 import cellcolor.solvers.run
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
@@ -385,6 +386,20 @@ class TestAllSchemes:
         assert (line["status"], line["schemes"], line["complete"]) == ("optimal", 1, False)
         assert len(list(read_schemes(out))) == 1
         assert list(tmp_path.iterdir()) == [out]
+
+    def test_too_large(
+        self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The minimum is found all the same, and the solution says why there are no schemes."""
+        monkeypatch.setattr(cellcolor.solvers.cpsat.enumeration, "_MOST_LITERALS", 1)
+        out = tmp_path / "none.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out) == 3
+        solution = Solution.read(out)
+        assert (solution.status, solution.schemes, solution.complete) == ("optimal", 0, False)
+        (note,) = solution.notes
+        assert note.startswith("The model of all schemes was not built")
+        assert note in capsys.readouterr().out
+        assert run("check", ZEROS, out) == 0
 
     @pytest.mark.usefixtures("not_proved")
     def test_no_schemes_of_what_is_not_proved(self, tmp_path: Path, capsys: Capture) -> None:

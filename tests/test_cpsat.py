@@ -17,8 +17,9 @@ from cellcolor.check.solution import check_division
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
+from cellcolor.errors import TooLarge
 from cellcolor.families import blobs, hub, hub_minimum, planar_graph
 from cellcolor.solvers.bounds import color_regions, set_cover
 from cellcolor.solvers.cpsat import CpSatSolver, enumeration
@@ -394,6 +395,24 @@ def test_enumeration_waits_for_who_takes_the_schemes(monkeypatch: pytest.MonkeyP
         next(found)
         time.sleep(0.05)  # the search could fill the memory meanwhile
         assert len(put) <= taken + 3
+
+
+def test_a_model_of_schemes_that_is_too_large_is_not_built(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is counted beforehand is about what there would be."""
+    instance = hub(0, 60, 3)
+    graph = graph_of(instance)
+    model = enumeration._SchemeModel(graph, 20, NEVER).model
+    literals = sum(
+        len(constraint.bool_or.literals) + len(constraint.at_most_one.literals)
+        for constraint in model.proto.constraints
+    )
+    monkeypatch.setattr(enumeration, "_MOST_LITERALS", 1.5 * literals)
+    enumeration._check_size(graph, NEVER)
+    monkeypatch.setattr(enumeration, "_MOST_LITERALS", 0.7 * literals)
+    with pytest.raises(TooLarge, match="one cell has 60 darts"):
+        next(CpSatSolver().optimal_schemes(instance, Options(), 20))
 
 
 def test_enumeration_can_be_left_early() -> None:

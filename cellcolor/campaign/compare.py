@@ -12,7 +12,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, SearchSpace, scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import CellcolorError
+from cellcolor.errors import CellcolorError, TooLarge
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.run import CONTENDERS, SOLVERS, enumerate_schemes, solve
 
@@ -167,7 +167,7 @@ def _schemes(
             if key in found:
                 raise Disagreement(f"{solver} lists a scheme twice")
             found[key] = division
-    except OutOfTime:
+    except (OutOfTime, TooLarge):
         return None
     return found if len(found) <= MOST_SCHEMES else None
 

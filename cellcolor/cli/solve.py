@@ -36,7 +36,7 @@ from cellcolor.data.output import (
 )
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import CellcolorError, InputError
+from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.solvers.interface import PORTFOLIO, Options, Start
 
 _SOLUTION = kind_of_format(solution_file.FORMAT)
@@ -268,7 +268,7 @@ def _with_schemes(
     if solution.status != "optimal" or solution.segments is None:
         return replace(solution, schemes=0, complete=False)
     started = time.monotonic()
-    count, complete = 0, True
+    count, complete, notes = 0, True, solution.notes
     try:
         for division in enumerate_schemes(instance, options, request.solver, solution.segments):
             if count == request.limit:
@@ -281,5 +281,7 @@ def _with_schemes(
                 report(count)
     except OutOfTime:
         complete = False
+    except TooLarge as error:
+        complete, notes = False, (*notes, str(error))
     seconds = solution.seconds + time.monotonic() - started
-    return replace(solution, schemes=count, complete=complete, seconds=seconds)
+    return replace(solution, schemes=count, complete=complete, seconds=seconds, notes=notes)

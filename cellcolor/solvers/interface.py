@@ -97,4 +97,5 @@ class Solver(Protocol):
 
         Raises:
             OutOfTime: the deadline came first.
+            TooLarge: the search would not fit into memory.
         """

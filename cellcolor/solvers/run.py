@@ -126,6 +126,7 @@ def enumerate_schemes(
 
     Raises:
         OutOfTime: the time limit came first.
+        TooLarge: the model would not fit into memory.
         ContradictionError: the checker refuses what the solver found.
     """
     for division in make_solver(solver).optimal_schemes(instance, options, segments):

@@ -18,7 +18,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, TooLarge
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.painting import Block, Painting, division_of
 from cellcolor.solvers.cpsat.zeros import zeros_can_differ
@@ -28,6 +28,9 @@ __all__ = ["optimal_schemes"]
 
 _AHEAD = 100
 """Schemes that may wait to be taken; with so many the search pauses."""
+
+_MOST_LITERALS = 20_000_000
+"""In the constraints that grow with the cube of a cell's darts; some gigabytes in the search."""
 
 
 def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iterator[Division]:
@@ -43,6 +46,7 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
     Raises:
         InputError: a cell has several loops with live darts, for which schemes are not defined.
         OutOfTime: the deadline came first.
+        TooLarge: the model would not fit into memory.
     """
     if not instance.cells:
         yield ()
@@ -54,6 +58,7 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
             )
     colors = [frozenset(cell.colors) for cell in instance.cells]
     graph = dart_graph(instance, colors, dict.fromkeys((e.id for e in instance.edges), 1), ())
+    _check_size(graph, options.deadline)
     model = _SchemeModel(graph, segments, options.deadline)
     solver = cp_model.CpSolver()
     solver.parameters.enumerate_all_solutions = True
@@ -79,6 +84,26 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
             thread.join(0.1)
     if painting not in (cp_model.OPTIMAL, cp_model.INFEASIBLE):
         raise OutOfTime("the time limit ended the enumeration of schemes")
+
+
+def _check_size(graph: DartGraph, deadline: Deadline) -> None:
+    """Refuse to build a model that is too large, by the constraints over three darts of a cell.
+
+    A link between two darts, d places apart in a cell of n, stands in about 2 d constraints that
+    keep it from crossing others and in 2 n that want blocks of two darts; rule 4 looks at the
+    darts between the two for each color that they share.
+    """
+    literals = 0
+    for cell in graph.lists:
+        for place, one in enumerate(cell):
+            deadline.check()
+            for apart, other in enumerate(cell[place + 1 :], start=1):
+                shared = len(graph.darts[one].colors & graph.darts[other].colors)
+                literals += (2 + shared) * apart + 2 * len(cell) if shared else 0
+            if literals > _MOST_LITERALS:
+                raise TooLarge(
+                    f"The model of all schemes was not built: one cell has {len(cell)} darts."
+                )
 
 
 class _SchemeModel:
