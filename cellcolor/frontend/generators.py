@@ -6,19 +6,27 @@ from pathlib import Path
 
 import numpy as np
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.meshfile import load_mesh
 from cellcolor.frontend.robot import Array
 from cellcolor.frontend.scene import CapObject, MeshObject, Object, PipeObject, RectangleObject
+from cellcolor.frontend.sizes import check_vertices
 from cellcolor.frontend.surfaces import Faces, Surface
 
 __all__ = ["disc_mesh", "grid_mesh", "make_surface", "pipe", "rectangle", "spherical_cap"]
 
 
-def make_surface(spec: Object, base: Path) -> Surface:
-    """The object of a scene in its own frame; mesh files are relative to the folder ``base``."""
+def make_surface(spec: Object, base: Path, deadline: Deadline = NEVER) -> Surface:
+    """The object of a scene in its own frame; mesh files are relative to the folder ``base``.
+
+    Raises:
+        InputError: a mesh file cannot be used.
+        OutOfTime: the deadline came first.
+    """
     match spec:
         case MeshObject():
-            return load_mesh(base / spec.file, spec.meters_per_unit, spec.max_edge_m, spec.repair)
+            units, longest, mend = spec.meters_per_unit, spec.max_edge_m, spec.repair
+            return load_mesh(base / spec.file, units, longest, mend, deadline)
         case CapObject(radius_m=radius, half_angle_rad=half_angle):
             disc = disc_mesh(spec.target_vertices, spec.jitter, spec.seed)
             return spherical_cap(radius, half_angle, *disc)
@@ -88,6 +96,7 @@ def grid_mesh(
     """
     columns = max(1, round(np.sqrt(target * width / height)) - 1)
     rows = max(1, round(target / (columns + 1)) - 1)
+    check_vertices((columns + 1) * (rows + 1), "target_vertices")  # a strip can get far too long
     x, y = np.meshgrid(np.arange(columns + 1.0), np.arange(rows + 1.0))
     shift = np.random.default_rng(seed).uniform(-jitter, jitter, (2, *x.shape))
     shift[0, :, [0, -1]] = 0.0

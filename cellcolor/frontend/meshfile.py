@@ -8,16 +8,23 @@ import numpy as np
 import trimesh
 
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.objfile import read_obj
 from cellcolor.frontend.remesh import refine, repair
 from cellcolor.frontend.robot import Array
+from cellcolor.frontend.sizes import check_vertices
 from cellcolor.frontend.surfaces import Faces, Surface, face_normals
 
 __all__ = ["load_mesh"]
 
 
 def load_mesh(
-    file: Path, meters_per_unit: float, max_edge_m: float | None = None, mend: bool = False
+    file: Path,
+    meters_per_unit: float,
+    max_edge_m: float | None = None,
+    mend: bool = False,
+    deadline: Deadline = NEVER,
 ) -> Surface:
     """A mesh file as it is, checked; refined or repaired on request.
 
@@ -28,31 +35,37 @@ def load_mesh(
         meters_per_unit: of the file's coordinates.
         max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
         mend: see :func:`~cellcolor.frontend.remesh.repair`.
+        deadline: when to give up; not looked at while another library reads the file.
 
     Raises:
         InputError: missing or unreadable file, no triangles, coordinates that are not finite,
             two vertices in one place, faces without area, vertices without faces, edges or
             vertices that are not manifold, inconsistent winding, a closed mesh inside out;
-            names the element.
+            names the element. More vertices than fit, before or after halving edges.
+        OutOfTime: the deadline came first.
     """
-    vertices, faces = _read_mesh(file)
+    vertices, faces = _read_mesh(file, deadline)
+    deadline.check()
     if mend:
         finite = np.isfinite(vertices).all()
         vertices, faces = repair(vertices, faces) if finite else (vertices, faces)
     if not len(faces):
         raise InputError(str(file), "faces", "there are none")
     try:
+        check_vertices(len(vertices))
         # The labelled surface's own rules, held here before any work is done.
         bare = LabelledSurface(file.name, (), vertices, faces, ((),) * len(vertices))
     except InputError as error:
         raise error.in_file(str(file)) from error
+    deadline.check()
     _check_elements(file, vertices, faces)
     if all((j, i) in bare.left_of for i, j in bare.left_of):  # closed
         corners = vertices[faces]
         if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
             raise InputError(str(file), "faces", "closed mesh inside out: its volume is negative")
     if max_edge_m is not None:
-        vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit)
+        vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit, deadline)
+    deadline.check()
     normals = _vertex_normals(vertices, faces)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
@@ -62,11 +75,13 @@ def load_mesh(
     return Surface(vertices * meters_per_unit, faces, normals)
 
 
-def _read_mesh(file: Path) -> tuple[Array, Faces]:
+def _read_mesh(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
     if not file.is_file():
         raise InputError(str(file), None, "no such mesh file")
     if file.suffix.lower() not in (".stl", ".obj", ".ply"):
         raise InputError(str(file), None, "not a mesh format known here (STL, OBJ, PLY)")
+    if file.suffix.lower() == ".obj":
+        return read_obj(file, deadline)
     try:
         mesh = trimesh.load_mesh(file, process=False, maintain_order=True)
         vertices = np.array(mesh.vertices, dtype=np.float64).reshape(-1, 3)

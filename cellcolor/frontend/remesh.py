@@ -5,25 +5,39 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.robot import Array
-from cellcolor.frontend.surfaces import Faces
+from cellcolor.frontend.sizes import check_refinement, check_vertices
+from cellcolor.frontend.surfaces import Faces, every_edge, face_normals
 
 __all__ = ["refine", "repair"]
 
 
-def refine(vertices: Array, faces: Faces, longest: float) -> tuple[Array, Faces]:
+def refine(
+    vertices: Array, faces: Faces, longest: float, deadline: Deadline = NEVER
+) -> tuple[Array, Faces]:
     """Halve edges until none is longer than ``longest``, in the unit of the vertices.
 
     The mesh stays the same surface and conforming: an edge is halved for both its faces. The
     first vertices are the given ones.
+
+    Raises:
+        InputError: that would be too many vertices; nothing was made yet.
+        OutOfTime: the deadline came first.
     """
+    i, j = every_edge(faces).T
+    lengths = np.linalg.norm(vertices[i] - vertices[j], axis=1)
+    area = float(np.linalg.norm(face_normals(vertices, faces), axis=1).sum()) / 2
+    check_refinement(len(vertices), lengths, area, longest)
     while True:
+        deadline.check()
         sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)  # (m, 3, 2): ab, bc, ca
         lengths = np.linalg.norm(vertices[sides[:, :, 0]] - vertices[sides[:, :, 1]], axis=2)
         split = lengths > longest
         if not split.any():
             return vertices, faces
         pairs, number = np.unique(np.sort(sides[split], axis=1), axis=0, return_inverse=True)
+        check_vertices(len(vertices) + len(pairs), "max_edge_m")
         middle = np.full(faces.shape, -1, dtype=np.int64)
         middle[split] = len(vertices) + number.reshape(-1)
         vertices = np.vstack([vertices, vertices[pairs].mean(axis=1)])

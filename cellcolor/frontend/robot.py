@@ -58,6 +58,7 @@ class Robot:
         tested_pairs: pairs of bodies (indices) that self-collision looks at: all that do not
             belong to one link or to links next to each other.
         joint_names: names of the joints.
+        warnings: what its files have that is probably not meant, a sentence each.
         model: Pinocchio's own model, for those who want to compute independently.
     """
 
@@ -73,6 +74,7 @@ class Robot:
     bodies: tuple[Body, ...]
     tested_pairs: tuple[tuple[int, int], ...]
     joint_names: tuple[str, ...]
+    warnings: tuple[str, ...]
     model: pin.Model = field(repr=False, compare=False)
     geometry: pin.GeometryModel = field(repr=False, compare=False)
 
@@ -82,8 +84,8 @@ def load_robot(arm_file: Path, flange_link: str, tool_file: Path, tip_link: str)
 
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.urdf`), no such tip
-            link, not six joints between base and tip, or Pinocchio read other collision shapes
-            than the file has.
+            link, not six joints between base and tip, one there that follows another, or
+            Pinocchio read other collision shapes than the file has.
     """
     arm, tool = load_urdf(arm_file), load_urdf(tool_file)
     if tool.moving:
@@ -92,6 +94,13 @@ def load_robot(arm_file: Path, flange_link: str, tool_file: Path, tip_link: str)
         raise InputError(str(tool_file), f"link[{tip_link}]", "the tip link is not in the tool")
     whole = mount(arm, flange_link, tool)
     in_chain = [whole.joint_above[link] for link in whole.chain(tip_link)[1:]]
+    for name in in_chain:
+        if name in whole.locked:
+            raise InputError(
+                str(tool_file if name in tool.locked else arm_file),
+                f"joint[{name}].mimic",
+                "a joint between base and tip may not follow another one",
+            )
     moving = tuple(name for name in in_chain if name in whole.moving)
     if len(moving) != JOINTS or len(whole.moving) != JOINTS:
         raise InputError(
@@ -120,9 +129,26 @@ def load_robot(arm_file: Path, flange_link: str, tool_file: Path, tip_link: str)
         bodies=bodies,
         tested_pairs=_tested_pairs(whole, bodies),
         joint_names=tuple(model.names[1:]),
+        warnings=_warnings(whole),
         model=model,
         geometry=geometry,
     )
+
+
+def _warnings(urdf: Urdf) -> tuple[str, ...]:
+    """What a user would want to know of the files."""
+    found = []
+    if not urdf.shapes:
+        found.append("arm and tool have no collision shapes at all: nothing is ever hit")
+    elif urdf.shapeless:
+        found.append(f"no collision shape, so hits nothing: {_listed(urdf.shapeless)}")
+    if urdf.locked:
+        found.append(f"follows another joint (<mimic>), so fixed at zero: {_listed(urdf.locked)}")
+    return tuple(found)
+
+
+def _listed(names: tuple[str, ...]) -> str:
+    return ", ".join(map(repr, names))
 
 
 def _axes(model: pin.Model) -> Array:

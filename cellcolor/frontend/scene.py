@@ -13,6 +13,7 @@ from typing import Annotated, Literal, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
 
 from cellcolor.errors import InputError
+from cellcolor.frontend.sizes import MOST_VERTICES
 
 __all__ = [
     "BoxObstacle",
@@ -49,7 +50,7 @@ class _Table(BaseModel):
 
 
 class _Sampled(_Table):
-    target_vertices: Annotated[int, Field(ge=7, le=1_000_000)]
+    target_vertices: Annotated[int, Field(ge=7, le=MOST_VERTICES)]
     jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
     seed: Annotated[int, Field(ge=0)] = 0
 

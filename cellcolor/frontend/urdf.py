@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import xml.etree.ElementTree as ET
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cellcolor.errors import InputError
@@ -17,6 +17,7 @@ from cellcolor.errors import InputError
 __all__ = ["Urdf", "load_urdf", "mount"]
 
 _SHAPES = {"cylinder": ("radius", "length"), "sphere": ("radius",)}
+_THING = ("inertial", "visual")  # what a link that is more than a frame has
 
 
 @dataclass(frozen=True)
@@ -29,6 +30,10 @@ class Urdf:
         joint_above: the name of the joint between a link and its parent.
         moving: names of the revolute joints, in the order of the file.
         shapes: number of collision shapes of each link that has any.
+        shapeless: the links without one that are things all the same: they have a mass or a
+            picture, or a joint moves them.
+        locked: joints that would follow another one (``<mimic>``); they are fixed where they
+            stand at zero.
     """
 
     file: Path
@@ -38,6 +43,8 @@ class Urdf:
     joint_above: dict[str, str]
     moving: tuple[str, ...]
     shapes: dict[str, int]
+    shapeless: tuple[str, ...]
+    locked: tuple[str, ...]
 
     def chain(self, link: str) -> tuple[str, ...]:
         """The links from the root to ``link``, both included."""
@@ -68,7 +75,8 @@ def load_urdf(file: Path) -> Urdf:
         raise InputError(str(file), None, f"not XML: {error}") from error
     if xml.tag != "robot":
         raise InputError(str(file), xml.tag, "the outermost element of a URDF is <robot>")
-    return _checked(file, xml)
+    locked = _lock(xml)
+    return replace(_checked(file, xml), locked=locked)
 
 
 def mount(arm: Urdf, flange: str, tool: Urdf) -> Urdf:
@@ -90,7 +98,19 @@ def mount(arm: Urdf, flange: str, tool: Urdf) -> Urdf:
     joint = ET.SubElement(xml, "joint", {"name": "tool_mount", "type": "fixed"})
     ET.SubElement(joint, "parent", {"link": flange})
     ET.SubElement(joint, "child", {"link": tool.root})
-    return _checked(arm.file, xml)
+    return replace(_checked(arm.file, xml), locked=arm.locked + tool.locked)
+
+
+def _lock(xml: ET.Element) -> tuple[str, ...]:
+    """Fix the joints that follow another one, and name them."""
+    locked = []
+    for joint in xml.findall("joint"):
+        mimic = joint.find("mimic")
+        if mimic is not None:
+            joint.remove(mimic)
+            joint.set("type", "fixed")
+            locked.append(joint.get("name", ""))
+    return tuple(locked)
 
 
 def _checked(file: Path, xml: ET.Element) -> Urdf:
@@ -126,14 +146,18 @@ def _checked(file: Path, xml: ET.Element) -> Urdf:
     roots = [link for link in links if link not in parent]
     if len(roots) != 1:
         raise InputError(str(file), "robot", f"needs one root link, has {len(roots)}: {roots}")
-    shapes = {}
+    shapes, shapeless = {}, []
     for name, element in links.items():
         count = _shapes(file, name, element)
         if count:
             shapes[name] = count
+        elif name in driven or any(element.find(tag) is not None for tag in _THING):
+            shapeless.append(name)
         if count or name in driven:
             _inertial(file, name, element)
-    return Urdf(file, xml, roots[0], parent, joint_above, tuple(moving), shapes)
+    return Urdf(
+        file, xml, roots[0], parent, joint_above, tuple(moving), shapes, tuple(shapeless), ()
+    )
 
 
 def _named(file: Path, xml: ET.Element, tag: str) -> dict[str, ET.Element]:
