@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.metadata
 import time
+from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -13,9 +14,11 @@ from numpy.typing import NDArray
 
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.between import at_domain_border, longest_steps, remains_valid
 from cellcolor.frontend.collision import Mask
+from cellcolor.frontend.conditioning import Conditioning
 from cellcolor.frontend.continuity import (
     Coloring,
     color,
@@ -41,6 +44,11 @@ from cellcolor.frontend.validity import Candidates, Reason
 
 __all__ = ["BuildResult", "build_surface"]
 
+_AT_ONCE = 50_000  # mesh edges, or links on them; a matter of memory: some kilobytes each
+
+Progress = Callable[[str], None]
+"""Told the name of each stage as it begins."""
+
 
 @dataclass(frozen=True)
 class BuildResult:
@@ -65,24 +73,39 @@ class BuildResult:
     report: BuildReport
 
 
-def build_surface(scene_path: Path) -> BuildResult:
+def build_surface(
+    scene_path: Path, deadline: Deadline = NEVER, progress: Progress | None = None
+) -> BuildResult:
     """Compute which colors reach each point of a scene's object.
+
+    Args:
+        scene_path: the scene's file.
+        deadline: when to give up.
+        progress: told what is being done.
 
     Raises:
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
+        OutOfTime: the deadline came first.
     """
     scene_path = Path(scene_path)
     started = time.perf_counter()
-    stage = prepare(scene_path)
+
+    def begin(name: str) -> None:
+        deadline.check()
+        if progress is not None:
+            progress(name)
+
+    begin("preparation")
+    stage = prepare(scene_path, deadline)
     try:
-        return _build(stage, {"preparation": time.perf_counter() - started})
+        return _build(stage, begin, {"preparation": time.perf_counter() - started})
     except InputError as error:
         if error.file:
             raise
         raise error.in_file(str(scene_path)) from error
 
 
-def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
+def _build(stage: Stage, begin: Progress, seconds: dict[str, float]) -> BuildResult:
     scene, setup, robot, surface, judge = (
         stage.scene,
         stage.setup,
@@ -98,9 +121,11 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
         seconds[name] = now - started
         started = now
 
+    begin("inverse kinematics")
     solutions = stage.inverse(surface.vertices, -surface.normals)
     lap("inverse kinematics")
     edges = surface.edges()
+    begin("validity at the vertices")
     verdicts = judge(solutions.reshape(-1, solutions.shape[2]))
     seconds |= judge.seconds  # a copy: the judge goes on being asked
     candidates = Candidates(
@@ -111,43 +136,53 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
     valid, configurations = candidates.valid, candidates.configurations
 
     def probe(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Array, Mask]:
+        stage.deadline.check()
         between = stage.follow(points, directions, branch)
-        return between, _well_conditioned(robot, setup, between)
+        return between, _well_conditioned(robot, setup, stage.conditioning, between)
 
     def test(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Mask, Array]:
         found = judge(stage.follow(points, directions, branch))
         return np.asarray(found.reasons == Reason.VALID), found.ends
 
+    begin("continuity")
     started = time.perf_counter()
-    linked = link(surface, edges, candidates, setup.continuity, probe)
-    i, j = edges.T
-    if setup.constraints.collision:
-        rows, branches = np.nonzero(linked)
-        first, second = (configurations[ends[rows], branches] for ends in (i, j))
-        linked[rows, branches] = stays_in_limits(robot.lower, robot.upper, first, second)
+    linked = np.zeros((len(edges), valid.shape[1]), dtype=bool)
+    near_singular = stage.conditioning.near_singular_determinant
+    for part in _parts(len(edges), stage.deadline):
+        some = link(surface, edges[part], candidates, setup.continuity, near_singular, probe)
+        if setup.constraints.collision:
+            rows, branches = np.nonzero(some)
+            first, second = (configurations[ends, branches] for ends in edges[part][rows].T)
+            some[rows, branches] = stays_in_limits(robot.lower, robot.upper, first, second)
+        linked[part] = some
     lap("continuity")
     spacing = setup.continuity.validity_spacing_m
     if spacing is not None:
-        rows, branches = np.nonzero(linked)
-        near_border = at_domain_border(edges, valid)[rows, branches]
-        parts = np.maximum(np.ceil(surface.lengths(edges[rows]) / spacing).astype(int), 2)
-        pieces = np.where(near_border, parts, 1)
+        begin("validity between vertices")
+        near_border = at_domain_border(edges, valid)
+        counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
         ends = verdicts.ends.reshape(-1, *valid.shape, 3)
         longest = longest_steps(judge.end_radii)
-        linked[rows, branches] &= remains_valid(
-            surface, edges[rows], branches, pieces, ends, longest, test
-        )
+        all_rows, all_branches = np.nonzero(linked)
+        for part in _parts(len(all_rows), stage.deadline):
+            rows, branches = all_rows[part], all_branches[part]
+            pieces = np.where(near_border[rows, branches], counts[rows], 1)
+            linked[rows, branches] = remains_valid(
+                surface, edges[rows], branches, pieces, ends, longest, test
+            )
         lap("validity between vertices")
+    begin("colors and cracks")
     coloring = color(valid, configurations, node_links(edges, linked), BRANCHES)
     slivers = None
     if setup.slivers is not None:
         areas = surface.vertex_areas()
-        kept, slivers = clean(edges, linked, coloring, areas, setup.slivers)
-        linked &= kept[i] & kept[j]
+        kept, slivers = clean(edges, linked, coloring, areas, setup.slivers, stage.deadline)
+        linked &= kept[edges].all(axis=1)
         coloring = color(kept, configurations, node_links(edges, linked), BRANCHES)
     cracks = find_cracks(edges, linked, coloring)
     lap("colors and cracks")
 
+    begin("report")
     labelled = LabelledSurface(
         name=scene.name,
         colors=coloring.names,
@@ -158,10 +193,13 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
         meta=_meta(scene, setup, seconds, slivers),
         given_up=_given_up(valid, coloring),
     )
+    stage.deadline.check()
     where = survey(surface, stage.geometry)
+    notes = robot.warnings + (() if stage.coarse is None else (stage.coarse,))
     report = make_report(
-        where, surface, candidates, coloring, BRANCHES, len(cracks), seconds, slivers
+        where, surface, candidates, coloring, BRANCHES, len(cracks), seconds, notes, slivers
     )
+    stage.deadline.check()
     return BuildResult(
         surface=labelled,
         branches=BRANCHES,
@@ -172,7 +210,16 @@ def _build(stage: Stage, seconds: dict[str, float]) -> BuildResult:
     )
 
 
-def _well_conditioned(robot: Robot, setup: Setup, configurations: Array) -> Mask:
+def _parts(count: int, deadline: Deadline) -> Iterator[slice]:
+    """Slices of a long list, as long as there is time."""
+    for first in range(0, count, _AT_ONCE):
+        deadline.check()
+        yield slice(first, first + _AT_ONCE)
+
+
+def _well_conditioned(
+    robot: Robot, setup: Setup, limits: Conditioning, configurations: Array
+) -> Mask:
     """Whether configurations (k, 6) exist and keep both conditioning thresholds, (k,)."""
     good = ~np.isnan(configurations[:, 0])
     poses = forward(robot, configurations[good])
@@ -180,8 +227,8 @@ def _well_conditioned(robot: Robot, setup: Setup, configurations: Array) -> Mask
     determinant = task_determinant(linear, angular, poses.tool_axis)
     if not setup.constraints.conditioning:
         return good
-    good[good] = (manipulability(linear) >= setup.thresholds.min_manipulability_m3) & (
-        determinant >= setup.thresholds.min_task_determinant_m3
+    good[good] = (manipulability(linear) >= limits.min_manipulability) & (
+        determinant >= limits.min_task_determinant
     )
     return good
 

@@ -80,7 +80,12 @@ def stays_in_limits(lower: Array, upper: Array, first: Array, second: Array) -> 
 
 
 def link(
-    surface: Surface, edges: Index, candidates: Candidates, policy: Continuity, probe: Probe
+    surface: Surface,
+    edges: Index,
+    candidates: Candidates,
+    policy: Continuity,
+    near_singular: float,
+    probe: Probe,
 ) -> Mask:
     """Whether the two configurations of a branch on an edge's ends are continuous, (k, 8).
 
@@ -93,6 +98,7 @@ def link(
 
     Args:
         edges: (k, 2) vertex indices.
+        near_singular: task determinant from which on down an edge is probed, m^3.
         probe: see :data:`Probe`; called with points in between.
     """
     i, j = edges.T
@@ -102,7 +108,7 @@ def link(
     with np.errstate(invalid="ignore"):
         step = joint_step(candidates.configurations[i], candidates.configurations[j])
         nearest = np.fmin(candidates.determinants[i], candidates.determinants[j])
-        clear = (step <= bound / 2) & (nearest >= policy.near_singular_determinant_m3)
+        clear = (step <= bound / 2) & (nearest >= near_singular)
     linked: Mask = both & clear
     rows, branches = np.nonzero(both & ~clear)
     pieces = np.maximum(np.ceil(length[rows] / policy.probe_spacing_m).astype(int), 2)

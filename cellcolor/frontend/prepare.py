@@ -8,19 +8,25 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.coarse import too_coarse
 from cellcolor.frontend.collision import body_ends
+from cellcolor.frontend.conditioning import Conditioning, conditioning
 from cellcolor.frontend.generators import make_surface
 from cellcolor.frontend.kinematics import forward
 from cellcolor.frontend.meshfile import load_mesh
 from cellcolor.frontend.robot import Array, Robot, load_robot
 from cellcolor.frontend.scene import MeshObstacle, Scene, Setup, load_scene, load_setup
-from cellcolor.frontend.solids import mesh_solid, primitive_solid
+from cellcolor.frontend.sizes import check_points
+from cellcolor.frontend.solids import Solid, mesh_solid, primitive_solid
 from cellcolor.frontend.surfaces import Surface
-from cellcolor.frontend.ur import UrGeometry, solve_inverse, ur_geometry
+from cellcolor.frontend.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
 from cellcolor.frontend.validity import Judge
 
 __all__ = ["Stage", "prepare"]
+
+_AT_ONCE = 20_000  # points; inverse kinematics keeps some kilobytes for each
 
 
 @dataclass(frozen=True)
@@ -29,19 +35,31 @@ class Stage:
 
     Attributes:
         surface: what has to be covered, in the world.
+        conditioning: the thresholds for this arm.
         judge: the tests.
+        coarse: what could stand unnoticed between two vertices, a sentence; None if nothing.
+        deadline: when to give up.
     """
 
     scene: Scene
     setup: Setup
     robot: Robot
     geometry: UrGeometry
+    conditioning: Conditioning
     surface: Surface
     judge: Judge
+    coarse: str | None
+    deadline: Deadline
 
     def inverse(self, points: Array, directions: Array) -> Array:
         """All branches (n, 8, 6) in rad; see :func:`~cellcolor.frontend.ur.solve_inverse`."""
-        return solve_inverse(self.geometry, points, directions, self.setup.robot.locked_joint_6_rad)
+        found = np.empty((len(points), len(BRANCHES), len(self.robot.axis)))
+        locked = self.setup.robot.locked_joint_6_rad
+        for first in range(0, len(points), _AT_ONCE):
+            self.deadline.check()
+            rows = slice(first, first + _AT_ONCE)
+            found[rows] = solve_inverse(self.geometry, points[rows], directions[rows], locked)
+        return found
 
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, 6) in rad, NaN where it has no solution."""
@@ -49,12 +67,13 @@ class Stage:
         return solve_inverse(self.geometry, points, directions, locked, branches)[:, 0]
 
 
-def prepare(scene_path: Path) -> Stage:
+def prepare(scene_path: Path, deadline: Deadline = NEVER) -> Stage:
     """Read a scene, its setup and all that they name.
 
     Raises:
-        InputError: a file cannot be used, or the object stands in a link that cannot move;
-            names file and field.
+        InputError: a file cannot be used, the object stands in a link that cannot move, or the
+            scene asks for more vertices or points than fit; names file and field.
+        OutOfTime: the deadline came first.
     """
     scene = load_scene(scene_path)
     setup_path = scene_path.parent / scene.setup
@@ -68,13 +87,30 @@ def prepare(scene_path: Path) -> Stage:
             f"the tool is longer than the arm: tip {geometry.reach:.3f} m from the wrist",
         )
     try:
-        surface = make_surface(scene.object, scene_path.parent).placed(scene.placement)
-        judge = _judge(robot, setup, scene, surface, scene_path.parent)
+        surface = make_surface(scene.object, scene_path.parent, deadline).placed(scene.placement)
+        lengths = surface.lengths(surface.edges())
+        _check_spacings(setup, setup_path, lengths)
+        limits = conditioning(setup, geometry)
+        solids = _solids(robot, setup, scene, surface, scene_path.parent, deadline)
     except InputError as error:
         if error.file:
             raise
         raise error.in_file(str(scene_path)) from error
-    return Stage(scene, setup, robot, geometry, surface, judge)
+    judge = Judge(robot, setup, limits, scene, *solids, deadline)
+    coarse = None
+    if setup.constraints.collision:
+        coarse = too_coarse(robot, solids[0], float(lengths.max()))
+    return Stage(scene, setup, robot, geometry, limits, surface, judge, coarse, deadline)
+
+
+def _check_spacings(setup: Setup, setup_path: Path, lengths: Array) -> None:
+    try:
+        for key in ("probe_spacing_m", "validity_spacing_m"):
+            spacing = getattr(setup.continuity, key)
+            if spacing is not None:
+                check_points(lengths, spacing, f"continuity.{key}")
+    except InputError as error:
+        raise error.in_file(str(setup_path)) from error
 
 
 def _load_robot(setup: Setup, setup_path: Path) -> Robot:
@@ -95,20 +131,24 @@ def _load_robot(setup: Setup, setup_path: Path) -> Robot:
     return robot
 
 
-def _judge(robot: Robot, setup: Setup, scene: Scene, surface: Surface, base: Path) -> Judge:
+def _solids(
+    robot: Robot, setup: Setup, scene: Scene, surface: Surface, base: Path, deadline: Deadline
+) -> tuple[list[Solid], Solid]:
+    """The obstacles and the object, in the world."""
     obstacles = []
     for obstacle in scene.obstacle:
         if isinstance(obstacle, MeshObstacle):
-            mesh = load_mesh(base / obstacle.file, obstacle.meters_per_unit).placed(obstacle)
-            obstacles.append(mesh_solid(mesh.vertices, mesh.faces))
+            file = base / obstacle.file
+            mesh = load_mesh(file, obstacle.meters_per_unit, deadline=deadline).placed(obstacle)
+            obstacles.append(mesh_solid(mesh.vertices, mesh.faces, deadline))
         else:
             obstacles.append(primitive_solid(obstacle))
     body = surface
     if scene.collision_object is not None:
-        body = make_surface(scene.collision_object, base).placed(scene.placement)
-    target = mesh_solid(body.vertices, body.faces)
+        body = make_surface(scene.collision_object, base, deadline).placed(scene.placement)
+    target = mesh_solid(body.vertices, body.faces, deadline)
     at_zero = body_ends(robot, forward(robot, np.zeros((1, len(robot.axis)))))
     blocked = target.touched_by_fixed(robot, at_zero)
     if blocked is not None and setup.constraints.collision:
         raise InputError(None, "placement", f"the object stands in the robot's {blocked!r}")
-    return Judge(robot, setup, scene, obstacles, target)
+    return obstacles, target

@@ -40,6 +40,7 @@ class BuildReport:
             came farthest through the tests.
         colors: see :class:`ColorReport`.
         cracks: number of mesh edges with a crack.
+        notes: of robot and mesh, what is probably not meant, a sentence each.
         slivers: what the sliver policy did, None without one.
         seconds: wall time of each stage.
     """
@@ -54,12 +55,13 @@ class BuildReport:
     colors: tuple[ColorReport, ...]
     cracks: int
     seconds: dict[str, float]
+    notes: tuple[str, ...]
     slivers: SliverReport | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is probably not meant, a sentence each."""
-        return self.survey.warnings
+        return self.survey.warnings + self.notes
 
     def __str__(self) -> str:
         share = 100 * self.reachable_area_m2 / self.area_m2
@@ -102,6 +104,7 @@ def make_report(
     branch_names: tuple[str, ...],
     cracks: int,
     seconds: dict[str, float],
+    notes: tuple[str, ...],
     slivers: SliverReport | None = None,
 ) -> BuildReport:
     """Count what a build found."""
@@ -109,11 +112,16 @@ def make_report(
     reached = candidates.valid.any(axis=1)
     # The reasons are numbered in the order of the tests.
     farthest = candidates.reasons.max(axis=1)[~reached]
-    colors = []
-    for number, (name, branch) in enumerate(zip(coloring.names, coloring.branch, strict=True)):
-        domain = coloring.node_color[:, branch] == number
-        size, area = int(domain.sum()), float(areas[domain].sum())
-        colors.append(ColorReport(name, branch_names[branch], size, area))
+    vertex, branch = np.nonzero(coloring.node_color >= 0)
+    color = coloring.node_color[vertex, branch]
+    sizes = np.bincount(color, minlength=len(coloring.names)).tolist()
+    domains = np.bincount(color, areas[vertex], minlength=len(coloring.names)).tolist()
+    colors = [
+        ColorReport(name, branch_names[number], size, area)
+        for name, number, size, area in zip(
+            coloring.names, coloring.branch, sizes, domains, strict=True
+        )
+    ]
     return BuildReport(
         survey=where,
         vertices=len(areas),
@@ -125,5 +133,6 @@ def make_report(
         colors=tuple(colors),
         cracks=cracks,
         seconds=seconds,
+        notes=notes,
         slivers=slivers,
     )

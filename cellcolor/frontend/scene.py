@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import tomllib
 from pathlib import Path
-from typing import Annotated, Literal, TypeVar, get_args
+from typing import Annotated, Literal, Self, TypeVar, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
+from pydantic_core import PydanticCustomError
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.sizes import MOST_VERTICES
@@ -171,11 +172,27 @@ class Task(_Table):
     gravity_m_per_s2: Vector
 
 
-class Thresholds(_Table):
-    """What counts as well conditioned."""
+def _one_of_each(table: _Table, *names: str) -> None:
+    """Hold a table to give each threshold once: as a share of reach^3, or in m^3 as NAME_m3."""
+    for name in names:
+        given = [key for key in (name, f"{name}_m3") if getattr(table, key) is not None]
+        if len(given) != 1:
+            message = f"give either {name} or {name}_m3"
+            raise PydanticCustomError("one_of_each", "{message}", {"message": message})
 
-    min_manipulability_m3: NotNegative
-    min_task_determinant_m3: NotNegative
+
+class Thresholds(_Table):
+    """What counts as well conditioned, as shares of the cube of the arm's reach or in m^3."""
+
+    min_manipulability: NotNegative | None = None
+    min_manipulability_m3: NotNegative | None = None
+    min_task_determinant: NotNegative | None = None
+    min_task_determinant_m3: NotNegative | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        _one_of_each(self, "min_manipulability", "min_task_determinant")
+        return self
 
 
 class Continuity(_Table):
@@ -183,9 +200,15 @@ class Continuity(_Table):
 
     base_step_rad: Positive
     step_per_length_rad_per_m: NotNegative
-    near_singular_determinant_m3: NotNegative
+    near_singular_determinant: NotNegative | None = None
+    near_singular_determinant_m3: NotNegative | None = None
     probe_spacing_m: Positive
     validity_spacing_m: Positive | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        _one_of_each(self, "near_singular_determinant")
+        return self
 
 
 Share = Annotated[FiniteFloat, Field(ge=0, lt=1)]

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.collision import Mask, body_poses, body_shape
 from cellcolor.frontend.robot import Array, Body, Robot
 from cellcolor.frontend.samples import sample_mesh
@@ -45,11 +46,18 @@ class Solid:
 
     A mesh is a shell: a body wholly inside a closed one does not touch it. That cannot happen
     unnoticed to an arm whose bodies touch one another in a row and of which a part is outside.
+
+    ``width`` is the second of its three extents, in m: of a plate not how thick it is.
     """
 
     def __init__(
-        self, shape: fcl.CollisionObject, distances: Distances, near: Near | None = None
+        self,
+        shape: fcl.CollisionObject,
+        width: float,
+        distances: Distances,
+        near: Near | None = None,
     ) -> None:
+        self.width = width
         self._shape, self._distances, self._near = shape, distances, near
         self._request = fcl.CollisionRequest()
 
@@ -141,12 +149,18 @@ class Solid:
         return touching
 
 
-def mesh_solid(vertices: Array, faces: Faces) -> Solid:
-    """A triangle mesh in the world."""
+def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Solid:
+    """A triangle mesh in the world.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    deadline.check()
     model = fcl.BVHModel()
     model.beginModel(len(faces), len(vertices))
     model.addSubModel(vertices, faces)
     model.endModel()
+    deadline.check()
     samples, slack = sample_mesh(vertices, faces, _SPACING, _SAMPLES)
     lowest, highest = vertices.min(axis=0), vertices.max(axis=0)
     extent = highest - lowest
@@ -169,6 +183,7 @@ def mesh_solid(vertices: Array, faces: Faces) -> Solid:
         outside = np.sqrt(np.einsum("ij,ij->i", beyond, beyond))
         return np.maximum(outside, to_mesh(stored - off_by)), stored + off_by
 
+    deadline.check()
     tree = cKDTree(samples, balanced_tree=False, compact_nodes=False)
 
     def near(points: Array, reach: float) -> tuple[Array, Array]:
@@ -184,7 +199,8 @@ def mesh_solid(vertices: Array, faces: Faces) -> Solid:
         """
         return np.sqrt(np.maximum(np.maximum(to_sample, 0.0) ** 2 - slack**2, 0.0))
 
-    return Solid(fcl.CollisionObject(model, fcl.Transform()), distances, near)
+    shape = fcl.CollisionObject(model, fcl.Transform())
+    return Solid(shape, sorted(extent.tolist())[1], distances, near)
 
 
 def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -> Solid:
@@ -192,20 +208,20 @@ def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -
     turn, center = rotation_from_rpy(*obstacle.rpy_rad), np.array(obstacle.position_m)
     match obstacle:
         case BoxObstacle(size_m=size):
-            shape = fcl.Box(*size)
+            shape, extents = fcl.Box(*size), size
 
             def outside(local: Array) -> Array:
                 return np.asarray(np.abs(local) - np.array(size) / 2)
 
         case CylinderObstacle(radius_m=radius, height_m=height):
-            shape = fcl.Cylinder(radius, height)
+            shape, extents = fcl.Cylinder(radius, height), (2 * radius, 2 * radius, height)
 
             def outside(local: Array) -> Array:
                 across = np.hypot(local[:, 0], local[:, 1]) - radius
                 return np.column_stack([across, np.abs(local[:, 2]) - height / 2])
 
         case SphereObstacle(radius_m=radius):
-            shape = fcl.Sphere(radius)
+            shape, extents = fcl.Sphere(radius), (2 * radius,) * 3
 
             def outside(local: Array) -> Array:
                 return np.asarray(np.linalg.norm(local, axis=1)[:, None] - radius)
@@ -215,4 +231,5 @@ def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -
         distance = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
         return distance, distance
 
-    return Solid(fcl.CollisionObject(shape, fcl.Transform(turn, center)), distances)
+    placed = fcl.CollisionObject(shape, fcl.Transform(turn, center))
+    return Solid(placed, sorted(extents)[1], distances)

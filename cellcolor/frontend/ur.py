@@ -61,6 +61,11 @@ class UrGeometry:
     sign: Array
     offset: Array
 
+    @property
+    def arm_reach(self) -> float:
+        """Farther than this the tip cannot get from the shoulder: the sum of the lengths, m."""
+        return -self.a2 - self.a3 + self.d4 + self.d5 + self.reach
+
 
 def ur_geometry(robot: Robot) -> UrGeometry:
     """Derive the constants from the joint axes at zero.

@@ -14,12 +14,14 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.collision import (
     Mask,
     body_ends,
     hits_ground,
     hits_itself,
 )
+from cellcolor.frontend.conditioning import Conditioning
 from cellcolor.frontend.kinematics import (
     Poses,
     forward,
@@ -119,13 +121,22 @@ class Judge:
     """The tests of one robot, setup and scene."""
 
     def __init__(
-        self, robot: Robot, setup: Setup, scene: Scene, obstacles: list[Solid], target: Solid
+        self,
+        robot: Robot,
+        setup: Setup,
+        limits: Conditioning,
+        scene: Scene,
+        obstacles: list[Solid],
+        target: Solid,
+        deadline: Deadline = NEVER,
     ) -> None:
         """``obstacles`` and ``target``, the object, stand in the world.
 
+        ``deadline`` is when to give up, asked in between (:class:`OutOfTime`).
         ``end_radii`` (ends,) are those of the bodies of :attr:`Verdicts.ends`, m.
         """
         self._robot, self._setup, self._scene = robot, setup, scene
+        self._limits, self._deadline = limits, deadline
         self._obstacles, self._target = obstacles, target
         self._moving = [index for index, body in enumerate(robot.bodies) if body.joint > 0]
         self.end_radii = np.repeat([robot.bodies[index].radius for index in self._moving], 2)
@@ -133,19 +144,24 @@ class Judge:
 
     def __call__(self, configurations: Array) -> Verdicts:
         """Test configurations (k, 6) in rad, NaN where there is none."""
-        parts = [
-            self._judged(configurations[first : first + _AT_ONCE])
-            for first in range(0, max(len(configurations), 1), _AT_ONCE)
-        ]
-        return Verdicts(
-            np.concatenate([part.configurations for part in parts]),
-            np.concatenate([part.reasons for part in parts]),
-            np.concatenate([part.determinants for part in parts]),
-            np.concatenate([part.ends for part in parts], axis=1),
+        count = len(configurations)
+        # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
+        whole = Verdicts(
+            np.empty_like(configurations),
+            np.empty(count, dtype=np.uint8),
+            np.empty(count),
+            np.empty((len(self.end_radii), count, 3)),
         )
+        for first in range(0, count, _AT_ONCE):
+            self._deadline.check()
+            rows = slice(first, first + _AT_ONCE)
+            part = self._judged(configurations[rows])
+            whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
+            whole.determinants[rows], whole.ends[:, rows] = part.determinants, part.ends
+        return whole
 
     def _judged(self, configurations: Array) -> Verdicts:
-        robot, on, limits = self._robot, self._setup.constraints, self._setup.thresholds
+        robot, on, limits = self._robot, self._setup.constraints, self._limits
         reasons = np.full(len(configurations), Reason.VALID, dtype=np.uint8)
         reasons[np.isnan(configurations[:, 0])] = Reason.NO_SOLUTION
         moved = configurations.copy()
@@ -172,11 +188,11 @@ class Judge:
             tests += [
                 (
                     Reason.MANIPULABILITY,
-                    lambda rows: manipulability(linear[rows]) < limits.min_manipulability_m3,
+                    lambda rows: manipulability(linear[rows]) < limits.min_manipulability,
                 ),
                 (
                     Reason.TASK_DETERMINANT,
-                    lambda rows: determinant[rows] < limits.min_task_determinant_m3,
+                    lambda rows: determinant[rows] < limits.min_task_determinant,
                 ),
             ]
         if on.collision:

@@ -29,10 +29,11 @@ from cellcolor.frontend.scene import Continuity
 from cellcolor.frontend.surfaces import Surface
 from cellcolor.frontend.validity import Candidates, Reason
 
+NEAR = 0.01  # m^3
 POLICY = Continuity(
     base_step_rad=0.1,
     step_per_length_rad_per_m=1.0,
-    near_singular_determinant_m3=0.01,
+    near_singular_determinant_m3=NEAR,
     probe_spacing_m=0.05,
 )
 angles = st.lists(st.floats(-20, 20), min_size=6, max_size=6)
@@ -84,7 +85,7 @@ class Plane:
         return color(self.candidates.valid, self.candidates.configurations, links, names)
 
     def linked(self, policy: Continuity = POLICY) -> Array:
-        return link(self.surface, self.edges, self.candidates, policy, self.probe)
+        return link(self.surface, self.edges, self.candidates, policy, NEAR, self.probe)
 
 
 def test_slow_motion_is_linked_without_probing() -> None:
@@ -109,7 +110,7 @@ def test_many_probes_are_taken_in_batches(monkeypatch: pytest.MonkeyPatch) -> No
         return plane.probe(points, directions, branch)
 
     monkeypatch.setattr("cellcolor.frontend.continuity._PROBES_AT_ONCE", 50)
-    batched = link(plane.surface, plane.edges, plane.candidates, POLICY, probe)
+    batched = link(plane.surface, plane.edges, plane.candidates, POLICY, NEAR, probe)
     assert (batched == whole).all() and 0 < largest <= 50
 
 
@@ -135,7 +136,7 @@ def test_ill_conditioned_point_on_the_way_is_not_linked() -> None:
     def probe(points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
         return plane.joints(points, branch), (points[:, 0] < 0.38) | (points[:, 0] > 0.46)
 
-    found = link(plane.surface, plane.edges, plane.candidates, POLICY, probe)
+    found = link(plane.surface, plane.edges, plane.candidates, POLICY, NEAR, probe)
     across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.42).sum(axis=1) == 1
     assert (found[:, 0] == ~across).all()
 
