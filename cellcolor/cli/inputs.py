@@ -9,12 +9,14 @@ from pathlib import Path
 
 from cellcolor.cli.extras import extras_for
 from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.progress import build_progress_of
 from cellcolor.cli.terminal import complain
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.data.files import read_document
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 
@@ -41,17 +43,19 @@ def is_scene(path: Path) -> bool:
     return path.suffix == ".toml"
 
 
-def build_scene(path: Path) -> Scene:
+def build_scene(path: Path, deadline: Deadline = NEVER) -> Scene:
     """Run the front end.
 
     Raises:
         InputError: the scene cannot be used, or the front end is not installed.
+        OutOfTime: the deadline came first.
     """
     with extras_for(path):
         from cellcolor.frontend import build_surface
         from cellcolor.frontend.sidefile import side_file
     INTERRUPTS.check()
-    result = build_surface(path)
+    with build_progress_of(path) as report_stage:
+        result = build_surface(path, deadline, report_stage)
     INTERRUPTS.check()
     report = result.report
     return Scene(result.surface, str(report), report.warnings, partial(side_file, result))
@@ -77,21 +81,28 @@ def read_graph(path: Path) -> Instance | LabelledSurface:
         raise error.in_file(str(path)) from error
 
 
-def graph_of(surface: LabelledSurface, path: Path, reference: str | None) -> Instance:
+def graph_of(
+    surface: LabelledSurface, path: Path, reference: str | None, deadline: Deadline = NEVER
+) -> Instance:
     """The topological graph of a surface.
 
     Args:
         surface: the labelled surface.
         path: the file it came from, for errors.
         reference: where the instance's file will say that the surface is; None leaves that out.
+        deadline: when to give up.
+
+    Raises:
+        InputError: the surface cannot be decomposed.
+        OutOfTime: the deadline came first.
     """
     try:
-        return decompose(surface, reference)
+        return decompose(surface, reference, deadline)
     except InputError as error:
         raise error.in_file(str(path)) from error
 
 
-def read_instance(path: Path) -> Instance:
+def read_instance(path: Path, deadline: Deadline = NEVER) -> Instance:
     """An instance from anything that can be solved.
 
     A surface or scene becomes the instance that ``build`` writes beside it. What the front end
@@ -99,11 +110,12 @@ def read_instance(path: Path) -> Instance:
 
     Raises:
         InputError: with the file named.
+        OutOfTime: the deadline came before there was an instance.
     """
     if is_scene(path):
-        scene = build_scene(path)
+        scene = build_scene(path, deadline)
         for warning in scene.warnings:
             complain(f"{path}: warning: {warning}")
-        return graph_of(scene.surface, path, f"{path.stem}.surface.json")
+        return graph_of(scene.surface, path, f"{path.stem}.surface.json", deadline)
     found = read_graph(path)
-    return found if isinstance(found, Instance) else graph_of(found, path, path.name)
+    return found if isinstance(found, Instance) else graph_of(found, path, path.name, deadline)

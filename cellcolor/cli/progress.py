@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import shown
 from cellcolor.solvers.interface import Progress
 
@@ -36,6 +37,23 @@ def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None] | None]:
             yield None
             return
         yield lambda count: show(f"{name}: {count} schemes so far")
+
+
+@contextmanager
+def build_progress_of(file: Path) -> Iterator[Callable[[str], None]]:
+    """A line with the time spent and what is being done, if there is a terminal.
+
+    Libraries that catch everything can swallow a signal; it is raised at the next stage.
+    """
+    name = shown(file.name)
+    with _line(f"{name}: building") as show:
+
+        def report(stage: str) -> None:
+            INTERRUPTS.check()
+            if show is not None:
+                show(f"{name}: {stage}")
+
+        yield report
 
 
 @contextmanager

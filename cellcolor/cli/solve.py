@@ -88,13 +88,18 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
         deadline = Deadline.after(request.time_limit, begun)
         begun = None
         try:
-            instance = read_instance(file)
+            instance = read_instance(file, deadline)
             options = replace(request.options, deadline=deadline)
             solution = _solve(instance, file, target, request, options)
         except Interrupted:
             _say_failed(request, file, f"{file}: interrupted, nothing found yet")
             codes.append(Exit.STOPPED)
             break
+        except OutOfTime:
+            message = f"{file}: unknown: the time limit came before any division was known"
+            _say_failed(request, file, message, status="unknown")
+            codes.append(Exit.STOPPED)
+            continue
         except CellcolorError as error:
             named = isinstance(error, InputError) and error.file
             _say_failed(request, file, str(error) if named else f"{file}: {error}")
@@ -148,10 +153,10 @@ def _start(instance: Instance, path: Path, options: Options) -> Start:
     return Start(solution.cells, solution.seams)
 
 
-def _say_failed(request: Request, file: Path, message: str) -> None:
+def _say_failed(request: Request, file: Path, message: str, **known: str) -> None:
     complain(message)
     if request.as_json:
-        print_json({"file": str(file), "error": message})
+        print_json({"file": str(file)} | known | {"error": message})
 
 
 def _targets(request: Request) -> list[Path | None]:

@@ -173,6 +173,7 @@ def _build(stage: Stage, begin: Progress, seconds: dict[str, float]) -> BuildRes
         lap("validity between vertices")
     begin("colors and cracks")
     coloring = color(valid, configurations, node_links(edges, linked), BRANCHES)
+    stage.deadline.check()
     slivers = None
     if setup.slivers is not None:
         areas = surface.vertex_areas()

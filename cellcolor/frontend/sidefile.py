@@ -19,7 +19,7 @@ def side_file(result: BuildResult) -> bytes:
 
     ``branches`` (8,) names; ``reason_names`` (10,) what the codes mean; ``reasons`` (n, 8) uint8
     codes; ``configurations`` (n, 8, 6) float64 in rad, NaN where a branch has no solution;
-    ``node_color`` (n, 8) int16, the color of the surface file that each candidate has, -1 for
+    ``node_color`` (n, 8) int32, the color of the surface file that each candidate has, -1 for
     none; ``surface_sha256`` the fingerprint of the surface that all this is about. The same
     result gives the same bytes.
     """
@@ -30,7 +30,7 @@ def side_file(result: BuildResult) -> bytes:
         reason_names=np.array([reason.text for reason in Reason]),
         reasons=result.reasons,
         configurations=result.configurations,
-        node_color=result.node_color.astype(np.int16),
+        node_color=result.node_color.astype(np.int32),
         surface_sha256=np.array(result.surface.sha256),
     )
     with zipfile.ZipFile(stream, "a") as archive:

@@ -8,10 +8,12 @@ joint free, and up to eight solutions of the other five: shoulder x elbow x wris
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.kinematics import forward
@@ -63,8 +65,17 @@ class UrGeometry:
 
     @property
     def arm_reach(self) -> float:
-        """Farther than this the tip cannot get from the shoulder: the sum of the lengths, m."""
-        return -self.a2 - self.a3 + self.d4 + self.d5 + self.reach
+        """The farthest that the tip gets from the shoulder, joint limits aside, m.
+
+        Upper arm and forearm are stretched out towards the rest, which makes the least of it when
+        the tool is turned by some angle out of the arm's plane.
+        """
+
+        def shortfall(turn: float) -> float:
+            in_plane = -self.a2 - self.a3 + math.hypot(self.d5, self.reach * math.sin(turn))
+            return -math.hypot(in_plane, self.d4 + self.reach * math.cos(turn))
+
+        return -float(minimize_scalar(shortfall, bounds=(0.0, math.pi), method="bounded").fun)
 
 
 def ur_geometry(robot: Robot) -> UrGeometry:

@@ -196,3 +196,54 @@ def test_tool_off_the_axis_is_refused(written: Callable[..., Path]) -> None:
     folder = written(TOOL, r'<origin xyz="0 0 0.1"/>', '<origin xyz="0.01 0 0.1"/>')
     with pytest.raises(InputError, match="must lie on this joint's axis"):
         ur_geometry(load(folder))
+
+
+def shapeless(text: str, link: str) -> str:
+    """A URDF's text without the collision shapes of links whose names match."""
+
+    def bare(found: re.Match[str]) -> str:
+        return re.sub(r"<collision>.*?</collision>", "", found.group(), flags=re.DOTALL)
+
+    return re.sub(rf'<link name="{link}">.*?</link>', bare, text, flags=re.DOTALL)
+
+
+def test_links_that_cannot_collide_are_named(tmp_path: Path) -> None:
+    assert load(ROBOTS).warnings == ()  # frames such as the tip are no things
+    for file in (ARM, TOOL):
+        (tmp_path / file).write_text((ROBOTS / file).read_text())
+    text = (ROBOTS / ARM).read_text()
+    (tmp_path / ARM).write_text(shapeless(text, "(upper_arm|wrist_2)_link"))
+    (warning,) = load(tmp_path).warnings
+    assert warning.endswith("'upper_arm_link', 'wrist_2_link'")
+    for file in (ARM, TOOL):
+        (tmp_path / file).write_text(shapeless((ROBOTS / file).read_text(), r"[^\"]*"))
+    (warning,) = load(tmp_path).warnings
+    assert "no collision shapes at all" in warning
+
+
+FOLLOWER = (
+    '<joint name="finger" type="{kind}"><parent link="tool_body"/><child link="nail"/>'
+    '<origin xyz="0 0.01 0.05"/><axis xyz="0 1 0"/>'
+    '<limit lower="0" upper="1" effort="1" velocity="1"/>'
+    '<mimic joint="wrist_1_joint"/></joint><link name="nail"/></robot>'
+)
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
+def test_followers_beside_the_chain_stand_still(written: Callable[..., Path], kind: str) -> None:
+    robot = load(written(TOOL, "</robot>", FOLLOWER.format(kind=kind)))
+    (warning,) = robot.warnings
+    assert "mimic" in warning and warning.endswith("'finger'")
+    assert robot.model.nq == 6
+
+
+def test_followers_in_the_chain_are_refused(written: Callable[..., Path]) -> None:
+    # Of the elbow: an arm whose forearm follows the upper arm.
+    joint = r'(<joint name="elbow_joint" type="revolute">)'
+    folder = written(ARM, joint, r'\1<mimic joint="shoulder_lift_joint" multiplier="-1"/>')
+    with pytest.raises(InputError, match="may not follow") as caught:
+        load(folder)
+    assert (caught.value.file, caught.value.field) == (
+        str(folder / ARM),
+        "joint[elbow_joint].mimic",
+    )

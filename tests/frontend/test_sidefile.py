@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from shipped import SCENES
 
 from cellcolor.cli import main
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.frontend import Reason, build_surface
 from cellcolor.frontend.sidefile import side_file
+from cellcolor.viz.reasons import read_verdicts
 
 
 def test_build_writes_it_beside_the_surface(scene: Callable[..., Path], tmp_path: Path) -> None:
@@ -33,6 +36,21 @@ def test_build_writes_it_beside_the_surface(scene: Callable[..., Path], tmp_path
 def test_same_result_same_bytes(scene: Callable[..., Path]) -> None:
     result = build_surface(scene(target_vertices=50))
     assert side_file(result) == side_file(result)
+
+
+def test_more_colors_than_sixteen_bits_tell(scene: Callable[..., Path], tmp_path: Path) -> None:
+    """A noisy surface can have a color for each vertex; files with 16 bits stay readable."""
+    result = build_surface(scene(target_vertices=50))
+    surface = replace(result.surface, meta={"side_file": "many.npz"})
+    numbers = np.arange(result.node_color.size).reshape(result.node_color.shape) + 70_000
+    (tmp_path / "many.npz").write_bytes(side_file(replace(result, node_color=numbers)))
+    assert np.array_equal(read_verdicts(surface, tmp_path / "many.json").node_color, numbers)
+    for name in ("wok", "square"):
+        stored = SCENES / f"{name}.surface.json"
+        with np.load(SCENES / f"{name}.reasons.npz") as side:
+            assert side["node_color"].dtype == np.int16
+        colors = read_verdicts(LabelledSurface.read(stored), stored).node_color
+        assert colors.min() == -1
 
 
 def test_side_file_of_another_build(
