@@ -228,7 +228,6 @@ CLAIMS = {
         document(SOLUTION, put("segments", to=None), "segments"),
     ),
     "plan for an instance": (PAPER / "ring.json", Bad(json.dumps(PLAN), "format")),
-    "solution for a surface": (PAPER / "ring.surface.json", Bad(json.dumps(SOLUTION), "format")),
     "plan with a color as text": (
         PAPER / "ring.surface.json",
         document(PLAN, put("vertex_colors", 0, to="red"), "vertex_colors[0]"),

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-from cellcolor.check.cutting import cutting_paths
+from math import isclose
+
+from cellcolor.check.cuts import cutting_paths
 from cellcolor.check.whole import segments_of_whole_cells
 from cellcolor.data.bound import greatest
+from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 
@@ -22,14 +25,14 @@ def number_problems(instance: Instance, solution: Solution, segments: int | None
     problems = _bound_problems(instance, solution, segments)
     problems += _proof_problems(solution, segments)
     problems += _scheme_problems(instance, solution)
-    problems += _cutting_problems(solution)
+    problems += _cutting_problems(instance, solution)
     if segments is not None:
         if solution.segments != segments:
             problems.append(f"segments: says {solution.segments}, the division has {segments}")
         if solution.lift_offs != max(0, segments - 1):
             problems.append(f"lift_offs: says {solution.lift_offs}, must be {max(0, segments - 1)}")
-    known = instance.coverage
-    if solution.coverage is not None and known is not None and solution.coverage != known:
+    own, said = instance.coverage, solution.coverage
+    if own is not None and said is not None and not _agree(own, said):
         problems.append("coverage: is not that of the instance")
     return problems
 
@@ -57,6 +60,12 @@ def claims(instance: Instance, solution: Solution) -> dict[str, object]:
     if solution.coverage is not None and instance.coverage is None:
         found["coverage"] = solution.coverage.to_document()
     return found
+
+
+def _agree(one: Coverage, other: Coverage) -> bool:
+    """Another processor may round the sums of areas in another way."""
+    pairs = zip(one.to_document().values(), other.to_document().values(), strict=True)
+    return all(isclose(a, b, rel_tol=1e-6, abs_tol=1e-9) for a, b in pairs)
 
 
 def _bound_problems(instance: Instance, solution: Solution, segments: int | None) -> list[str]:
@@ -124,7 +133,7 @@ def _scheme_problems(instance: Instance, solution: Solution) -> list[str]:
     return problems
 
 
-def _cutting_problems(solution: Solution) -> list[str]:
+def _cutting_problems(instance: Instance, solution: Solution) -> list[str]:
     count, bound = solution.cutting_paths, solution.cutting_paths_lower_bound
     if solution.cells is None:
         # Of the fewest segments, that is, and how many these are is not known.
@@ -135,7 +144,7 @@ def _cutting_problems(solution: Solution) -> list[str]:
     if count is None or bound is None:
         return ["cutting_paths: goes with cutting_paths_lower_bound"]
     problems = []
-    own = cutting_paths(solution.cells)
+    own = cutting_paths(instance, solution.cells, solution.seams)
     if count != own:
         problems.append(f"cutting_paths: says {count}, the division has {own}")
     if bound > own:

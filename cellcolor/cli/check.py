@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
+from cellcolor.check.known import contradictions
+from cellcolor.check.numbers import claims
 from cellcolor.check.solution import check_division, check_solution
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.inputs import read_graph
+from cellcolor.cli.inputs import instance_of, read_subject
 from cellcolor.cli.terminal import print_json, say
+from cellcolor.data import plan as plan_file
+from cellcolor.data.files import read_document
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
@@ -17,12 +22,19 @@ from cellcolor.errors import InputError
 
 
 def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) -> Exit:
-    """Say whether a claim is valid, and what its numbers are."""
-    graph = read_graph(subject)
-    if isinstance(graph, Instance):
-        verdict = _check_solution(graph, claim)
-    else:
+    """Say whether a claim is valid, and what its numbers are.
+
+    Args:
+        subject: an instance, a labelled surface or a scene.
+        claim: a solution of it, or a plan on its surface.
+        time_limit: seconds for the proven range that a plan is compared with.
+        as_json: one JSON object instead of lines.
+    """
+    graph = read_subject(subject)
+    if isinstance(graph, LabelledSurface) and _is_plan(claim):
         verdict = _check_plan(graph, subject, claim, time_limit)
+    else:
+        verdict = _check_solution(instance_of(graph, subject), claim)
     if as_json:
         print_json({"file": str(claim)} | verdict)
     else:
@@ -30,10 +42,20 @@ def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) ->
     return Exit.DONE if verdict["valid"] else Exit.INVALID
 
 
+def _is_plan(claim: Path) -> bool:
+    """A plan says so; all else is read as a solution, JSON Lines with schemes among it."""
+    try:
+        return read_document(claim).get("format") == plan_file.FORMAT
+    except InputError:
+        return False
+
+
 def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
     solution = Solution.read(claim)
     report = check_solution(instance, solution)
     problems = list(report.problems)
+    if report.valid:
+        problems += contradictions(instance, solution)
     keys: set[SchemeKey] = set()
     count = 0
     for count, division in enumerate(read_schemes(claim), start=1):
@@ -55,6 +77,7 @@ def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
         "segments": report.segments,
         "lift_offs": None if report.segments is None else max(0, report.segments - 1),
         "status": solution.status,
+        "claimed": claims(instance, solution) if report.valid else {},
     }
     return verdict | ({"schemes": count} if count else {})
 
@@ -93,6 +116,9 @@ def _print(claim: Path, verdict: dict[str, Any]) -> None:
         say(f"  status {verdict['status']}")
     if "schemes" in verdict:
         say(f"  {verdict['schemes']} schemes")
+    if verdict.get("claimed"):
+        claimed = (f"{name} {json.dumps(value)}" for name, value in verdict["claimed"].items())
+        say(f"  claimed, not verified: {', '.join(claimed)}")
     if verdict.get("lower_bound") is not None:
         lower, upper = verdict["lower_bound"], verdict["upper_bound"]
         least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"

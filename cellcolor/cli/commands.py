@@ -171,7 +171,7 @@ def solve(
 
 
 @cellcolor.command()
-@click.argument("subject", metavar="INSTANCE.json|SURFACE.json", type=_PATH)
+@click.argument("subject", metavar="FILE", type=_PATH)
 @click.argument("claim", metavar="SOLUTION.json|PLAN.json", type=_PATH)
 @click.option(
     "--time-limit",
@@ -183,7 +183,10 @@ def solve(
 )
 @click.option("--json", "as_json", is_flag=True, help="One JSON object.")
 def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
-    """Check a solution against its instance, or a plan against its labelled surface."""
+    """Check a solution against what was solved, or a plan against its labelled surface.
+
+    FILE is an instance, a labelled surface or a scene; a plan needs one of the last two.
+    """
     from cellcolor.cli.check import check_files
 
     return check_files(subject, claim, time_limit, as_json)
@@ -236,11 +239,11 @@ def show(
 ) -> int:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
-    With a solution after its instance: by segment.
+    With a solution after what was solved: by segment.
     """
     asked = [color is not None, reason, graph, vertex is not None, len(files) > 1]
     if len(files) > 2:
-        raise click.UsageError("one file to show, or an instance and its solution")
+        raise click.UsageError("one file to show, or one and its solution")
     if sum(asked) > 1:
         raise click.UsageError(
             "one of --color, --reason, --graph, --vertex and a solution at a time"

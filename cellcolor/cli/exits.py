@@ -16,6 +16,6 @@ class Exit(IntEnum):
 
 
 def worst(codes: Iterable[Exit]) -> Exit:
-    """The exit code for several files: bad input wins over a limit."""
+    """The exit code for several files: bad input wins over a contradiction, that over a limit."""
     found = set(codes)
-    return next((c for c in (Exit.BAD_INPUT, Exit.STOPPED, Exit.INVALID) if c in found), Exit.DONE)
+    return next((c for c in (Exit.BAD_INPUT, Exit.INVALID, Exit.STOPPED) if c in found), Exit.DONE)

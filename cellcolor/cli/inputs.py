@@ -102,20 +102,48 @@ def graph_of(
         raise error.in_file(str(path)) from error
 
 
-def read_instance(path: Path, deadline: Deadline = NEVER) -> Instance:
-    """An instance from anything that can be solved.
+def read_subject(path: Path, deadline: Deadline = NEVER) -> Instance | LabelledSurface:
+    """An instance, or the labelled surface that is in the file or that a scene makes.
 
-    A surface or scene becomes the instance that ``build`` writes beside it. What the front end
-    warns of goes to standard error.
+    What the front end warns of goes to standard error.
+
+    Raises:
+        InputError: with the file named.
+        OutOfTime: the deadline came before there was a surface.
+    """
+    if not is_scene(path):
+        return read_graph(path)
+    scene = build_scene(path, deadline)
+    for warning in scene.warnings:
+        complain(f"{path}: warning: {warning}")
+    return scene.surface
+
+
+def instance_of(
+    subject: Instance | LabelledSurface, path: Path, deadline: Deadline = NEVER
+) -> Instance:
+    """The instance that can be solved: a surface becomes what ``build`` writes beside it.
+
+    Args:
+        subject: what :func:`read_subject` found in the file.
+        path: the file.
+        deadline: when the decomposition has to end.
 
     Raises:
         InputError: with the file named.
         OutOfTime: the deadline came before there was an instance.
     """
-    if is_scene(path):
-        scene = build_scene(path, deadline)
-        for warning in scene.warnings:
-            complain(f"{path}: warning: {warning}")
-        return graph_of(scene.surface, path, f"{path.stem}.surface.json", deadline)
-    found = read_graph(path)
-    return found if isinstance(found, Instance) else graph_of(found, path, path.name, deadline)
+    if isinstance(subject, Instance):
+        return subject
+    reference = f"{path.stem}.surface.json" if is_scene(path) else path.name
+    return graph_of(subject, path, reference, deadline)
+
+
+def read_instance(path: Path, deadline: Deadline = NEVER) -> Instance:
+    """An instance from anything that can be solved.
+
+    Raises:
+        InputError: with the file named.
+        OutOfTime: the deadline came before there was an instance.
+    """
+    return instance_of(read_subject(path, deadline), path, deadline)

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import click
-
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.extras import extras_for
-from cellcolor.cli.inputs import graph_of, is_scene, read_graph
+from cellcolor.cli.inputs import instance_of, is_scene, read_graph
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import say
 from cellcolor.data.instance import OUTSIDE, Instance
@@ -69,7 +67,7 @@ class _Subject:
         """The topological graph."""
         if self.instance is not None:
             return self.instance
-        return graph_of(self.mesh(), self.path, self.path.name)
+        return instance_of(self.mesh(), self.path)
 
     def mesh(self) -> LabelledSurface:
         """The labelled surface.
@@ -89,8 +87,6 @@ def show_files(files: tuple[Path, ...], output: Path, view: View) -> Exit:
     if kind is None:
         raise InputError(str(output), None, "must end in .html, .png or .svg")
     check_output(output, kind, files)
-    if len(files) > 1 and is_scene(files[0]):
-        raise click.UsageError("a solution goes with the instance that was solved, not a scene")
     with extras_for(files[0]):
         subject = _read(files[0])
     with extras_for(output):

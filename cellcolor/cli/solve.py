@@ -15,6 +15,7 @@ from typing import IO
 
 import click
 
+from cellcolor.check.known import contradictions
 from cellcolor.check.solution import check_solution
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
@@ -105,10 +106,14 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             _say_failed(request, file, str(error) if named else f"{file}: {error}")
             codes.append(Exit.BAD_INPUT)
             continue
+        wrong = contradictions(instance, solution)
         if request.as_json:
-            print_json({"file": str(file)} | solution.to_document())
+            fault = {"error": "; ".join(wrong)} if wrong else {}
+            print_json({"file": str(file)} | solution.to_document() | fault)
         else:
             print_solution(instance, solution)
+        for problem in wrong:
+            complain(f"{file}: contradiction: {problem}")
         if instance.nothing_to_cover:
             complain(f"{file}: {nothing_to_cover(instance)}")
         solved.append((file, instance, solution))
@@ -117,7 +122,7 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             and solution.complete is not False
             and solution.cutting_paths == solution.cutting_paths_lower_bound
         )
-        codes.append(Exit.DONE if done else Exit.STOPPED)
+        codes.append(Exit.INVALID if wrong else Exit.DONE if done else Exit.STOPPED)
         if INTERRUPTS.seen or (target is None and unheard()):
             break
     if len(codes) < len(request.files):
