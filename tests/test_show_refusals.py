@@ -134,7 +134,6 @@ def test_side_file_that_is_none(tmp_path: Path, capsys: Capture) -> None:
         ["a.toml", "--vertex", "1", "-o", "x.png"],
         ["a.toml", "--vertex", "-1", "--branch", "0", "-o", "x.png"],
         ["a.toml", "--branch", "0", "-o", "x.png"],
-        ["a.toml", "b.json", "-o", "x.png"],
     ],
     ids=" ".join,
 )
