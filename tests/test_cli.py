@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import json
 import signal
 import subprocess
 import sys
 from collections.abc import Iterator
+from contextlib import nullcontext
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -17,6 +19,7 @@ from documents import INSTANCE
 from library import INSTANCES, PAPER
 
 import cellcolor.cli.commands
+import cellcolor.cli.solve
 import cellcolor.solvers.cpsat.enumeration
 import cellcolor.solvers.run
 from cellcolor.data.instance import Cell, Instance
@@ -386,6 +389,28 @@ class TestAllSchemes:
         assert (line["status"], line["schemes"], line["complete"]) == ("optimal", 1, False)
         assert len(list(read_schemes(out))) == 1
         assert list(tmp_path.iterdir()) == [out]
+
+    @pytest.mark.parametrize("moment", ["before", "within", "after"])
+    def test_a_signal_while_a_scheme_is_written(
+        self, moment: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The solution counts exactly the schemes that follow it, all of them whole."""
+
+        class Spool(io.BytesIO):
+            def write(self, line: Any) -> int:
+                if not self.getvalue():
+                    return super().write(line)
+                if moment != "before":
+                    super().write(line[: len(line) // 2] if moment == "within" else line)
+                signal.raise_signal(signal.SIGINT)
+                raise AssertionError("the signal was not heard")
+
+        monkeypatch.setattr(cellcolor.cli.solve, "_spool", lambda _: nullcontext(Spool()))
+        out = tmp_path / "some.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out) == 3
+        assert (Solution.read(out).schemes, len(list(read_schemes(out)))) == (1, 1)
+        assert run("check", ZEROS, out) == 0
+        assert "1 schemes" in capsys.readouterr().out
 
     def test_too_large(
         self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch

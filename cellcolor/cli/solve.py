@@ -278,20 +278,26 @@ def _with_schemes(
     if solution.status != "optimal" or solution.segments is None:
         return replace(solution, schemes=0, complete=False)
     started = time.monotonic()
-    count, complete, notes = 0, True, solution.notes
+    complete, notes = True, solution.notes
+    # How many there are, and where the last of them ends: changed together, so that a signal in
+    # between leaves no scheme uncounted and none in half.
+    found = (0, 0)
     try:
         for division in enumerate_schemes(instance, options, request.solver, solution.segments):
-            if count == request.limit:
+            if found[0] == request.limit:
                 complete = False
                 break
-            count += 1
             if spool is not None:
                 spool.write(scheme_line(division).encode() + b"\n")
+            found = (found[0] + 1, 0 if spool is None else spool.tell())
             if report is not None:
-                report(count)
+                report(found[0])
     except OutOfTime:
         complete = False
     except TooLarge as error:
         complete, notes = False, (*notes, str(error))
+    count, end = found
+    if spool is not None:
+        spool.truncate(end)
     seconds = solution.seconds + time.monotonic() - started
     return replace(solution, schemes=count, complete=complete, seconds=seconds, notes=notes)
