@@ -25,7 +25,6 @@ from cellcolor.frontend.continuity import (
     find_cracks,
     link,
     node_links,
-    stays_in_limits,
 )
 from cellcolor.frontend.kinematics import (
     forward,
@@ -38,6 +37,7 @@ from cellcolor.frontend.report import BuildReport, make_report
 from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Scene, Setup
 from cellcolor.frontend.slivers import SliverReport, clean
+from cellcolor.frontend.smooth import Measure
 from cellcolor.frontend.survey import survey
 from cellcolor.frontend.ur import BRANCHES
 from cellcolor.frontend.validity import Candidates, Reason
@@ -135,10 +135,10 @@ def _build(stage: Stage, begin: Progress, seconds: dict[str, float]) -> BuildRes
     )
     valid, configurations = candidates.valid, candidates.configurations
 
-    def probe(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Array, Mask]:
+    def probe(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Array, Array]:
         stage.deadline.check()
         between = stage.follow(points, directions, branch)
-        return between, _well_conditioned(robot, setup, stage.conditioning, between)
+        return between, _conditioned(robot, setup, stage.conditioning, between)
 
     def test(points: Array, directions: Array, branch: NDArray[np.intp]) -> tuple[Mask, Array]:
         found = judge(stage.follow(points, directions, branch))
@@ -147,14 +147,15 @@ def _build(stage: Stage, begin: Progress, seconds: dict[str, float]) -> BuildRes
     begin("continuity")
     started = time.perf_counter()
     linked = np.zeros((len(edges), valid.shape[1]), dtype=bool)
-    near_singular = stage.conditioning.near_singular_determinant
+    limits = (robot.lower, robot.upper) if setup.constraints.collision else None
+    measure = Measure(
+        setup.continuity,
+        stage.conditioning.near_singular_determinant,
+        # A turn about the tip moves the wrist, the crossing of axes 5 and 6, by this lever.
+        stage.geometry.reach,
+    )
     for part in _parts(len(edges), stage.deadline):
-        some = link(surface, edges[part], candidates, setup.continuity, near_singular, probe)
-        if setup.constraints.collision:
-            rows, branches = np.nonzero(some)
-            first, second = (configurations[ends, branches] for ends in edges[part][rows].T)
-            some[rows, branches] = stays_in_limits(robot.lower, robot.upper, first, second)
-        linked[part] = some
+        linked[part] = link(surface, edges[part], candidates, measure, limits, probe)
     lap("continuity")
     spacing = setup.continuity.validity_spacing_m
     if spacing is not None:
@@ -218,20 +219,23 @@ def _parts(count: int, deadline: Deadline) -> Iterator[slice]:
         yield slice(first, first + _AT_ONCE)
 
 
-def _well_conditioned(
-    robot: Robot, setup: Setup, limits: Conditioning, configurations: Array
-) -> Mask:
-    """Whether configurations (k, 6) exist and keep both conditioning thresholds, (k,)."""
-    good = ~np.isnan(configurations[:, 0])
-    poses = forward(robot, configurations[good])
+def _conditioned(robot: Robot, setup: Setup, limits: Conditioning, configurations: Array) -> Array:
+    """Task determinants (k,) in m^3 of configurations (k, 6).
+
+    NaN where there is no configuration, or one that fails a threshold on conditioning.
+    """
+    found = np.flatnonzero(~np.isnan(configurations[:, 0]))
+    poses = forward(robot, configurations[found])
     linear, angular = tip_jacobian(poses)
     determinant = task_determinant(linear, angular, poses.tool_axis)
-    if not setup.constraints.conditioning:
-        return good
-    good[good] = (manipulability(linear) >= limits.min_manipulability) & (
-        determinant >= limits.min_task_determinant
-    )
-    return good
+    if setup.constraints.conditioning:
+        good = (manipulability(linear) >= limits.min_manipulability) & (
+            determinant >= limits.min_task_determinant
+        )
+        determinant[~good] = np.nan
+    determinants = np.full(len(configurations), np.nan)
+    determinants[found] = determinant
+    return determinants
 
 
 def _vertex_colors(coloring: Coloring) -> tuple[tuple[int, ...], ...]:

@@ -46,6 +46,12 @@ class Surface:
         lengths: Array = np.linalg.norm(self.vertices[i] - self.vertices[j], axis=1)
         return lengths
 
+    def turns(self, edges: Faces) -> Array:
+        """Angles (k,) between the normals at the ends of mesh edges (k, 2), rad."""
+        i, j = edges.T
+        chord = np.linalg.norm(self.normals[i] - self.normals[j], axis=1)
+        return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
+
 
 def every_edge(faces: Faces) -> Faces:
     """The edges (k, 2) of faces (m, 3), each once, in lexicographic order."""

@@ -25,6 +25,12 @@ def wrapped(angle: Array) -> Array:
     return np.abs(np.remainder(angle + np.pi, 2 * np.pi) - np.pi)
 
 
+def shorter_way(first: Array, second: Array) -> tuple[Array, Array]:
+    """How far each joint gets below and above where it starts, on the shorter way, rad."""
+    step = np.remainder(second - first + np.pi, 2 * np.pi) - np.pi
+    return np.minimum(step, 0), np.maximum(step, 0)
+
+
 class Eaik:
     """EAIK's robot from Pinocchio's joint axes at zero."""
 
