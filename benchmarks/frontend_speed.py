@@ -56,15 +56,32 @@ class Loop:
             at = fcl.Transform(np.array(obstacle.position_m))
             self.obstacles.append(fcl.CollisionObject(shape, at))
         self.request = fcl.CollisionRequest()
+        # The shipped tool's body ends 10 mm above the tip, on the axis.
+        radius, length = stage.setup.task.contact_radius_m, 0.01
+        self.region = fcl.CollisionObject(fcl.Capsule(radius, length))
+        self.in_region = pin.SE3(np.eye(3), np.array([0.0, 0.0, -length / 2]))
 
     def touch(self, a: fcl.CollisionObject, b: fcl.CollisionObject) -> bool:
         return bool(fcl.collide(a, b, self.request, fcl.CollisionResult()))
+
+    def tip_blocked(self, pose: pin.SE3) -> bool:
+        region, ground = self.stage.setup.task.contact_radius_m, self.stage.scene.ground
+        if ground is not None:
+            behind = pose.act(2 * self.in_region.translation)
+            if min(pose.translation[2], behind[2]) - region < ground.height_m:
+                return True
+        middle = pose * self.in_region
+        self.region.setTransform(fcl.Transform(middle.rotation, middle.translation))
+        return any(self.touch(obstacle, self.region) for obstacle in self.obstacles)
 
     def __call__(self, q: Array) -> Reason:
         stage, robot = self.stage, self.stage.robot
         thresholds, task = stage.setup.thresholds, stage.setup.task
         if (q < robot.lower).any() or (q > robot.upper).any():
             return Reason.JOINT_LIMITS
+        pose = pin.framesForwardKinematics(self.model, self.data, q) or self.data.oMf[self.tip]
+        if self.tip_blocked(pose):
+            return Reason.TIP_BLOCKED
         jacobian = pin.computeFrameJacobian(
             self.model, self.data, q, self.tip, pin.ReferenceFrame.LOCAL
         )

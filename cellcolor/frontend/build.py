@@ -160,6 +160,9 @@ def _build(stage: Stage, begin: Progress, seconds: dict[str, float]) -> BuildRes
     spacing = setup.continuity.validity_spacing_m
     if spacing is not None:
         begin("validity between vertices")
+        if setup.constraints.collision:
+            for part in _parts(len(edges), stage.deadline):
+                linked[part] &= stage.tip.free_along(surface, edges[part])[:, None]
         near_border = at_domain_border(edges, valid)
         counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
         ends = verdicts.ends.reshape(-1, *valid.shape, 3)

@@ -21,6 +21,7 @@ from cellcolor.frontend.scene import MeshObstacle, Scene, Setup, load_scene, loa
 from cellcolor.frontend.sizes import check_points
 from cellcolor.frontend.solids import Solid, mesh_solid, primitive_solid
 from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.tip import Tip
 from cellcolor.frontend.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
 from cellcolor.frontend.validity import Judge
 
@@ -37,6 +38,7 @@ class Stage:
         surface: what has to be covered, in the world.
         conditioning: the thresholds for this arm.
         judge: the tests.
+        tip: where the tool works.
         coarse: what could stand unnoticed between two vertices, a sentence; None if nothing.
         deadline: when to give up.
     """
@@ -48,6 +50,7 @@ class Stage:
     conditioning: Conditioning
     surface: Surface
     judge: Judge
+    tip: Tip
     coarse: str | None
     deadline: Deadline
 
@@ -96,11 +99,13 @@ def prepare(scene_path: Path, deadline: Deadline = NEVER) -> Stage:
         if error.file:
             raise
         raise error.in_file(str(scene_path)) from error
-    judge = Judge(robot, setup, limits, scene, *solids, deadline)
+    height = None if scene.ground is None else scene.ground.height_m
+    tip = Tip(robot, setup.task.contact_radius_m, solids[0], height)
+    judge = Judge(robot, setup, limits, scene, *solids, tip, deadline)
     coarse = None
     if setup.constraints.collision:
         coarse = too_coarse(robot, solids[0], float(lengths.max()))
-    return Stage(scene, setup, robot, geometry, limits, surface, judge, coarse, deadline)
+    return Stage(scene, setup, robot, geometry, limits, surface, judge, tip, coarse, deadline)
 
 
 def _check_spacings(setup: Setup, setup_path: Path, lengths: Array) -> None:

@@ -110,7 +110,7 @@ def make_report(
     """Count what a build found."""
     areas = surface.vertex_areas()
     reached = candidates.valid.any(axis=1)
-    # The reasons are numbered in the order of the tests.
+    # Numbered in the order of the tests; a blocked tip is so for all branches that reach there.
     farthest = candidates.reasons.max(axis=1)[~reached]
     vertex, branch = np.nonzero(coloring.node_color >= 0)
     color = coloring.node_color[vertex, branch]

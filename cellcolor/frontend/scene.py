@@ -166,9 +166,10 @@ class RobotFiles(_Table):
 
 
 class Task(_Table):
-    """What the tool has to do on each point."""
+    """What the tool has to do on each point, and how much room it needs there."""
 
     normal_force_n: NotNegative
+    contact_radius_m: Annotated[FiniteFloat, Field(ge=0.001)] = 0.005
     gravity_m_per_s2: Vector
 
 

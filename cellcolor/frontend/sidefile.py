@@ -17,7 +17,7 @@ __all__ = ["side_file"]
 def side_file(result: BuildResult) -> bytes:
     """The bytes of an ``.npz`` archive; ``n`` is the surface's number of vertices.
 
-    ``branches`` (8,) names; ``reason_names`` (10,) what the codes mean; ``reasons`` (n, 8) uint8
+    ``branches`` (8,) names; ``reason_names`` (11,) what the codes mean; ``reasons`` (n, 8) uint8
     codes; ``configurations`` (n, 8, 6) float64 in rad, NaN where a branch has no solution;
     ``node_color`` (n, 8) int32, the color of the surface file that each candidate has, -1 for
     none; ``surface_sha256`` the fingerprint of the surface that all this is about. The same

@@ -73,12 +73,20 @@ class Solid:
             if body.joint == 0:
                 continue
             rows = np.flatnonzero(~hit)
-            touching, open_ = self._sweep(body, ends[index][:, rows])
-            asked = np.flatnonzero(open_)
-            if len(asked):
-                touching[asked] = self._touches(body, ends[index][:, rows[asked]])
-            hit[rows] = touching
+            hit[rows] = self.touched_by(body, ends[index][:, rows])
         return hit
+
+    def touched_by(self, body: Body, ends: Array) -> Mask:
+        """Whether one body touches the solid, (n,); ``ends`` (2, n, 3) are those of its axis."""
+        touching, open_ = self._sweep(body, ends)
+        asked = np.flatnonzero(open_)
+        if len(asked):
+            touching[asked] = self._touches(body, ends[:, asked])
+        return touching
+
+    def at_least(self, points: Array) -> Array:
+        """Lower bounds (k,) of the distances of points (k, 3), m."""
+        return self._distances(points)[0]
 
     def touched_by_fixed(self, robot: Robot, ends: Array) -> str | None:
         """The link of the robot that cannot move and touches the solid, if there is one."""

@@ -33,6 +33,7 @@ from cellcolor.frontend.kinematics import (
 from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Scene, Setup
 from cellcolor.frontend.solids import Solid
+from cellcolor.frontend.tip import Tip
 
 __all__ = ["Candidates", "Judge", "Reason", "Verdicts", "within_limits"]
 
@@ -43,7 +44,11 @@ Test = Callable[[Rows], Mask]
 
 
 class Reason(IntEnum):
-    """Why a candidate is not valid: the first test that it fails, in the order of the tests."""
+    """Why a candidate is not valid: the first test that it fails.
+
+    The numbers are in the order of the tests, but for the last: the tip is tested after the joint
+    limits. It is blocked for all branches of a vertex or for none.
+    """
 
     VALID = 0
     NO_SOLUTION = 1
@@ -55,6 +60,7 @@ class Reason(IntEnum):
     SELF_COLLISION = 7
     OBSTACLE_COLLISION = 8
     OBJECT_COLLISION = 9
+    TIP_BLOCKED = 10
 
     @property
     def text(self) -> str:
@@ -128,16 +134,17 @@ class Judge:
         scene: Scene,
         obstacles: list[Solid],
         target: Solid,
+        tip: Tip,
         deadline: Deadline = NEVER,
     ) -> None:
-        """``obstacles`` and ``target``, the object, stand in the world.
+        """``obstacles``, ``target``, the object, and what ``tip`` knows stand in the world.
 
         ``deadline`` is when to give up, asked in between (:class:`OutOfTime`).
         ``end_radii`` (ends,) are those of the bodies of :attr:`Verdicts.ends`, m.
         """
         self._robot, self._setup, self._scene = robot, setup, scene
         self._limits, self._deadline = limits, deadline
-        self._obstacles, self._target = obstacles, target
+        self._obstacles, self._target, self._tip = obstacles, target, tip
         self._moving = [index for index, body in enumerate(robot.bodies) if body.joint > 0]
         self.end_radii = np.repeat([robot.bodies[index].radius for index in self._moving], 2)
         self.seconds: dict[str, float] = {}
@@ -182,6 +189,9 @@ class Judge:
 
         # Each test sees the rows of `poses` that have passed the ones before it.
         tests: list[tuple[Reason, Test]] = []
+        if on.collision:
+            tip, along = poses.tip, poses.tool_axis
+            tests += [(Reason.TIP_BLOCKED, lambda rows: self._tip.blocked(tip[rows], along[rows]))]
         if on.force:
             tests += [(Reason.TORQUE, lambda rows: self._too_weak(poses.take(rows), linear[rows]))]
         if on.conditioning:

@@ -34,9 +34,10 @@ REASONS = (
     "#44AA99",
     "#999933",
     "#AA4499",
+    "#661100",
     "#777777",
 )
-"""For classes with a fixed meaning (Paul Tol: "muted", with a grey)."""
+"""For classes with a fixed meaning (Paul Tol: "muted", with a brown of his and a grey)."""
 
 FAINT = "#DDDDDD"
 GREY = "#AAAAAA"

@@ -27,7 +27,7 @@ class Verdicts:
 
     Attributes:
         branches: names of the inverse-kinematic branches.
-        reason_names: what the codes mean, in the order of the tests; 0 is valid.
+        reason_names: what the codes mean; 0 is valid, higher ones came farther through the tests.
         reasons: (n, branches) codes.
         node_color: (n, branches) the color of each candidate, -1 for none.
     """
@@ -90,7 +90,7 @@ def by_reason(surface: LabelledSurface, verdicts: Verdicts, branch: int | None =
     codes, colors = verdicts.reasons[:, rows], verdicts.node_color[:, rows]
     valid = (codes == _VALID).any(axis=1)
     given_up = len(verdicts.reason_names)
-    # The reasons are numbered in the order of the tests.
+    # Numbered in the order of the tests; a blocked tip is so for all branches that reach there.
     labels = np.where(valid, _VALID, codes.max(axis=1)).astype(np.int64)
     # A sliver policy takes colors away from what is valid.
     labels[valid & (colors < 0).all(axis=1)] = given_up

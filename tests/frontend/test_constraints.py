@@ -23,6 +23,7 @@ KINEMATIC = {
     Reason.SELF_COLLISION,
     Reason.OBSTACLE_COLLISION,
     Reason.OBJECT_COLLISION,
+    Reason.TIP_BLOCKED,
 }
 CONDITIONING = {Reason.MANIPULABILITY, Reason.TASK_DETERMINANT}
 OF = {"collision": KINEMATIC, "force": {Reason.TORQUE}, "conditioning": CONDITIONING}

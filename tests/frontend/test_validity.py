@@ -100,7 +100,7 @@ FREE = {
         (Reason.JOINT_LIMITS, {}, {}, narrow_elbow),
         (Reason.MANIPULABILITY, {}, {"min_manipulability_m3": 0.05}, None),
         (Reason.TASK_DETERMINANT, {}, {"min_task_determinant_m3": 0.03}, None),
-        (Reason.GROUND, {"height_m": 0.2}, {}, None),
+        (Reason.GROUND, {"height_m": 0.035}, {}, None),
     ],
 )
 def test_a_constraint_alone_binds(

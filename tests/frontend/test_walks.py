@@ -28,6 +28,7 @@ from cellcolor.frontend.smooth import joint_step
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
 STEPS = 25
 MILLIMETER = 0.001
+FAST = 0.1  # rad
 
 
 def walks(result: BuildResult, count: int, seed: int) -> Iterator[tuple[list[int], int]]:
@@ -79,20 +80,16 @@ def largest_part(stage: Stage, points: Array, directions: Array, branch: int, pi
 def check_walks(name: str, folder: Path, vertices: int, count: int, with_coal: int) -> None:
     file = at_resolution(name, folder, vertices)
     result, stage = build_surface(file), prepare(file)
-    policy, robot = stage.setup.continuity, stage.robot
+    robot = stage.robot
     all_points, all_directions, all_joints = [], [], []
     for way, branch in walks(result, count, seed=7):
         points, directions, joints = follow(stage, way, branch)
         if not len(points):
             continue
-        length = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        # Beside a singularity a motion is fast, but in fifty parts of a piece it is even.
         step = joint_step(joints[:-1], joints[1:])
-        # Between two probes of an edge a joint may move by the base step, beside singularities.
-        probes = length / policy.probe_spacing_m + 1
-        bound = probes * policy.base_step_rad + policy.step_per_length_rad_per_m * length
-        assert (step <= bound).all(), "joint jump"
-        fastest = int(np.argmax(step))
-        assert largest_part(stage, points, directions, branch, fastest) < 0.2 * step[fastest]
+        for piece in {int(np.argmax(step)), *np.flatnonzero(step > FAST).tolist()}:
+            assert largest_part(stage, points, directions, branch, piece) < 0.1 * step[piece]
         way_there = shorter_way(joints[:-1], joints[1:])
         assert stays_in_limits(robot.lower, robot.upper, joints[:-1], *way_there).all()
         all_points.append(points)
