@@ -162,6 +162,7 @@ class Run:
         seconds: from the start of the process to its end.
         cpu: seconds of all processors that it used; few where the machine was busy otherwise.
         over: seconds beyond what is promised, negative if it was kept.
+        waited: seconds after the limit in which it could have run, but no processor was free.
         megabytes: the most memory that the process had at a time.
         end: how it ended.
         exit_code: of the process, negative for a signal.
@@ -169,7 +170,7 @@ class Run:
         segments: of the solution.
         bound: the lower bound for what was asked.
         stage: the innermost frames of the package when it should have ended.
-        error: the last line of standard error, if there is no solution.
+        error: what it said of a file, or the last line of a traceback.
     """
 
     kind: str
@@ -178,6 +179,7 @@ class Run:
     seconds: float
     cpu: float
     over: float
+    waited: float
     megabytes: float
     end: Literal["itself", "killed: time", "killed: memory"]
     exit_code: int
@@ -190,8 +192,15 @@ class Run:
     @property
     def broken(self) -> bool:
         """Whether a promise was not kept."""
-        answered = self.exit_code == 2 or (self.exit_code in (0, 3) and self.status is not None)
-        return self.over > 0 or self.megabytes > PROMISED_MEMORY_MB or not answered
+        answered = self.exit_code in (0, 3) and self.status is not None
+        return (
+            self.over > 0 or self.megabytes > PROMISED_MEMORY_MB or not (answered or self.refused)
+        )
+
+    @property
+    def refused(self) -> bool:
+        """Whether the input is nothing for the command."""
+        return self.exit_code == 2 and self.variant == "all"
 
 
 def measure(kind: str, seed: int | str, variant: str, files: list[Path], limit: float) -> Run:
@@ -205,12 +214,15 @@ def measure(kind: str, seed: int | str, variant: str, files: list[Path], limit: 
             [sys.executable, "-c", COMMAND, *arguments], stdout=out, stderr=err
         )
         end: Literal["itself", "killed: time", "killed: memory"] = "itself"
-        asked = False
+        asked, before, waited = False, 0.0, 0.0
         while True:
             pid, status, usage = os.wait4(process.pid, os.WNOHANG)
             seconds = time.monotonic() - started
             if pid:
                 break
+            if seconds < limit:
+                before = _waited(process.pid)
+            waited = max(waited, _waited(process.pid) - before)
             if seconds > promised and not asked:
                 process.send_signal(signal.SIGUSR1)
                 asked = True
@@ -233,6 +245,7 @@ def measure(kind: str, seed: int | str, variant: str, files: list[Path], limit: 
         round(seconds, 2),
         round(usage.ru_utime + usage.ru_stime, 2),
         round(seconds - promised, 2),
+        round(waited, 2),
         round(usage.ru_maxrss / 1024, 1),
         end,
         process.returncode,
@@ -249,6 +262,14 @@ def _megabytes(pid: int) -> float:
     except (OSError, IndexError):
         return 0.0
     return pages * os.sysconf("SC_PAGE_SIZE") / 2**20
+
+
+def _waited(pid: int) -> float:
+    """Seconds that the main thread has stood in line for a processor; 0 if it has just ended."""
+    try:
+        return int(Path(f"/proc/{pid}/schedstat").read_text().split()[1]) / 1e9
+    except (OSError, IndexError):
+        return 0.0
 
 
 def _stage(complaints: str) -> str:
@@ -277,10 +298,10 @@ def _read_answer(run: Run, said: str, complaints: str) -> None:
     elif "valid" in answer:
         run.status = "optimal" if answer["lower_bound"] == answer["upper_bound"] else "feasible"
         run.segments, run.bound = answer["upper_bound"], answer["lower_bound"]
-    elif complaints.strip():
-        run.error = complaints.strip().splitlines()[-1][:200]
-        if "Traceback (most recent call last)" in complaints:
-            run.error = f"Traceback: {run.error}"
+    elif "error" in answer:
+        run.error = answer["error"]
+    elif "Traceback (most recent call last)" in complaints:
+        run.error = f"Traceback: {complaints.strip().splitlines()[-1][:200]}"
 
 
 def drawn(kind: str, seed: int, folder: Path, limit: float) -> Run:
@@ -325,10 +346,15 @@ def given(file: Path, folder: Path, limit: float) -> Iterator[Run]:
 def table(runs: list[Run]) -> Iterator[str]:
     """Lines of Markdown: what each kind did, and what was worst.
 
-    Refused is what the command does not take, such as ``--all`` for cells with several live loops.
+    Seconds beyond the promise are those of the worst run; then of the worst one if a processor had
+    always been free after the limit, which tells a slow program from a busy machine (or from its
+    own workers). Refused are cells with several live loops, which ``--all`` does not take.
     """
-    yield "| kind | runs | kept | s beyond | most MB | refused | optimal | unknown | median gap |"
-    yield "|---|---|---|---|---|---|---|---|---|"
+    yield (
+        "| kind | runs | kept | s beyond | without waiting | most MB "
+        "| refused | optimal | unknown | median gap |"
+    )
+    yield "|---|---|---|---|---|---|---|---|---|---|"
     for kind in dict.fromkeys(run.kind for run in runs):
         own = [run for run in runs if run.kind == kind]
         gaps = [r.segments - r.bound for r in own if r.segments is not None and r.bound is not None]
@@ -337,24 +363,25 @@ def table(runs: list[Run]) -> Iterator[str]:
             len(own),
             sum(not run.broken for run in own),
             f"{max(run.over for run in own):+.1f}",
+            f"{max(run.over - run.waited for run in own):+.1f}",
             f"{max(run.megabytes for run in own):.0f}",
-            sum(run.exit_code == 2 for run in own),
+            sum(run.refused for run in own),
             sum(run.status == "optimal" for run in own),
             sum(run.status == "unknown" for run in own),
             f"{median(gaps):g}" if gaps else "",
         )
         yield "| " + " | ".join(map(str, cells)) + " |"
-    offenders = sorted((run for run in runs if run.broken), key=lambda run: -run.over)
+    offenders = sorted((run for run in runs if run.broken), key=lambda run: run.waited - run.over)
     if offenders:
         yield ""
         yield f"The worst of {len(offenders)} runs that broke a promise:"
         yield ""
-        yield "| kind | seed | command | s | CPU s | beyond | MB | end | exit | stage |"
-        yield "|---|---|---|---|---|---|---|---|---|---|"
+        yield "| kind | seed | command | s | CPU s | beyond | waited | MB | end | exit | stage |"
+        yield "|---|---|---|---|---|---|---|---|---|---|---|"
     for run in offenders[:SHOWN]:
         what = f"| {run.kind} | {run.seed} | {run.variant} | {run.seconds} | {run.cpu} "
-        what += f"| {run.over:+.1f} | {run.megabytes:.0f} | {run.end} | {run.exit_code} "
-        yield f"{what}| {run.stage or run.error} |"
+        what += f"| {run.over:+.1f} | {run.waited:.1f} | {run.megabytes:.0f} | {run.end} "
+        yield f"{what}| {run.exit_code} | {run.error or run.stage} |"
 
 
 def main() -> int:
