@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import TypeVar
 
-from cellcolor.errors import CellcolorError
+from cellcolor.errors import CellcolorError, InputError
 
 __all__ = ["NEVER", "Deadline", "OutOfTime"]
 
@@ -25,9 +25,16 @@ class Deadline:
 
     Attributes:
         moment: on the clock of ``time.monotonic``, in seconds; infinity if there is none.
+
+    Raises:
+        InputError: it is not a number.
     """
 
     moment: float = math.inf
+
+    def __post_init__(self) -> None:
+        if math.isnan(self.moment):
+            raise InputError(None, "time_limit", "is not a number of seconds")
 
     @classmethod
     def after(cls, seconds: float | None, start: float | None = None) -> Deadline:

@@ -7,7 +7,10 @@ holds a plan against it::
     surface = LabelledSurface.read(Path("part.surface.json"))
     verdict = judge(surface, Plan(tuple(my_planner(surface))))
     assert verdict.valid, verdict.problems
-    assert verdict.segments <= verdict.bounds.upper
+    assert verdict.beatable_by == 0  # proved: no division of the surface has fewer segments
+
+Where a test cannot wait for a proof, ``assert not verdict.beatable_by`` is enough to catch plans
+that are proved to have too many; it passes as well if nothing is known.
 
 Everything here is in the search space ``surface`` (any division of the physical surface,
 docs/semantics.md, section 4): a bound of the search space ``paper`` may be beaten by a plan.
@@ -19,12 +22,11 @@ from dataclasses import dataclass
 
 from cellcolor.check.plan import check_plan
 from cellcolor.data.plan import Plan
-from cellcolor.data.solution import SearchSpace
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError
-from cellcolor.solvers.interface import Options
+from cellcolor.solvers.interface import STRANDS, Options
 from cellcolor.solvers.run import solve
 
 __all__ = ["Contradiction", "ProvenRange", "Verdict", "judge", "proven_range"]
@@ -100,20 +102,25 @@ class Verdict:
 
     @property
     def beatable_by(self) -> int | None:
-        """How many segments fewer are proved to be enough; None when the plan is not valid.
+        """How many segments fewer are proved to be enough.
+
+        0 only if it is proved that no division of the surface has fewer, so that running out of
+        time passes for nothing; None where neither is proved, or when the plan is not valid.
 
         The division that proves it cuts the surface itself. On a coarse mesh it may not be
         possible to paint it in vertices.
         """
         if self.segments is None or self.bounds is None:
             return None
-        return max(0, self.segments - self.bounds.upper)
+        if self.segments > self.bounds.upper:
+            return self.segments - self.bounds.upper
+        return 0 if self.segments == self.bounds.lower else None
 
 
 def proven_range(
     surface: LabelledSurface,
     *,
-    strands: int = 2,
+    strands: int | None = None,
     time_limit: float | None = 60.0,
     workers: int | None = None,
     seed: int = 0,
@@ -122,15 +129,23 @@ def proven_range(
 
     Args:
         surface: the labelled surface.
-        strands: corridors that may cross one topological edge; more may lower ``upper``.
+        strands: corridors that may cross one topological edge, None for the usual number; more
+            may lower ``upper``.
         time_limit: seconds, None for as long as it takes; both ends hold however early it ends.
         workers: CP-SAT's search workers, None for its portfolio.
         seed: of everything random.
 
     Raises:
-        InputError: a cell of the surface is not planar.
+        InputError: a cell of the surface is not planar, or an option is out of its range.
     """
     deadline = Deadline.after(time_limit)
+    corridors = STRANDS["surface"] if strands is None else strands
+    # The paper's search space is the smaller one: where its optimum meets a bound for any
+    # division, there is nothing left to search.
+    searches = (
+        Options("paper", deadline=deadline, workers=workers, seed=seed),
+        Options("surface", corridors, deadline, workers, seed),
+    )
     try:
         instance = decompose(surface, deadline=deadline)
     except OutOfTime:
@@ -138,14 +153,12 @@ def proven_range(
         reached = sum(map(bool, surface.vertex_colors))
         return ProvenRange(min(reached, 1), reached)
     # One sub-cell a cell is a division of its own, whatever the solver finds.
-    upper, lower = len(instance.cells), 0
-    # The paper's search space is the smaller one: where its optimum meets a bound for any
-    # division, there is nothing left to search.
-    spaces: tuple[tuple[SearchSpace, int], ...] = (("paper", 1), ("surface", strands))
-    for space, corridors in spaces:
+    upper = len(instance.cells)
+    lower = min(upper, 1)
+    for options in searches:
         if lower == upper or deadline.over:
             break
-        solution = solve(instance, Options(space, corridors, deadline, workers, seed))
+        solution = solve(instance, options)
         lower = max(lower, solution.surface_lower_bound)
         if solution.segments is not None:
             upper = min(upper, solution.segments)

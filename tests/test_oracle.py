@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 from documents import Document
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
@@ -16,7 +16,7 @@ from cellcolor.cli import main
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.oracle import Contradiction, ProvenRange, judge, proven_range
+from cellcolor.oracle import Contradiction, ProvenRange, Verdict, judge, proven_range
 
 CORRIDORS = PAPER / "parallel-corridors.surface.json"
 RED, BLUE, GREEN = 0, 1, 2
@@ -87,7 +87,29 @@ def test_what_is_not_proved_is_not_called_optimal() -> None:
     bounds = ProvenRange(2, 3)
     plan = Plan(tuple(colors[0] for colors in surface.vertex_colors))
     verdict = judge(surface, plan, bounds=bounds)
-    assert (verdict.segments, verdict.optimal, verdict.beatable_by) == (3, None, 0)
+    assert (verdict.segments, verdict.optimal, verdict.beatable_by) == (3, None, None)
+
+
+@given(st.integers(1, 9), st.integers(0, 9), st.integers(0, 9))
+def test_beatable_by_is_what_is_proved(segments: int, lower: int, more: int) -> None:
+    """Against every number that the minimum may still be."""
+    assume(lower <= segments)
+    verdict = Verdict((), segments, ProvenRange(lower, lower + more))
+    possible = [m for m in range(lower, lower + more + 1) if m <= segments]
+    fewer = {segments - minimum for minimum in possible}
+    if verdict.beatable_by is None:
+        assert 0 in fewer and len(fewer) > 1 and verdict.optimal is None
+    else:
+        assert verdict.beatable_by == min(fewer)
+        assert (verdict.beatable_by == 0) == (verdict.optimal is True)
+
+
+def test_no_time_passes_for_nothing() -> None:
+    """A plan with as many segments as cells: the time ends before anything better is found."""
+    row = drawn("AAMMBB AAMMBB AAMMBB", {"A": [RED], "M": [RED, BLUE], "B": [RED]})
+    worst = Plan((RED, RED, BLUE, BLUE, RED, RED) * 3)
+    verdict = judge(row, worst, time_limit=1e-9)
+    assert (verdict.segments, verdict.optimal, verdict.beatable_by) == (3, None, None)
 
 
 def test_no_time_at_all() -> None:

@@ -5,11 +5,14 @@ from __future__ import annotations
 import math
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 import cellcolor as package
+
+if TYPE_CHECKING:
+    from cellcolor.data.solution import SearchSpace
 
 
 class _Seconds(click.FloatRange):
@@ -155,11 +158,12 @@ def solve(
         raise click.UsageError("--warm-start goes with a single file")
 
     from cellcolor.cli.solve import Request, solve_files
-    from cellcolor.solvers.interface import Options
+    from cellcolor.solvers.interface import STRANDS, Options
 
+    space: SearchSpace = "surface" if search_space == "surface" else "paper"
     options = Options(
-        "surface" if search_space == "surface" else "paper",
-        (2 if strands is None else strands) if search_space == "surface" else 1,
+        space,
+        STRANDS[space] if strands is None else strands,
         workers=workers,
         seed=seed,
         fewest_cuts=fewest_cuts,

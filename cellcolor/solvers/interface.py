@@ -4,15 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Annotated, Protocol, cast
+
+from annotated_types import Ge, Le
 
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, SearchSpace
+from cellcolor.data.values import settle
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
 
 PORTFOLIO = 8
 """CP-SAT's workers unless asked for otherwise: different searches, useful beyond the cores."""
+
+STRANDS: dict[SearchSpace, int] = {"paper": 1, "surface": 2}
+"""Strands per topological edge unless asked for otherwise; in ``paper`` there is no other."""
 
 Progress = Callable[[int | None, int], None]
 """Called with the segments of the best division so far (None: none yet) and the lower bound."""
@@ -33,26 +40,39 @@ class Start:
 
 @dataclass(frozen=True, slots=True)
 class Options:
-    """How to solve.
+    """How to solve, validated.
 
     Attributes:
         search_space: ``paper``, or ``surface`` for any division of the physical surface.
-        strands: strands per topological edge; 1 in ``paper``.
+        strands: strands per topological edge, at least 1; left out, what ``STRANDS`` has for the
+            search space.
         deadline: when everything has to end.
         workers: CP-SAT's search workers, None for ``PORTFOLIO``.
         seed: of everything random.
         start: a division to start from (CP-SAT only).
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
             paths (CP-SAT only).
+
+    Raises:
+        InputError: an option is out of its range, or strands are asked for in ``paper``.
     """
 
     search_space: SearchSpace = "paper"
-    strands: int = 1
+    strands: Annotated[int, Ge(1)] = cast(int, None)  # until __post_init__
     deadline: Deadline = NEVER
-    workers: int | None = None
-    seed: int = 0
+    workers: Annotated[int, Ge(1)] | None = None
+    seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
     start: Start | None = None
     fewest_cuts: bool = False
+
+    def __post_init__(self) -> None:
+        if self.strands is None:
+            object.__setattr__(self, "strands", STRANDS.get(self.search_space, 1))
+        settle(self)
+        if self.search_space == "paper" and self.strands != STRANDS["paper"]:
+            raise InputError(
+                None, "strands", f"must be 1 in search space 'paper', is {self.strands}"
+            )
 
 
 @dataclass(frozen=True, slots=True)

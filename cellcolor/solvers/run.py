@@ -10,7 +10,7 @@ from cellcolor.check.solution import Report, check_division, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status
-from cellcolor.errors import CellcolorError
+from cellcolor.errors import CellcolorError, InputError
 from cellcolor.solvers.bounds import set_cover
 from cellcolor.solvers.interface import Answer, Options, Progress, Solver
 
@@ -70,8 +70,13 @@ def solve(
         The solution, held against the instance by the checker.
 
     Raises:
+        InputError: an option is of CP-SAT only, and the solver is another.
         ContradictionError: the checker refuses what the solver found.
     """
+    if solver == "dfs":
+        for name, asked in (("start", options.start), ("fewest_cuts", options.fewest_cuts)):
+            if asked:
+                raise InputError(None, name, "goes with the solver cp-sat")
     chosen = make_solver(solver)
     start = time.monotonic()
     answer = chosen.minimize(instance, options, progress)
@@ -129,13 +134,17 @@ def enumerate_schemes(
         TooLarge: the model would not fit into memory.
         ContradictionError: the checker refuses what the solver found.
     """
+    found = False
     for division in make_solver(solver).optimal_schemes(instance, options, segments):
+        found = True
         report = check_division(instance, division)
         _insist(report, solver)
         if report.segments != segments or not report.is_scheme:
             reasons = "; ".join(report.not_canonical) or f"{report.segments} segments"
             raise ContradictionError(f"{solver} returned no optimal scheme: {reasons}")
         yield division
+    if not found:
+        raise ContradictionError(f"{solver} found no scheme with {segments} segments, the minimum")
 
 
 def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:

@@ -18,7 +18,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import InputError, TooLarge
+from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.painting import Block, Painting, division_of
 from cellcolor.solvers.cpsat.zeros import zeros_can_differ
@@ -44,10 +44,14 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         segments: the minimum.
 
     Raises:
-        InputError: a cell has several loops with live darts, for which schemes are not defined.
+        InputError: a cell has several loops with live darts, or the search space is ``surface``:
+            schemes are defined for neither.
         OutOfTime: the deadline came first.
         TooLarge: the model would not fit into memory.
+        CellcolorError: CP-SAT took the model for none.
     """
+    if options.search_space != "paper":
+        raise InputError(None, "search_space", "schemes are defined in search space 'paper' only")
     if not instance.cells:
         yield ()
         return
@@ -69,7 +73,14 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         solver.parameters.max_time_in_seconds = options.deadline.left
     collector = _Collector(model)
     found = collector.found
-    thread = Thread(target=lambda: found.put(solver.solve(model.model, collector)))
+
+    def search() -> None:
+        try:
+            found.put(solver.solve(model.model, collector))
+        except Exception as error:
+            found.put(error)  # or whoever takes the schemes would wait for ever
+
+    thread = Thread(target=search)
     thread.start()
     try:
         while isinstance(painting := found.get(), list):
@@ -82,6 +93,10 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         while thread.is_alive():  # a stop that comes before the search does is lost
             solver.stop_search()
             thread.join(0.1)
+    if isinstance(painting, Exception):
+        raise painting
+    if painting == cp_model.MODEL_INVALID:
+        raise CellcolorError("CP-SAT says that the model of all schemes is not valid")
     if painting not in (cp_model.OPTIMAL, cp_model.INFEASIBLE):
         raise OutOfTime("the time limit ended the enumeration of schemes")
 
@@ -291,7 +306,7 @@ class _Collector(cp_model.CpSolverSolutionCallback):
     """Puts each solution's painting into a queue.
 
     Attributes:
-        found: the paintings, and the solver's status after the last one.
+        found: the paintings, and after the last one the solver's status, or why it broke down.
         room: to be released for each painting that was taken.
     """
 
@@ -299,7 +314,7 @@ class _Collector(cp_model.CpSolverSolutionCallback):
         super().__init__()
         self._model = model
         self._over = False
-        self.found: SimpleQueue[Painting | cp_model.CpSolverStatus] = SimpleQueue()
+        self.found: SimpleQueue[Painting | cp_model.CpSolverStatus | Exception] = SimpleQueue()
         self.room = Semaphore(_AHEAD)
 
     def stop(self) -> None:
