@@ -398,9 +398,38 @@ def test_seams_are_checked() -> None:
     assert "20 strand 2 is no live dart" in problem(replace(SEAM, strands=1))
 
 
-def test_a_seam_shows_its_cells_color_on_both_sides() -> None:
+def test_a_seam_in_state_0_parts_nothing() -> None:
+    """It is no border: the sub-cell on both sides of it is one, as with the seam in state 1."""
     report = check_division(ANNULUS, annulus_division([]), (SEAM,))
-    assert report.problems[0].startswith("edge 20")
+    assert report.valid and report.segments == 3
+
+
+def test_zeros_on_loops_are_read_without_seams() -> None:
+    """An edge in state 0 of a loop without darts in state 1 shows what some sub-cell shows.
+
+    A cell is cut into a red part and a blue one. A red island that is not joined lies in the blue
+    part; in a cell that is red all over there is no place for it.
+    """
+    instance = Instance(
+        "island",
+        ("red", "blue"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2, 3, 4), (5,))),
+            *(Cell(i, (RED if i < 3 else BLUE,), ((-i,),)) for i in range(1, 5)),
+            Cell(5, (RED, BLUE), ((-5,),)),
+        ),
+        tuple(Edge(i, 0, i) for i in range(1, 6)),
+    )
+    # The seam leaves between the two red darts, so that in the cyclic list red is all around it.
+    seam = Seam(6, 0, 1, 5, 1)
+    petals = [[(RED, [-1], 0)], [(RED, [-2], 0)], [(BLUE, [-3], 1)], [(BLUE, [-4], 1)]]
+    divided: list[tuple[int, list[DartName], int]] = [(RED, [1, 2], 0), (BLUE, [3, 4], 1)]
+    report = check_division(instance, divide(divided, *petals, [(RED, [], 2)]), (seam,))
+    assert report.valid and report.segments == 3, report.problems
+    whole: list[tuple[int, list[DartName], int]] = [(RED, [1, 2], 0)]
+    petals[2:] = [[(BLUE, [], 1)], [(BLUE, [], 2)]]
+    report = check_division(instance, divide(whole, *petals, [(RED, [], 3)]), (seam,))
+    assert report.problems == ("edge 5: shows one joinable color on both sides in state 0",)
 
 
 def test_strands_are_crossed_side_by_side() -> None:

@@ -9,12 +9,16 @@ from collections.abc import Iterable, Sequence
 import networkx as nx
 import pytest
 from holes import fewest, holed
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
+from test_invariance import mirrored, renamed, turned
 
 from cellcolor.check.cuts import cutting_paths
 from cellcolor.data.instance import Cell, Edge, Instance
-from cellcolor.data.solution import Division, number_segments
+from cellcolor.data.solution import Division, SearchSpace, number_segments
+from cellcolor.deadline import Deadline
+from cellcolor.decomposition import decompose
+from cellcolor.families import blobs
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.run import solve
 
@@ -201,16 +205,49 @@ def test_colorings_with_two_holes() -> None:
     assert total > 200 and as_many > total / 2
 
 
-@settings(max_examples=15, deadline=None)
+def proved_cuts(instance: Instance, strands: int = 1) -> int | None:
+    """The fewest cutting paths, None if they are not proved."""
+    space: SearchSpace = "paper" if strands == 1 else "surface"
+    options = Options(space, strands, Deadline.after(20.0), workers=2, fewest_cuts=True)
+    found = solve(instance, options)
+    assert found.cells is not None and found.cutting_paths_lower_bound is not None
+    paths = cutting_paths(instance, found.cells, found.seams)
+    assert found.cutting_paths == paths >= found.cutting_paths_lower_bound
+    return paths if paths == found.cutting_paths_lower_bound else None
+
+
+@settings(max_examples=20, deadline=None)
 @given(seed=SEEDS, darts=st.integers(4, 6), loops=st.integers(2, 3), colors=st.integers(2, 3))
-def test_a_bound_for_cells_with_holes(seed: int, darts: int, loops: int, colors: int) -> None:
+def test_fewest_in_a_cell_with_holes(seed: int, darts: int, loops: int, colors: int) -> None:
     """Against every division that can be drawn."""
     instance = holed(seed, darts, loops, colors)
-    found = solve(instance, Options(fewest_cuts=True))
-    segments, cuts = fewest(instance)
-    assert found.segments == segments
-    assert found.cutting_paths is not None and found.cutting_paths_lower_bound is not None
-    assert found.cutting_paths_lower_bound <= cuts <= found.cutting_paths
+    assert proved_cuts(instance) == fewest(instance)[1]
+
+
+@settings(max_examples=12, deadline=None)
+@given(seed=SEEDS, darts=st.integers(6, 8), loops=st.integers(2, 3), colors=st.integers(2, 3))
+def test_fewest_however_loops_are_turned(seed: int, darts: int, loops: int, colors: int) -> None:
+    instance = holed(seed, darts, loops, colors)
+    rng = random.Random(seed)
+    expected = proved_cuts(instance)
+    assume(expected is not None)
+    for other in (turned(instance, rng), renamed(turned(instance, rng), rng), mirrored(instance)):
+        assert proved_cuts(other) in (expected, None)
+
+
+@settings(max_examples=10, deadline=None)
+@given(seed=SEEDS, islands=st.integers(1, 2), cracks=st.integers(0, 1), strands=st.integers(1, 2))
+def test_fewest_on_random_surfaces(seed: int, islands: int, cracks: int, strands: int) -> None:
+    """With several strands, cells that touch themselves, and several cells to be cut."""
+    surface = blobs(
+        seed, size=8, colors=2, coverage=(0.8, 1.0), rim=3, islands=islands, cracks=cracks
+    )
+    instance = decompose(surface)
+    assume(1 < len(instance.cells) < 12)
+    # Without a proof of the segments nothing is proved of the paths.
+    expected = proved_cuts(instance, strands)
+    if expected is not None:
+        assert proved_cuts(turned(instance, random.Random(seed)), strands) in (expected, None)
 
 
 def test_loops_turned_are_the_same_instance() -> None:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import networkx as nx
 
-from cellcolor.check.lists import strand_of, twin
+from cellcolor.check.lists import Strand, strand_of, twin
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import CellDivision, Division, Seam
 
@@ -29,7 +29,7 @@ def cutting_paths(instance: Instance, division: Division, seams: Sequence[Seam] 
     )
 
 
-def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, frozenset[int]]]:
+def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, frozenset[Strand]]]:
     """The sub-cells of a cell as they are on the surface, where no seam parts anything.
 
     Args:
@@ -37,8 +37,7 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, froze
         seams: the seams' ids.
 
     Returns:
-        The color of each sub-cell and the darts of edges, strands not told apart, that it has in
-        state 1.
+        The color of each sub-cell and its darts in state 1, without those of seams.
     """
     holder = {
         strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
@@ -54,17 +53,17 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, froze
         (
             cell.subcells[min(parts)].color,
             frozenset(
-                dart
+                strand
                 for part in parts
-                for dart, _ in map(strand_of, cell.subcells[part].darts)
-                if abs(dart) not in seams
+                for strand in map(strand_of, cell.subcells[part].darts)
+                if abs(strand[0]) not in seams
             ),
         )
         for parts in nx.connected_components(graph)
     ]
 
 
-def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[int]]]) -> int:
+def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[Strand]]]) -> int:
     """Sub-cells less one, and loops less the groups of loops that the curves cannot but connect.
 
     Loops and sub-cells that meet make a graph; loops on a common circle of it are in one group.
@@ -73,8 +72,8 @@ def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[int]]]) -> int:
     meetings: nx.Graph[tuple[str, int]] = nx.Graph()
     meetings.add_edges_from(
         (("sub-cell", number), ("loop", loop_of[dart]))
-        for number, (_, darts) in enumerate(subcells)
-        for dart in darts
+        for number, (_, strands) in enumerate(subcells)
+        for dart, _ in strands
     )
     groups: nx.Graph[int] = nx.Graph()
     groups.add_nodes_from(range(len(cell.loops)))

@@ -66,12 +66,14 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
         live = [loop for loop in found if any(counts[abs(dart)] for dart in loop)]
         if len(live) > 1:
             raise BadSeams(f"cell {cell}: {len(live)} loops with live darts are not connected")
-        lists.append([s for dart in (live[0] if live else []) for s in _strands(dart, counts)])
+        darts = live[0] if live else []
+        lists.append([s for dart in darts for s in strands_along(dart, counts[abs(dart)])])
     return lists
 
 
-def _strands(dart: int, counts: dict[int, int]) -> list[Strand]:
-    numbers = range(1, counts[abs(dart)] + 1)
+def strands_along(dart: int, count: int) -> list[Strand]:
+    """So many strands of a dart, in the order in which a walk along its loop meets them."""
+    numbers = range(1, count + 1)
     return [(dart, number) for number in (numbers if dart > 0 else reversed(numbers))]
 
 

@@ -77,7 +77,8 @@ def unavoidable_join(cells: Sequence[Painted], joinable: Joinable) -> Strand | N
     Between two successive darts in state 1, the darts in state 0 show first the color of the
     sub-cell before, then that of the sub-cell after. Where the change lies is free in each gap;
     the choices for all gaps of all cells together are a 2-satisfiability problem: a dart's
-    variable says that it shows the later color.
+    variable says that it shows the later color. A dart whose other side is in none of the cells
+    may show what it likes.
     """
     shown: dict[Strand, tuple[int, int]] = {}
     clauses: list[tuple[_Literal, _Literal]] = []
@@ -87,7 +88,7 @@ def unavoidable_join(cells: Sequence[Painted], joinable: Joinable) -> Strand | N
             clauses += [((one, False), (other, True)) for one, other in pairwise(run)]
     for dart in shown:
         other = twin(dart)
-        if dart[0] < 0:
+        if dart[0] < 0 or other not in shown:
             continue
         for late in (False, True):
             for other_late in (False, True):

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import networkx as nx
 
+from cellcolor.check.holes import on_loops, unavoidable_join_on_loops
 from cellcolor.check.lists import BadSeams, Strand, TooManyDarts, live_lists, strand_of, twin
 from cellcolor.check.numbers import number_problems
 from cellcolor.check.scheme import (
@@ -88,6 +89,8 @@ def check_division(
     if problems:
         return Report(tuple(problems), (), None)
     stuck = unavoidable_join(painted, joinable)
+    if stuck is not None and seams:
+        stuck = unavoidable_join_on_loops(on_loops(instance, division, seams, strands), joinable)
     if stuck is not None:
         problems.append(f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0")
     labels, segments = _segments(division)

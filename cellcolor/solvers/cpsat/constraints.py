@@ -36,6 +36,8 @@ def one_pointer(
     for (one, other), literal in v.forward.items():
         pointers[one].append(literal)
         pointers[other].append(v.backward[one, other])
+    for (one, _other), literal in v.bridges.items():
+        pointers[one].append(literal)
     for dart, found in enumerate(pointers):
         model.add(sum(found) == v.up[dart] + v.up[graph.darts[dart].twin])
 
@@ -55,14 +57,16 @@ def one_chain(model: cp_model.CpModel, graph: DartGraph, v: Variables, _: Sequen
 def equal_colors(
     model: cp_model.CpModel, graph: DartGraph, v: Variables, _: Sequence[Region]
 ) -> None:
-    """Linked darts are joined in one and the same color."""
-    for pair in v.forward:
+    """Linked darts are joined in one and the same color, and so are bridged ones."""
+    linked = [(pair, v.links(*pair)) for pair in v.forward]
+    linked += [(pair, (bridge,)) for pair, bridge in v.bridges.items()]
+    for pair, literals in linked:
         for one, other in (pair, pair[::-1]):
             own, its = (min(dart, graph.darts[dart].twin) for dart in (one, other))
             for color in sorted(graph.darts[one].colors):
                 same = [v.joined[its, color]] if color in graph.darts[other].colors else []
-                for link in v.links(*pair):
-                    model.add_bool_or([~link, ~v.joined[own, color], *same])
+                for literal in literals:
+                    model.add_bool_or([~literal, ~v.joined[own, color], *same])
 
 
 def no_crossing(
@@ -102,6 +106,8 @@ def no_circles(
     for (one, other), literal in v.forward.items():
         model.add(v.rank[one] >= v.rank[other]).only_enforce_if(literal)
         model.add(v.rank[other] >= v.rank[one]).only_enforce_if(v.backward[one, other])
+    for (one, other), literal in v.bridges.items():
+        model.add(v.rank[one] >= v.rank[other]).only_enforce_if(literal)
 
 
 def cover(

@@ -11,7 +11,7 @@ from cellcolor.data.instance import Cell, Instance
 from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
 
-__all__ = ["count_cuts"]
+__all__ = ["count_cuts", "unseamed"]
 
 
 def count_cuts(instance: Instance, graph: DartGraph, painting: Painting) -> int:
@@ -23,26 +23,28 @@ def count_cuts(instance: Instance, graph: DartGraph, painting: Painting) -> int:
         painting: a legal painting of it.
     """
     return sum(
-        _cuts_of_cell(cell, _on_the_surface(graph, blocks))
-        for cell, blocks in zip(instance.cells, painting, strict=True)
+        _cuts_of_cell(
+            cell,
+            [{graph.darts[dart].name[0] for dart in block.darts} for block in unseamed(graph, own)],
+        )
+        for cell, own in zip(instance.cells, painting, strict=True)
     )
 
 
-def _on_the_surface(graph: DartGraph, blocks: Sequence[Block]) -> list[set[int]]:
-    """The signed edges of each sub-cell, once blocks that a seam parts are put together."""
+def unseamed(graph: DartGraph, blocks: Sequence[Block]) -> list[Block]:
+    """A cell's sub-cells on the surface: what a seam parts is one, and seams have no darts."""
     seams = {seam.id for seam in graph.seams}
     holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     whole: UnionFind[int] = UnionFind(range(len(blocks)))
-    for dart, number in holder.items():
-        if abs(graph.darts[dart].name[0]) in seams and graph.darts[dart].twin in holder:
-            whole.union(number, holder[graph.darts[dart].twin])
+    virtual = {dart for dart in holder if abs(graph.darts[dart].name[0]) in seams}
+    for dart in virtual:
+        if graph.darts[dart].twin in virtual:
+            whole.union(holder[dart], holder[graph.darts[dart].twin])
     return [
-        {
-            graph.darts[dart].name[0]
-            for part in parts
-            for dart in blocks[part].darts
-            if abs(graph.darts[dart].name[0]) not in seams
-        }
+        Block(
+            blocks[min(parts)].color,
+            {dart for part in parts for dart in blocks[part].darts if dart not in virtual},
+        )
         for parts in whole.to_sets()
     ]
 

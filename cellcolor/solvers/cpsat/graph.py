@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import Seam
@@ -29,21 +30,27 @@ class Dart:
     colors: frozenset[int]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class DartGraph:
     """A rotation system of live darts.
 
     Attributes:
         darts: all live darts.
-        lists: each cell's darts as indices, in cyclic order with the cell on the left.
+        loops: each cell's darts as indices, loop by loop, in cyclic order with the cell on the
+            left. Seams make one loop of all live loops of a cell; without seams they are apart.
         colors: each cell's colors.
         seams: the seams whose darts are among them.
     """
 
     darts: tuple[Dart, ...]
-    lists: tuple[tuple[int, ...], ...]
+    loops: tuple[tuple[tuple[int, ...], ...], ...]
     colors: tuple[frozenset[int], ...]
     seams: tuple[Seam, ...]
+
+    @cached_property
+    def lists(self) -> tuple[tuple[int, ...], ...]:
+        """Each cell's darts in one list; cyclic where seams connect its loops."""
+        return tuple(tuple(dart for loop in loops for dart in loop) for loops in self.loops)
 
     @property
     def edges(self) -> list[int]:
@@ -107,7 +114,7 @@ def dart_graph(
     instance: Instance,
     colors: Sequence[frozenset[int]],
     strands: Mapping[int, int],
-    seams: Sequence[Seam],
+    seams: Sequence[Seam] | None,
 ) -> DartGraph:
     """Put strands and seams into the instance's loops and leave out what is dead.
 
@@ -115,26 +122,34 @@ def dart_graph(
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge.
-        seams: one for each further live loop of a cell, all from the cell's first live loop.
+        seams: one for each further live loop of a cell, all from the cell's first live loop; None
+            leaves the loops apart.
     """
     found: list[tuple[Strand, int, frozenset[int]]] = []
-    lists: list[tuple[int, ...]] = []
+    lists: list[tuple[tuple[int, ...], ...]] = []
     for cell in instance.cells:
-        first = len(found)
-        for dart, seam in _walk(instance, cell, [s for s in seams if s.cell == cell.id]):
-            if seam is None:
-                joinable, count = _joinable(instance, colors, cell, dart), strands[abs(dart)]
-            else:
-                joinable, count = colors[cell.id], seam.strands
-            numbers = range(1, count + 1 if joinable else 1)
-            order = numbers if dart > 0 else reversed(numbers)
-            found += [((dart, strand), cell.id, joinable) for strand in order]
-        lists.append(tuple(range(first, len(found))))
+        if seams is None:
+            walks = [_unseamed(loop) for loop in _live_loops(instance, cell)]
+        else:
+            walks = [_walk(instance, cell, [s for s in seams if s.cell == cell.id])]
+        loops = []
+        for walk in walks:
+            first = len(found)
+            for dart, seam in walk:
+                if seam is None:
+                    joinable, count = _joinable(instance, colors, cell, dart), strands[abs(dart)]
+                else:
+                    joinable, count = colors[cell.id], seam.strands
+                numbers = range(1, count + 1 if joinable else 1)
+                order = numbers if dart > 0 else reversed(numbers)
+                found += [((dart, strand), cell.id, joinable) for strand in order]
+            loops.append(tuple(range(first, len(found))))
+        lists.append(tuple(loops))
     index = {name: number for number, (name, _, _) in enumerate(found)}
     darts = tuple(
         Dart(name, cell, index[-name[0], name[1]], joinable) for name, cell, joinable in found
     )
-    return DartGraph(darts, tuple(lists), tuple(colors), tuple(seams))
+    return DartGraph(darts, tuple(lists), tuple(colors), tuple(seams or ()))
 
 
 def _joinable(
@@ -150,15 +165,19 @@ def _live_loops(instance: Instance, cell: Cell) -> list[list[int]]:
     return [loop for loop in loops if loop]
 
 
+def _unseamed(loop: Sequence[int]) -> list[tuple[int, Seam | None]]:
+    return [(dart, None) for dart in loop]
+
+
 def _walk(instance: Instance, cell: Cell, seams: Sequence[Seam]) -> list[tuple[int, Seam | None]]:
     """The cell's live darts in one cyclic list, its seams with them."""
     loops = _live_loops(instance, cell)
     if not loops:
         return []
-    walk: list[tuple[int, Seam | None]] = [(dart, None) for dart in loops[0]]
+    walk = _unseamed(loops[0])
     for seam, loop in zip(seams, loops[1:], strict=True):
         start = loop.index(seam.to) + 1
-        inner: list[tuple[int, Seam | None]] = [(d, None) for d in loop[start:] + loop[:start]]
+        inner = _unseamed(loop[start:] + loop[:start])
         place = walk.index((seam.from_, None)) + 1
         walk[place:place] = [(seam.id, seam), *inner, (-seam.id, seam)]
     return walk

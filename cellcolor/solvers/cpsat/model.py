@@ -14,7 +14,7 @@ from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
 from cellcolor.solvers.cpsat.variables import Variables, make_variables
 
-__all__ = ["Model", "add_hint", "build", "cut_paths", "read_painting"]
+__all__ = ["Model", "add_hint", "build", "fewest_subcells", "read_painting"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,22 +52,36 @@ def build(
     return Model(model, variables, fixed_roots(graph, regions))
 
 
-def cut_paths(built: Model, graph: DartGraph, segments: int) -> None:
-    """Turn the model into one of fewest sub-cells, with so many segments.
+def fewest_subcells(
+    model: cp_model.CpModel,
+    graph: DartGraph,
+    v: Variables,
+    alone: Sequence[cp_model.IntVar],
+    segments: int,
+    more: Sequence[cp_model.IntVar] = (),
+) -> None:
+    """Turn a model into one of fewest sub-cells, with so many segments.
 
     Sub-cells are the segments and the joins of their trees. What a seam parts is one sub-cell on
     the surface, so joins across seams do not count.
+
+    Args:
+        model: the model.
+        graph: its dart graph.
+        v: its variables.
+        alone: per cell, whether it has no dart in state 1.
+        segments: how many there have to be.
+        more: what else counts like a sub-cell.
     """
-    model, v = built.model, built.variables
     seams = {seam.id for seam in graph.seams}
-    joins = sum(
+    joins = [
         literal
         for (edge, _), literal in v.joined.items()
         if abs(graph.darts[edge].name[0]) not in seams
-    )
-    model.add(sum(v.root) + sum(v.alone) == segments)
-    model.add(joins >= len(v.alone) - segments)
-    model.minimize(joins)
+    ]
+    model.add(sum(v.root) + sum(alone) == segments)
+    model.add(sum(joins) >= len(alone) - segments)
+    model.minimize(sum([*joins, *more]))
 
 
 def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from networkx.utils import UnionFind
+
 from cellcolor.data.solution import DartName, Division, number_segments
 from cellcolor.solvers.cpsat.graph import DartGraph
 
@@ -64,16 +66,17 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
 def canonical(graph: DartGraph, painting: Painting) -> Painting:
     """Make a scheme of a legal painting, with no more segments (docs/semantics.md, section 3).
 
-    Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order.
+    Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order; a loop
+    without darts in state 1 lies in the first sub-cell of its cell.
 
     1. An edge in state 0 that shows one joinable color on both sides becomes joined.
     2. A cutting path between equal colors goes.
     3. A sub-cell with a single dart beside others goes. It ends its segment, so that the segment
        stays in one piece without it. Then again from the start, with one sub-cell fewer.
+
+    On a graph without seams there are no more cutting paths than before either (docs/solver.md).
     """
-    cells = [
-        _Cell(list(darts), blocks) for darts, blocks in zip(graph.lists, painting, strict=True)
-    ]
+    cells = [_Cell(loops, blocks) for loops, blocks in zip(graph.loops, painting, strict=True)]
     while True:
         _join(graph, cells)
         for cell in cells:
@@ -85,8 +88,9 @@ def canonical(graph: DartGraph, painting: Painting) -> Painting:
 class _Cell:
     """One cell's border, each dart in state 1 with its block."""
 
-    def __init__(self, darts: list[int], blocks: Sequence[Block]) -> None:
-        self.darts = darts
+    def __init__(self, loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> None:
+        self._loops = loops
+        self._loop_of = {dart: loop for loop in loops for dart in loop}
         self.block_of: dict[int, Block] = {}
         self.own = blocks[0]
         for block in blocks:
@@ -95,21 +99,42 @@ class _Cell:
 
     def before(self, dart: int) -> Block:
         """The block that a dart in state 0 shows: the last one met before it."""
-        place = self.darts.index(dart)
-        for other in reversed(self.darts[place + 1 :] + self.darts[:place]):
+        loop = self._loop_of[dart]
+        place = loop.index(dart)
+        for other in reversed([*loop[place + 1 :], *loop[:place]]):
             if other in self.block_of:
                 return self.block_of[other]
-        return self.own
+        return self.blocks()[0]
 
     def merge(self) -> None:
-        """Undo cutting paths between successive darts of equal colors."""
-        joined = [dart for dart in self.darts if dart in self.block_of]
-        for dart, following in zip(joined, joined[1:] + joined[:1], strict=True):
-            one, other = self.block_of[dart], self.block_of[following]
-            if one is not other and one.color == other.color:
-                one.darts |= other.darts
-                for moved in other.darts:
-                    self.block_of[moved] = one
+        """Undo cutting paths between equal colors: successive darts, and unconnected loops."""
+        for loop in self._loops:
+            joined = [dart for dart in loop if dart in self.block_of]
+            for dart, following in zip(joined, joined[1:] + joined[:1], strict=True):
+                self._unite(self.block_of[dart], self.block_of[following])
+        if len(self._loops) > 1:
+            self._merge_unconnected()
+
+    def _merge_unconnected(self) -> None:
+        """Make one of two blocks of one color that no chain of loops and blocks connects."""
+        connected: UnionFind[int] = UnionFind()
+        for loop in self._loops:
+            connected.union(*(id(self.block_of[dart]) for dart in loop if dart in self.block_of))
+        first: dict[int, list[Block]] = {}
+        for block in self.blocks():
+            same = first.setdefault(block.color, [])
+            other = next((o for o in same if connected[id(o)] != connected[id(block)]), None)
+            if other is None:
+                same.append(block)
+            else:
+                connected.union(id(other), id(block))
+                self._unite(other, block)
+
+    def _unite(self, one: Block, other: Block) -> None:
+        if one is not other and one.color == other.color:
+            one.darts |= other.darts
+            for moved in other.darts:
+                self.block_of[moved] = one
 
     def add(self, dart: int, block: Block) -> None:
         block.darts.add(dart)
@@ -123,7 +148,7 @@ class _Cell:
 
     def blocks(self) -> list[Block]:
         found: list[Block] = []
-        for dart in self.darts:
+        for dart in self._loop_of:
             block = self.block_of.get(dart)
             if block is not None and not any(block is other for other in found):
                 found.append(block)

@@ -14,10 +14,10 @@ from cellcolor.data.solution import Division, Seam
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds import color_regions, set_cover
-from cellcolor.solvers.cpsat.cuts import count_cuts
 from cellcolor.solvers.cpsat.enumeration import optimal_schemes
+from cellcolor.solvers.cpsat.fewest import FewestCuts
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model import Model, add_hint, build, cut_paths, read_painting
+from cellcolor.solvers.cpsat.model import Model, add_hint, build, read_painting
 from cellcolor.solvers.cpsat.painting import Painting, canonical, division_of, moved, painting_of
 from cellcolor.solvers.cpsat.plans import Plan, Planner, Undecided
 from cellcolor.solvers.cpsat.refined import refined
@@ -92,6 +92,7 @@ class _Search:
         self._cover = self._planned = set_cover(instance, self._colors)
         self._bound = self._surface_bound = len(self._cover)
         self._cuts_bound = 0
+        self._fewest: tuple[DartGraph, Painting] | None = None
         self._enough = enough_crossings(instance, self._colors)
         self._best: tuple[DartGraph, Painting] | None = None
         self._segments: int | None = None
@@ -109,6 +110,9 @@ class _Search:
             full = self._graph(dict.fromkeys(self._enough, strands), seams)
             painting = canonical(full, moved(graph, painting, full))
             division = division_of(full, painting, strands)
+        if self._fewest is not None:
+            graph, painting = self._fewest
+            division, seams = division_of(graph, painting, self._options.strands), graph.seams
         cuts = self._cuts_bound if self._options.fewest_cuts else None
         return Answer(division, seams, self._bounds(), cuts)
 
@@ -140,7 +144,7 @@ class _Search:
             if not self._done and stages.index((strands, seams)) == number:
                 self._minimize(strands, seams, self._colors, final=(strands, seams) == stages[-1])
         if self._options.fewest_cuts and self._segments == self._bound and not self._runner.over:
-            self._fewest_cuts(*stages[-1])
+            self._fewest_cuts(stages[-1][0])
 
     @property
     def _done(self) -> bool:
@@ -238,25 +242,17 @@ class _Search:
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             self._offer(graph, read_painting(graph, built.variables, solver))
 
-    def _fewest_cuts(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> None:
+    def _fewest_cuts(self, strands: dict[int, int]) -> None:
         """Of the divisions with the fewest segments, one with the fewest cutting paths."""
-        if self._best is not None and count_cuts(self._instance, *self._best) == 0:
+        if self._best is None:
             return
-        graph = self._graph(strands, seams)
-        built = build(graph, self._regions)
-        self._hint(built, graph)
-        cut_paths(built, graph, self._bound)
-        solver = self._runner.solver(None)
-        status = self._runner.solve(solver, built.model)
-        # As many joins as a forest needs: sub-cells less segments.
-        spare = len(self._instance.cells) - self._bound
-        if isfinite(solver.best_objective_bound):
-            self._cuts_bound = max(0, ceil(solver.best_objective_bound - 1e-6) - spare)
-        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            painting = canonical(graph, read_painting(graph, built.variables, solver))
-            cuts = count_cuts(self._instance, graph, painting)
-            if self._best is None or cuts < count_cuts(self._instance, *self._best):
-                self._best = graph, painting
+        written = dict.fromkeys(self._enough, self._options.strands)
+        search = FewestCuts(
+            self._instance, self._colors, strands, written, self._bound, self._runner
+        )
+        with suppress(OutOfTime):
+            search.run(*self._best)
+        self._cuts_bound, self._fewest = search.bound, search.best
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
         """Hint the best division, if it has no strands and no colors beyond the model's."""

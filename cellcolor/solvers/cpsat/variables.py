@@ -7,7 +7,7 @@ make a forest, and every tree of it is one segment.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from ortools.sat.python import cp_model
 
@@ -30,6 +30,8 @@ class Variables:
         root: per dart: it is the root of its segment.
         alone: per cell: it has no dart in state 1, and is a segment of its own.
         rank: per dart: falls along every pointer, strictly across edges.
+        bridges: per two darts on loops of one cell that no seam connects: they are in one
+            sub-cell, and the first points at the second (see ``apart``).
     """
 
     joined: dict[tuple[int, int], cp_model.IntVar]
@@ -39,6 +41,7 @@ class Variables:
     root: list[cp_model.IntVar]
     alone: list[cp_model.IntVar]
     rank: list[cp_model.IntVar]
+    bridges: dict[tuple[int, int], cp_model.IntVar] = field(default_factory=dict)
 
     def links(self, one: int, other: int) -> tuple[cp_model.IntVar, ...]:
         """The literals that link two darts, none if they share no color."""

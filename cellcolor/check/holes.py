@@ -1,0 +1,90 @@
+"""The rules where cells have several loops, read without seams (docs/semantics.md, section 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from cellcolor.check.cuts import whole_subcells
+from cellcolor.check.lists import Strand, strands_along
+from cellcolor.check.scheme import Joinable, Painted, unavoidable_join
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Seam
+
+
+@dataclass(frozen=True, slots=True)
+class PaintedLoops:
+    """A cell's division, loop by loop.
+
+    Attributes:
+        loops: each live loop, with the sub-cells of the whole cell.
+    """
+
+    loops: tuple[Painted, ...]
+
+    @property
+    def colors(self) -> Sequence[int]:
+        """The color of each sub-cell."""
+        return self.loops[0].colors
+
+
+def on_loops(
+    instance: Instance, division: Division, seams: Sequence[Seam], strands: int
+) -> list[PaintedLoops]:
+    """A legal division without its seams; cells without live loops are left out."""
+    virtual = {seam.id for seam in seams}
+    found = []
+    for cell, divided in zip(instance.cells, division, strict=True):
+        subcells = whole_subcells(divided, virtual)
+        block_of = {dart: number for number, (_, darts) in enumerate(subcells) for dart in darts}
+        colors = [color for color, _ in subcells]
+        loops = [
+            [
+                strand
+                for dart in loop
+                if instance.joinable(dart)
+                for strand in strands_along(dart, strands)
+            ]
+            for loop in cell.loops
+        ]
+        painted = tuple(
+            Painted(loop, {dart: block_of[dart] for dart in loop if dart in block_of}, colors)
+            for loop in loops
+            if loop
+        )
+        if painted:
+            found.append(PaintedLoops(painted))
+    return found
+
+
+def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable) -> Strand | None:
+    """Rule 5 loop by loop: an edge in state 0 that has to show one joinable color on both sides.
+
+    A loop without darts in state 1 lies in one sub-cell of its cell, whichever suits, and all its
+    darts show that color. Such loops are tried one after the other.
+    """
+    settled: list[Painted] = []
+    open_loops: list[tuple[Painted, list[int]]] = []
+    for cell in cells:
+        colors = sorted(set(cell.colors))
+        for loop in cell.loops:
+            if loop.block_of:
+                settled.append(loop)
+            else:
+                open_loops.append((loop, colors))
+    open_loops.sort(key=lambda item: len(item[1]))
+
+    def stuck(number: int) -> Strand | None:
+        found = unavoidable_join(settled, joinable)
+        if found is not None or number == len(open_loops):
+            return found
+        loop, colors = open_loops[number]
+        for color in colors:
+            settled.append(Painted(loop.darts, {}, [color]))
+            found = stuck(number + 1)
+            settled.pop()
+            if found is None:
+                return None
+        return found
+
+    return stuck(0)
