@@ -66,8 +66,8 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
         live = [loop for loop in found if any(counts[abs(dart)] for dart in loop)]
         if len(live) > 1:
             raise BadSeams(f"cell {cell}: {len(live)} loops with live darts are not connected")
-        darts = live[0] if live else []
-        lists.append([s for dart in darts for s in strands_along(dart, counts[abs(dart)])])
+        whole = live[0] if live else []
+        lists.append([s for dart in whole for s in strands_along(dart, counts[abs(dart)])])
     return lists
 
 
