@@ -9,6 +9,8 @@ from cellcolor.errors import InputError
 
 __all__ = ["directed_edges"]
 
+Index = NDArray[np.int64]
+
 
 def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[int, int], int]:
     """The third vertex of the triangle on the left of every directed mesh edge.
@@ -28,17 +30,24 @@ def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[in
     if len(faces) == 0:
         raise InputError(None, "faces", "the surface is empty")
     _check_indices(faces, vertex_count)
-    third: dict[tuple[int, int], int] = {}
-    face_of: dict[tuple[int, int], int] = {}
-    triangles = faces.tolist()
-    for number, (i, j, k) in enumerate(triangles):
-        for a, b, c in ((i, j, k), (j, k, i), (k, i, j)):
-            if (a, b) in third:
-                _refuse_edge(a, b, face_of, number, triangles)
-            third[a, b] = c
-            face_of[a, b] = number
-    _check_fans(third, vertex_count)
-    return third
+    # Three directed edges a face, and what stands on their left.
+    start, end, third = faces.ravel(), faces[:, [1, 2, 0]].ravel(), faces[:, [2, 0, 1]].ravel()
+    key = start * vertex_count + end
+    order = np.argsort(key, kind="stable")
+    twice = np.flatnonzero(key[order[1:]] == key[order[:-1]])
+    if len(twice):
+        again = twice[np.argmin(order[twice + 1])]
+        _refuse_edge(faces, int(order[again]), int(order[again + 1]))
+    following = _found(key[order], order, start * vertex_count + third)
+    _check_fans(start, following, vertex_count)
+    pairs = zip(start.tolist(), end.tolist(), strict=True)
+    return dict(zip(pairs, third.tolist(), strict=True))
+
+
+def _found(keys: Index, places: Index, wanted: Index) -> Index:
+    """The places of the wanted ones among ascending keys, -1 where there is none."""
+    index = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    return np.where(keys[index] == wanted, places[index], -1)
 
 
 def _check_indices(faces: NDArray[np.int64], vertex_count: int) -> None:
@@ -56,14 +65,11 @@ def _check_indices(faces: NDArray[np.int64], vertex_count: int) -> None:
         raise InputError(None, f"faces[{face}]", f"repeats a vertex: {faces[face].tolist()}")
 
 
-def _refuse_edge(
-    a: int,
-    b: int,
-    face_of: dict[tuple[int, int], int],
-    number: int,
-    triangles: list[list[int]],
-) -> None:
-    users = [f for f, t in enumerate(triangles) if a in t and b in t]
+def _refuse_edge(faces: Index, first: int, second: int) -> None:
+    """Two directed edges, three a face, are one: say what is wrong with their faces."""
+    earlier, number = first // 3, second // 3
+    a, b = (int(faces[number, (second + k) % 3]) for k in (0, 1))
+    users = np.flatnonzero((faces == a).any(axis=1) & (faces == b).any(axis=1)).tolist()
     if len(users) > 2:
         raise InputError(
             None, f"faces[{users[2]}]", f"edge {a}-{b} is not manifold: faces {users} share it"
@@ -71,28 +77,43 @@ def _refuse_edge(
     raise InputError(
         None,
         f"faces[{number}]",
-        f"winds the other way than face {face_of[a, b]}: both run from vertex {a} to vertex {b}",
+        f"winds the other way than face {earlier}: both run from vertex {a} to vertex {b}",
     )
 
 
-def _check_fans(third: dict[tuple[int, int], int], vertex_count: int) -> None:
-    degree = [0] * vertex_count
-    start: list[int | None] = [None] * vertex_count
-    for a, b in third:
-        degree[a] += 1
-        # A fan that touches the mesh's border has to be walked from its clockwise end.
-        if start[a] is None or (b, a) not in third:
-            start[a] = b
-    for vertex, first in enumerate(start):
-        if first is None:
-            raise InputError(None, f"vertices[{vertex}]", "belongs to no face")
-        steps, neighbour = 1, third[vertex, first]
-        while neighbour != first and (vertex, neighbour) in third:
-            neighbour = third[vertex, neighbour]
-            steps += 1
-        if steps != degree[vertex]:
-            raise InputError(
-                None,
-                f"vertices[{vertex}]",
-                f"is pinched: its {degree[vertex]} faces do not form one fan",
-            )
+def _check_fans(start: Index, following: Index, vertex_count: int) -> None:
+    """Hold the faces about each vertex to form one fan, open or closed.
+
+    Args:
+        start: (k,) the vertex of each corner.
+        following: (k,) the next corner about the same vertex, -1 at the end of an open fan.
+    """
+    corners = np.arange(len(start))
+    degree = np.bincount(start, minlength=vertex_count)
+    ends = np.flatnonzero(following < 0)
+    fans = np.bincount(start[ends], minlength=vertex_count)
+    # Open fans are closed, so that a fan is a cycle of corners; of several at a vertex some stay
+    # open, but then they are too many already.
+    first = np.full(vertex_count, -1)
+    begun = np.ones(len(start), dtype=bool)
+    begun[following[following >= 0]] = False
+    first[start[begun]] = corners[begun]
+    cycle = following.copy()
+    cycle[ends] = first[start[ends]]
+    # Each corner learns the smallest one of its cycle, twice as many steps ahead every time.
+    smallest, ahead = corners, cycle
+    for _ in range(int(degree.max()).bit_length()):
+        smallest = np.minimum(smallest, smallest[ahead])
+        ahead = ahead[ahead]
+    cycles = np.bincount(start[smallest == corners], minlength=vertex_count)
+    bad = np.flatnonzero((np.maximum(fans, cycles) != 1) | (degree == 0))
+    if not len(bad):
+        return
+    vertex = int(bad[0])
+    if not degree[vertex]:
+        raise InputError(None, f"vertices[{vertex}]", "belongs to no face")
+    raise InputError(
+        None,
+        f"vertices[{vertex}]",
+        f"is pinched: its {degree[vertex]} faces do not form one fan",
+    )
