@@ -13,7 +13,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.objfile import read_obj
 from cellcolor.frontend.remesh import refine, repair
 from cellcolor.frontend.robot import Array
-from cellcolor.frontend.sizes import check_vertices
+from cellcolor.frontend.sizes import check_faces, check_vertices
 from cellcolor.frontend.surfaces import Faces, Surface, face_normals
 
 __all__ = ["load_mesh"]
@@ -88,6 +88,11 @@ def _read_mesh(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
         faces = np.array(mesh.faces, dtype=np.int64).reshape(-1, 3)
     except Exception as error:  # trimesh's readers raise whatever their parsers ran into
         raise InputError(str(file), None, f"trimesh cannot read it: {error!r}") from error
+    deadline.check()
+    try:
+        check_faces(len(faces))
+    except InputError as error:
+        raise error.in_file(str(file)) from error
     if file.suffix.lower() == ".stl":
         vertices, index = np.unique(vertices, axis=0, return_inverse=True)
         faces = index.reshape(-1)[faces]

@@ -11,7 +11,7 @@ import numpy as np
 from cellcolor.errors import InputError
 from cellcolor.frontend.robot import Array
 
-__all__ = ["MOST_VERTICES", "check_points", "check_refinement", "check_vertices"]
+__all__ = ["MOST_VERTICES", "check_faces", "check_points", "check_refinement", "check_vertices"]
 
 MOST_VERTICES = 250_000
 _MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches
@@ -26,6 +26,20 @@ def check_vertices(count: int, field: str | None = None) -> None:
     """
     if count > MOST_VERTICES:
         raise InputError(None, field, f"has {count:,} vertices, at most {MOST_VERTICES:,} fit")
+
+
+def check_faces(count: int) -> None:
+    """Refuse a mesh with more faces than one with as many vertices as fit can have.
+
+    It has two for each vertex, and a few more if it has handles.
+
+    Raises:
+        InputError: names both numbers.
+    """
+    if count > 3 * MOST_VERTICES:
+        raise InputError(
+            None, "faces", f"there are {count:,}, at most {MOST_VERTICES:,} vertices fit"
+        )
 
 
 def check_refinement(vertices: int, lengths: Array, area: float, longest: float) -> None:

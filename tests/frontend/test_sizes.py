@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 from test_bad_scenes import BOX, OUTWARD, obj
@@ -76,6 +77,11 @@ def test_a_mesh_with_too_many_vertices(tmp_path: Path, monkeypatch: pytest.Monke
     with pytest.raises(InputError, match="8 vertices, at most 7") as caught:
         load_mesh(tmp_path / "box.obj", 1.0)
     assert caught.value.file == str(tmp_path / "box.obj")
+    # Where corners are still to be told apart, that many faces are enough to know.
+    trimesh.Trimesh(BOX, OUTWARD).export(tmp_path / "box.stl")
+    monkeypatch.setattr(sizes, "MOST_VERTICES", 3)
+    with pytest.raises(InputError, match="there are 12, at most 3 vertices"):
+        load_mesh(tmp_path / "box.stl", 1.0)
 
 
 @given(st.integers(0, 2**32 - 1), st.sampled_from([0.5, 0.2, 0.05]))
