@@ -11,7 +11,7 @@ import click
 from cellcolor.cli.commands import cellcolor
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.interrupts import INTERRUPTS
-from cellcolor.cli.terminal import complain, guarded_streams, shown
+from cellcolor.cli.terminal import complain, guarded_streams, shortened, shown
 from cellcolor.errors import CellcolorError
 
 
@@ -36,7 +36,8 @@ def _run(arguments: list[str]) -> Exit:
     except click.ClickException as error:
         failed: click.Context | None = getattr(error, "ctx", None)
         place = failed.command_path if failed else "cellcolor"
-        print(f"{place}: {shown(' '.join(error.format_message().split()))}", file=sys.stderr)
+        message = shortened(shown(" ".join(error.format_message().split())))
+        print(f"{place}: {message}", file=sys.stderr)
         return Exit.BAD_INPUT
     except (KeyboardInterrupt, click.Abort):
         complain("interrupted")

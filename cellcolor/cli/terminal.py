@@ -21,6 +21,7 @@ __all__ = [
     "guarded_streams",
     "print_json",
     "say",
+    "shortened",
     "shown",
     "unheard",
 ]
@@ -28,6 +29,9 @@ __all__ = [
 # Control and format characters, lone surrogates, separators of lines and paragraphs: a name with
 # them could move a terminal's cursor, recolor it, or turn the direction of what follows.
 _HIDDEN = ("Cc", "Cf", "Cs", "Zl", "Zp")
+
+
+_READABLE = 1000  # characters
 
 
 def shown(text: object) -> str:
@@ -44,8 +48,13 @@ def say(text: object = "") -> None:
 
 
 def complain(message: object) -> None:
-    """Print a line about a failure on standard error."""
-    print(f"cellcolor: {shown(message)}", file=sys.stderr)
+    """Print a line about a failure on standard error, long names and numbers shortened."""
+    print(f"cellcolor: {shortened(shown(message))}", file=sys.stderr)
+
+
+def shortened(text: str) -> str:
+    """A text without its middle, where it is too long to be read."""
+    return text if len(text) <= _READABLE else f"{text[: _READABLE // 2]} … {text[-100:]}"
 
 
 def print_json(document: Mapping[str, Any]) -> None:

@@ -296,7 +296,7 @@ _SCHEME_ADAPTER = TypeAdapter(_SchemeLine)
 def _is_json(line: str) -> bool:
     try:
         json.loads(line)
-    except (json.JSONDecodeError, RecursionError):
+    except (ValueError, RecursionError):  # too many digits are no JSONDecodeError
         return False
     return True
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import re
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +19,9 @@ from cellcolor.frontend.sizes import check_faces, check_vertices
 from cellcolor.frontend.surfaces import Faces, Surface, face_normals
 
 __all__ = ["load_mesh"]
+
+_FARTHEST, _SMALLEST = 1e4, 1e-6  # m
+_HEADER = 4096  # bytes; where a PLY file names its elements
 
 
 def load_mesh(
@@ -46,11 +51,17 @@ def load_mesh(
     """
     vertices, faces = _read_mesh(file, deadline)
     deadline.check()
+    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
+    if len(unknown):  # here already: a repair would take -1 for the last one
+        face, corner = unknown[0]
+        message = f"there is no vertex {faces[face, corner]}"
+        raise InputError(str(file), f"faces[{face}][{corner}]", message)
     if mend:
         finite = np.isfinite(vertices).all()
         vertices, faces = repair(vertices, faces) if finite else (vertices, faces)
     if not len(faces):
         raise InputError(str(file), "faces", "there are none")
+    _check_size(file, vertices, meters_per_unit)
     try:
         check_vertices(len(vertices))
         # The labelled surface's own rules, held here before any work is done.
@@ -76,12 +87,13 @@ def load_mesh(
 
 
 def _read_mesh(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
-    if not file.is_file():
+    if not _is_file(file):
         raise InputError(str(file), None, "no such mesh file")
     if file.suffix.lower() not in (".stl", ".obj", ".ply"):
         raise InputError(str(file), None, "not a mesh format known here (STL, OBJ, PLY)")
     if file.suffix.lower() == ".obj":
         return read_obj(file, deadline)
+    _check_container(file)
     try:
         mesh = trimesh.load_mesh(file, process=False, maintain_order=True)
         vertices = np.array(mesh.vertices, dtype=np.float64).reshape(-1, 3)
@@ -97,6 +109,59 @@ def _read_mesh(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
         vertices, index = np.unique(vertices, axis=0, return_inverse=True)
         faces = index.reshape(-1)[faces]
     return vertices, faces
+
+
+def _is_file(file: Path) -> bool:
+    try:
+        return file.is_file()
+    except OSError:  # a name that is too long
+        return False
+
+
+def _check_container(file: Path) -> None:
+    """Refuse what trimesh takes for text in an unknown encoding, or for a mesh without faces.
+
+    Raises:
+        InputError: an STL file is cut off or none, or a PLY file has its triangles in strips.
+    """
+    try:
+        with file.open("rb") as stream:
+            head = stream.read(_HEADER)
+            size = stream.seek(0, io.SEEK_END)
+    except OSError as error:
+        raise InputError(str(file), None, error.strerror or "cannot be read") from error
+    if file.suffix.lower() == ".ply":
+        if re.search(rb"^element\s+tri_?strips?\s", head, re.MULTILINE):
+            message = "has triangle strips, which are not read: save it with faces"
+            raise InputError(str(file), "tristrips", message)
+        return
+    faces = int.from_bytes(head[80:84], "little")
+    if len(head) >= 84 and size == 84 + 50 * faces:
+        return  # binary
+    if not head.lstrip().lower().startswith(b"solid"):
+        message = "cut off, or no STL"
+        if len(head) >= 84:
+            message += f": for {faces} faces it needs {84 + 50 * faces} bytes, it has {size}"
+        raise InputError(str(file), None, message)
+    try:
+        file.read_text(encoding="utf-8")
+    except UnicodeDecodeError as error:
+        raise InputError(str(file), None, "neither binary STL nor UTF-8 text") from error
+
+
+def _check_size(file: Path, vertices: Array, meters_per_unit: float) -> None:
+    """Refuse sizes that no arm has to do with, and no distance can be computed of."""
+    if not np.isfinite(vertices).all():
+        return  # which has an error of its own
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    farthest = float(max(abs(low).max(), abs(high).max())) * meters_per_unit
+    if farthest > _FARTHEST:
+        message = f"up to {farthest:.3g} m from their origin; is meters_per_unit right?"
+        raise InputError(str(file), "vertices", message)
+    size = float((high - low).max()) * meters_per_unit
+    if size < _SMALLEST:
+        message = f"within {size:.3g} m of each other; is meters_per_unit right?"
+        raise InputError(str(file), "vertices", message)
 
 
 def _check_elements(file: Path, vertices: Array, faces: Faces) -> None:

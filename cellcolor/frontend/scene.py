@@ -6,6 +6,7 @@ file that scenes share. File names are relative to the file that has them.
 
 from __future__ import annotations
 
+import re
 import tomllib
 from pathlib import Path
 from typing import Annotated, Literal, Self, TypeVar, get_args
@@ -13,6 +14,7 @@ from typing import Annotated, Literal, Self, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
+from cellcolor.data.files import read_text
 from cellcolor.errors import InputError
 from cellcolor.frontend.sizes import MOST_VERTICES
 
@@ -44,6 +46,10 @@ __all__ = [
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+# Far beyond what an arm covers, well within what distances can be computed of.
+Length = Annotated[FiniteFloat, Field(ge=1e-6, le=1e4)]
+Coordinate = Annotated[FiniteFloat, Field(ge=-1e4, le=1e4)]
+Position = tuple[Coordinate, Coordinate, Coordinate]
 
 
 class _Table(BaseModel):
@@ -60,7 +66,7 @@ class CapObject(_Sampled):
     """A spherical cap about +z, the sphere's center at the object's origin."""
 
     kind: Literal["spherical-cap"]
-    radius_m: Positive
+    radius_m: Length
     half_angle_rad: Annotated[FiniteFloat, Field(gt=0, lt=3.1)]
 
 
@@ -68,8 +74,8 @@ class PipeObject(_Sampled):
     """Part of a pipe's outside: its axis along y through the origin, its crown at +z."""
 
     kind: Literal["pipe"]
-    radius_m: Positive
-    length_m: Positive
+    radius_m: Length
+    length_m: Length
     arc_rad: Annotated[FiniteFloat, Field(gt=0, lt=6.2)]
 
 
@@ -77,8 +83,8 @@ class RectangleObject(_Sampled):
     """A flat rectangle in z = 0, centered on the origin, its outside at +z."""
 
     kind: Literal["rectangle"]
-    size_x_m: Positive
-    size_y_m: Positive
+    size_x_m: Length
+    size_y_m: Length
 
 
 class MeshObject(_Table):
@@ -94,36 +100,36 @@ class MeshObject(_Table):
 class Placement(_Table):
     """Pose of the object in the world; angles extrinsic x, y, z."""
 
-    position_m: Vector
+    position_m: Position
     rpy_rad: Vector = (0.0, 0.0, 0.0)
 
 
 class Ground(_Table):
     """The half space below a height."""
 
-    height_m: FiniteFloat
+    height_m: Coordinate
 
 
 class BoxObstacle(Placement):
     """A solid box, centered on its position."""
 
     kind: Literal["box"]
-    size_m: tuple[Positive, Positive, Positive]
+    size_m: tuple[Length, Length, Length]
 
 
 class CylinderObstacle(Placement):
     """A solid cylinder about its own z axis, centered on its position."""
 
     kind: Literal["cylinder"]
-    radius_m: Positive
-    height_m: Positive
+    radius_m: Length
+    height_m: Length
 
 
 class SphereObstacle(Placement):
     """A solid sphere, centered on its position."""
 
     kind: Literal["sphere"]
-    radius_m: Positive
+    radius_m: Length
 
 
 class MeshObstacle(Placement):
@@ -260,20 +266,26 @@ def load_setup(file: Path) -> Setup:
 
 
 def _load(file: Path, model: type[_Model]) -> _Model:
-    try:
-        document = tomllib.loads(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not UTF-8 text"
-        raise InputError(str(file), None, reason) from error
-    except tomllib.TOMLDecodeError as error:
-        raise InputError(str(file), None, f"not TOML: {error}") from error
+    text = read_text(file)
+    if _LONG_KEY.search(text):  # tomllib takes memory with the square of a key's parts
+        raise InputError(str(file), None, "not usable TOML: a key of more than 50 parts")
     try:
         # Strict validation takes no list for a tuple, and TOML's arrays are lists.
-        return model.model_validate(_tuples(document))
+        return model.model_validate(_tuples(tomllib.loads(text)))
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(str(file), None, f"not TOML: {error}") from error
+    except RecursionError as error:
+        raise InputError(str(file), None, "not usable TOML: nested too deeply") from error
     except ValidationError as error:
         first = error.errors()[0]
         message = "unknown key" if first["type"] == "extra_forbidden" else first["msg"]
         raise InputError(str(file), _key(first["loc"]), message) from error
+    except ValueError as error:
+        message = "not usable TOML: a number with too many digits"
+        raise InputError(str(file), None, message) from error
+
+
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""")
 
 
 def _tuples(value: object) -> object:

@@ -12,6 +12,7 @@ import xml.etree.ElementTree as ET
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from cellcolor.data.files import read_text
 from cellcolor.errors import InputError
 
 __all__ = ["Urdf", "load_urdf", "mount"]
@@ -67,10 +68,7 @@ def load_urdf(file: Path) -> Urdf:
             cylinder or sphere, numbers that are not finite.
     """
     try:
-        xml = ET.fromstring(file.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or "not UTF-8 text"
-        raise InputError(str(file), None, reason) from error
+        xml = ET.fromstring(read_text(file))
     except ET.ParseError as error:
         raise InputError(str(file), None, f"not XML: {error}") from error
     if xml.tag != "robot":
