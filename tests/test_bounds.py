@@ -29,7 +29,7 @@ SEEDS = st.integers(0, 10**6)
 @given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
 def test_set_cover_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
-    cover = set_cover(instance)
+    cover = set_cover(instance).regions
     assert set().union(*(touched for _, touched in cover)) == set(range(len(instance.cells)))
     assert len(cover) <= minimum(instance)
 
@@ -37,7 +37,7 @@ def test_set_cover_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
 def test_set_cover_splits_colors_into_regions() -> None:
     # Two red cells that do not touch need a segment each.
     apart = Instance("apart", ("red",), (Cell(0, (RED,), ()), Cell(1, (RED,), ())), ())
-    assert len(set_cover(apart)) == 2
+    assert set_cover(apart).bound == 2
 
 
 @settings(max_examples=30, deadline=None)
@@ -75,7 +75,7 @@ def test_strangers_share_no_region(seed: int, cells: int, colors: int) -> None:
         return all(len(touched.intersection(chosen)) < 2 for touched in regions)
 
     found = strangers(instance)
-    assert apart(tuple(found)) and len(found) <= len(set_cover(instance))
+    assert apart(tuple(found)) and len(found) <= set_cover(instance).bound
     more = itertools.combinations(range(len(instance.cells)), len(found) + 1)
     assert not any(map(apart, more))
 
@@ -162,10 +162,11 @@ def test_two_cells_that_nothing_separates_become_one() -> None:
         Cell(i, (RED, BLUE), loops) for i, loops in enumerate((((1,),), ((-1, 2),), ((-2,),)))
     )
     instance = Instance("row", ("red", "blue"), cells, (Edge(1, 0, 1), Edge(2, 1, 2, (RED,))))
-    found = merge_cells(instance, [frozenset({RED, BLUE})] * 3)
-    assert found.part_of == [0, 0, 2]
-    assert found.loops == {0: [[2]], 2: [[-2]]}
-    assert found.sides == {2: [0, 2]}
+    found = merge_cells(instance, dict.fromkeys(range(3), frozenset({RED, BLUE})))
+    both = found.part_of[0]
+    assert found.part_of == {0: both, 1: both, 2: 2}
+    assert found.loops == {both: [[2]], 2: [[-2]]}
+    assert found.sides == {2: (both, 2)}
     assert found.joinable == {2: frozenset({RED})}
 
 
@@ -182,6 +183,7 @@ def test_merging_around_a_cell_leaves_a_hole() -> None:
         ),
         (Edge(1, 0, 1), Edge(2, 0, 2), Edge(3, 0, 1), Edge(4, 1, 2), Edge(5, 0, 3), Edge(6, 1, 3)),
     )
-    found = merge_cells(instance, [frozenset(cell.colors) for cell in instance.cells])
-    assert found.part_of == [0, 0, 2, 3]
-    assert {frozenset(loop) for loop in found.loops[0]} == {frozenset({2, 4}), frozenset({5, 6})}
+    found = merge_cells(instance, {cell.id: frozenset(cell.colors) for cell in instance.cells})
+    ring = found.part_of[0]
+    assert found.part_of == {0: ring, 1: ring, 2: 2, 3: 3}
+    assert {frozenset(loop) for loop in found.loops[ring]} == {frozenset({2, 4}), frozenset({5, 6})}

@@ -18,10 +18,11 @@ from ortools.sat.python import cp_model
 from cellcolor.check.solution import check_division
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
 from cellcolor.families import blobs, planar_graph
 from cellcolor.solvers.bounds import color_regions, set_cover
-from cellcolor.solvers.conflicts import Pair, conflicts
+from cellcolor.solvers.conflicts import Area, conflicts
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.painting import division_of
 from cellcolor.solvers.cpsat.plans import Plan, PlannedSegment, Planner
@@ -48,7 +49,7 @@ def hub(*petals: int) -> Instance:
     )
 
 
-def areas(pair: Pair) -> tuple[list[int], list[int]]:
+def areas(pair: tuple[Area, Area]) -> tuple[list[int], list[int]]:
     one, other = pair
     return sorted(one), sorted(other)
 
@@ -137,7 +138,7 @@ def test_a_conflict_is_proved_for_any_division() -> None:
             Edge(7, 3, 5),
         ),
     )
-    assert len(set_cover(instance)) == 2
+    assert set_cover(instance).bound == 2
     found = solve(instance, Options())
     assert (found.segments, found.surface_lower_bound) == (3, 3)
     assert found.proved_for_surface
@@ -245,18 +246,18 @@ def planner_of(instance: Instance) -> Planner:
         solver.parameters.random_seed = seed
         return solver, solver.solve(model)
 
-    return Planner(instance, color_regions(instance), len(set_cover(instance)), run)
+    return Planner(instance, color_regions(instance), set_cover(instance).bound, run, NEVER)
 
 
 def fewest_planned(instance: Instance) -> tuple[int, Plan]:
     """The fewest segments for which there is a plan without conflicts."""
     planner = planner_of(instance)
-    segments = len(set_cover(instance))
+    segments = set_cover(instance).bound
     while True:
         plan = planner.plan(segments, 0)
         if plan is None:
             segments += 1
-        elif not planner.find_conflicts(plan):
+        elif not planner.find_partings(plan):
             return segments, plan
 
 
@@ -283,7 +284,7 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     """Against brute force, which paints with one strand, and the DFS with two."""
     instance = planar_graph(seed, cells, cells + 3, colors)
     fewest, plan = fewest_planned(instance)
-    assert len(set_cover(instance)) <= fewest <= minimum(instance)
+    assert set_cover(instance).bound <= fewest <= minimum(instance)
     wide = solve(instance, Options(search_space="surface", strands=2), "dfs")
     assert wide.segments is not None
     assert fewest <= wide.segments
@@ -296,7 +297,7 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
 
 
 def whole_cover(instance: Instance) -> Plan:
-    return tuple(PlannedSegment(region, region[1]) for region in set_cover(instance))
+    return tuple(PlannedSegment(region, region[1]) for region in set_cover(instance).regions)
 
 
 def graph_of(instance: Instance) -> DartGraph:
@@ -307,7 +308,7 @@ def graph_of(instance: Instance) -> DartGraph:
 
 def segments_of(instance: Instance, plan: Plan, rings: int, rounds: int = 40) -> int:
     graph = graph_of(instance)
-    painting = route(refined(graph, rings), plan, rounds, 0, lambda: False)
+    painting = route(refined(graph, rings), plan, rounds, 0)
     report = check_division(instance, division_of(graph, painting), seams=graph.seams)
     assert report.valid, report.problems
     return report.segments
@@ -412,5 +413,5 @@ def test_raw_scenes_need_no_cutting_paths(file: Path) -> None:
     """Cells are divided only where whole ones do not do."""
     instance = decompose(LabelledSurface.read(file))
     found = solve(instance, Options(fewest_cuts=True))
-    assert found.segments == len(set_cover(instance))
+    assert found.segments == set_cover(instance).bound
     assert (found.cutting_paths, found.cutting_paths_lower_bound) == (0, 0)

@@ -180,7 +180,9 @@ def test_segments_are_undone(joins: list[tuple[int, int]], data: st.DataObject) 
 
 def test_no_cells_have_no_segments() -> None:
     nothing = Instance("nothing", ("red",), (), ())
-    assert SOLVER.minimize(nothing, Options()) == Answer((), (), (Bound("search", 0, "strands"),))
+    assert SOLVER.minimize(nothing, Options()) == Answer(
+        (), (), (Bound("cover", 0, "surface"), Bound("search", 0, "strands"))
+    )
     assert list(SOLVER.optimal_schemes(nothing, Options(), 0)) == [()]
 
 
@@ -416,10 +418,9 @@ def test_time_limit_gives_the_best_so_far() -> None:
 
 
 def test_no_time_at_all_gives_no_division() -> None:
-    answer = SOLVER.minimize(
-        Instance.read(PAPER / "ring.json"), Options(deadline=Deadline.after(-1.0))
-    )
-    assert answer == Answer(None, (), (Bound("search", 2, "strands"),))
+    answer = SOLVER.minimize(hub(4, 8, 3), Options(deadline=Deadline.after(-1.0)))
+    # One connected part, of which not even a cover was looked for.
+    assert answer == Answer(None, (), (Bound("cover", 1, "surface"), Bound("search", 1, "strands")))
 
 
 def test_progress_closes_the_gap() -> None:

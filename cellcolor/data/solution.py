@@ -66,6 +66,12 @@ class CellDivision:
 Division = tuple[CellDivision, ...]
 """How every cell is divided and painted, in the order of the cells."""
 
+
+def count_segments(division: Division) -> int:
+    """How many segments a division has whose segments are numbered."""
+    return len({sub.segment for cell in division for sub in cell.subcells})
+
+
 SchemeKey = tuple[frozenset[tuple[int, frozenset[DartName]]], ...]
 
 

@@ -3,19 +3,36 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from math import ceil
 from typing import TYPE_CHECKING
 
-import networkx as nx
-
 from cellcolor.data.instance import Instance
+from cellcolor.deadline import NEVER, Deadline
 
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
 
-__all__ = ["Region", "color_regions", "set_cover", "strangers"]
+__all__ = ["Cover", "Region", "color_regions", "set_cover", "strangers"]
 
 Region = tuple[int, frozenset[int]]
 """A color, and the cells of one connected component of the part of the surface it reaches."""
+
+EFFORT = 5.0
+"""Deterministic seconds for a cover or for strangers; nearly all take a thousandth of that."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cover:
+    """Color regions that together touch every cell.
+
+    Attributes:
+        regions: as few of them as were found.
+        bound: no cover has fewer regions, and no division of the surface fewer segments.
+    """
+
+    regions: list[Region]
+    bound: int
 
 
 def color_regions(
@@ -28,20 +45,39 @@ def color_regions(
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, if not all of its own.
+
+    Returns:
+        The regions by color, those of one color by their smallest cell.
     """
     allowed = colors or [frozenset(cell.colors) for cell in instance.cells]
+    near: list[dict[int, list[int]]] = [{color: [] for color in own} for own in allowed]
+    for edge in instance.edges:
+        for color in instance.joinable(edge.id):
+            if color in near[edge.left] and color in near[edge.right]:
+                near[edge.left][color].append(edge.right)
+                near[edge.right][color].append(edge.left)
     regions: list[Region] = []
-    for color in range(len(instance.colors)):
-        graph: nx.Graph[int] = nx.Graph()
-        graph.add_nodes_from(number for number, own in enumerate(allowed) if color in own)
-        for edge in instance.edges:
-            if color in instance.joinable(edge.id) and {edge.left, edge.right} <= graph.nodes:
-                graph.add_edge(edge.left, edge.right)
-        regions += [(color, frozenset(found)) for found in nx.connected_components(graph)]
-    return regions
+    seen: set[tuple[int, int]] = set()
+    for cell, own in enumerate(near):
+        for color in own:
+            if (cell, color) in seen:
+                continue
+            seen.add((cell, color))
+            reached = [cell]
+            for place in reached:
+                for other in near[place][color]:
+                    if (other, color) not in seen:
+                        seen.add((other, color))
+                        reached.append(other)
+            regions.append((color, frozenset(reached)))
+    return sorted(regions, key=lambda region: (region[0], min(region[1])))
 
 
-def set_cover(instance: Instance, colors: Sequence[frozenset[int]] | None = None) -> list[Region]:
+def set_cover(
+    instance: Instance,
+    colors: Sequence[frozenset[int]] | None = None,
+    deadline: Deadline = NEVER,
+) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
 
     Every cell of a division holds some sub-cell, that belongs to some segment, that lies within
@@ -51,22 +87,35 @@ def set_cover(instance: Instance, colors: Sequence[frozenset[int]] | None = None
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, if not all of its own.
+        deadline: when to be content with the best cover and bound so far.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C.
     """
     from ortools.sat.python import cp_model  # slow to import, so only where it is used
 
     regions = color_regions(instance, colors)
+    touching: list[set[int]] = [set() for _ in instance.cells]
+    for number, (_, cells) in enumerate(regions):
+        for cell in cells:
+            touching[cell].add(number)
+    greedy = _greedy(regions, touching)
+    # Cells that the same regions touch are one demand.
+    demands = {frozenset(numbers) for numbers in touching}
     model = cp_model.CpModel()
     chosen = [model.new_bool_var("") for _ in regions]
-    for cell in instance.cells:
-        model.add_bool_or(
-            literal for literal, (_, cells) in zip(chosen, regions, strict=True) if cell.id in cells
-        )
+    for demand in sorted(map(sorted, demands)):
+        model.add_bool_or(chosen[number] for number in demand)
+    for number, literal in enumerate(chosen):
+        model.add_hint(literal, number in greedy)
     model.minimize(sum(chosen))
-    return [regions[number] for number in _solve(model, chosen)]
+    found = _solve(model, chosen, deadline)
+    numbers = greedy if found.chosen is None else found.chosen
+    return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
 
 
-def strangers(instance: Instance) -> list[int]:
-    """A largest set of cells of which no two lie in one color region.
+def strangers(instance: Instance, deadline: Deadline = NEVER) -> list[int]:
+    """Many cells of which no two lie in one color region, the most if there is time to prove it.
 
     No two of them can be in one segment, so there are at least as many segments: a bound that can
     be checked by eye. It is at most that of the set cover, and often equal to it.
@@ -76,21 +125,51 @@ def strangers(instance: Instance) -> list[int]:
     model = cp_model.CpModel()
     chosen = [model.new_bool_var("") for _ in instance.cells]
     for _, cells in color_regions(instance):
-        model.add_at_most_one(chosen[cell] for cell in sorted(cells))
+        if len(cells) > 1:
+            model.add_at_most_one(chosen[cell] for cell in sorted(cells))
     model.maximize(sum(chosen))
-    return _solve(model, chosen)
+    return sorted(_solve(model, chosen, deadline).chosen or ())
 
 
-def _solve(model: cp_model.CpModel, chosen: list[cp_model.IntVar]) -> list[int]:
-    """Solve a small model to the end; which of its variables are chosen."""
+def _greedy(regions: Sequence[Region], touching: Sequence[set[int]]) -> set[int]:
+    """A cover: for the cell with the fewest regions the largest of them, and so on."""
+    chosen: set[int] = set()
+    covered: set[int] = set()
+    for cell in sorted(range(len(touching)), key=lambda cell: len(touching[cell])):
+        if cell not in covered:
+            best = max(sorted(touching[cell]), key=lambda number: len(regions[number][1] - covered))
+            chosen.add(best)
+            covered |= regions[best][1]
+    return chosen
+
+
+@dataclass(frozen=True, slots=True)
+class _Found:
+    """The variables chosen, None if no solution was found in time; and the bound proved."""
+
+    chosen: set[int] | None
+    bound: int
+
+
+def _solve(
+    model: cp_model.CpModel, chosen: Sequence[cp_model.IntVar], deadline: Deadline
+) -> _Found:
+    """Solve a small model as far as there is time and effort for it.
+
+    Raises:
+        KeyboardInterrupt: Ctrl-C.
+    """
     from ortools.sat.python import cp_model
 
-    solver = cp_model.CpSolver()
-    solver.parameters.num_workers = 1
-    solver.parameters.random_seed = 0
-    # Left to itself, OR-Tools makes the next Ctrl-C kill the process.
-    solver.parameters.catch_sigint_signal = False
-    status = solver.solve(model)
-    # Something can always be chosen, and nothing limits the search for the best.
-    assert status == cp_model.OPTIMAL
-    return [number for number, literal in enumerate(chosen) if solver.boolean_value(literal)]
+    from cellcolor.solvers.interruptible import make_solver, solve_interruptibly
+
+    solver = make_solver(deadline, 1, 0, EFFORT)
+    # A cover of many regions is bounded by its linear relaxation or hardly at all.
+    solver.parameters.linearization_level = 2
+    status, interrupt = solve_interruptibly(solver, model)
+    if interrupt is not None:
+        raise interrupt
+    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        return _Found(None, 0)
+    picked = {n for n, literal in enumerate(chosen) if solver.boolean_value(literal)}
+    return _Found(picked, ceil(solver.best_objective_bound - 1e-6))

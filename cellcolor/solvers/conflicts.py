@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import heapq
+from collections import Counter, deque
 from dataclasses import dataclass
-from functools import cache
 from itertools import combinations, product
 
 from networkx.utils import UnionFind
@@ -13,20 +12,27 @@ from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds import Region
 from cellcolor.solvers.merging import MergedCells, merge_cells
 
-__all__ = ["Conflict", "conflicts"]
+__all__ = ["Area", "Conflict", "Parting", "RegionPair", "Side", "conflicts"]
 
-MOST_STATES = 2000
-"""States looked at from each starting area; with more of them it is left open what conflicts."""
+Area = frozenset[int]
+"""The cells of an area that a segment is to touch somewhere."""
 
-BORDER = -1
-"""Stands for an edge where areas have their number."""
 
-Cuts = frozenset[tuple[int, int]]
-"""Chords of ways through areas of both colors: the area, and the edges of the other color on one
-side of the chord as a bit mask. Chords with all of them on one side are left out."""
+@dataclass(frozen=True, slots=True)
+class Parting:
+    """What a segment of one color region does to those of another.
 
-Pair = tuple[frozenset[int], frozenset[int]]
-"""Two areas that one segment is to touch, as the cells that they consist of."""
+    A segment of the one region that touches both areas ``ends`` leaves areas of the other region
+    in ``groups``: no segment of that one touches two areas of different groups without crossing
+    the first, however often cutting paths cross the edges.
+
+    Attributes:
+        ends: two areas that belong to the one region and not to the other.
+        groups: areas that belong to the other region and not to the one, two groups or more.
+    """
+
+    ends: tuple[Area, Area]
+    groups: tuple[tuple[Area, ...], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,137 +48,272 @@ class Conflict:
         other: two areas that belong to the second region and not to the first.
     """
 
-    one: Pair
-    other: Pair
+    one: tuple[Area, Area]
+    other: tuple[Area, Area]
 
 
 def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflict]:
-    """What segments in two color regions cannot do side by side (docs/solver.md, "Conflicts").
+    """All that is known of what segments in two color regions cannot do side by side.
 
-    For each two areas of the first region all ways between them are tried that differ in how they
-    cut the areas that both colors reach; two areas of the second region that each of these ways
-    separates are in conflict with them. All conflicts that are returned are true ones, but not
-    all there are: none where the ways are too many or where there are handles.
+    All conflicts that are returned are true ones, but not all there are: none where the two
+    regions together cover a handle.
 
     Args:
         instance: the topological graph.
         first: a color region.
         second: another one.
     """
-    areas = _Areas(instance, first, second)
-    if len(areas.of_first) < 2 or len(areas.of_second) < 2 or areas.has_handles:
-        return []
-    return [
-        Conflict((areas.cells(start), areas.cells(end)), (areas.cells(near), areas.cells(far)))
-        for start in areas.of_first
-        for end, separated in areas.separated(start).items()
-        for near, far in sorted(separated)
-    ]
+    found: dict[frozenset[frozenset[Area]], Conflict] = {}
+    pair = RegionPair(instance, first, second)
+    for side in (pair.first, pair.second):
+        for near, far in combinations(side.areas, 2):
+            for parting in side.partings(near, far):
+                for group, further in combinations(parting.groups, 2):
+                    for areas in product(group, further):
+                        sides = (parting.ends, areas)
+                        conflict = Conflict(*(sides if side is pair.first else sides[::-1]))
+                        found[frozenset(map(frozenset, sides))] = conflict
+    return list(found.values())
 
 
-class _Areas:
-    """The surface as two colors see it: areas with one of them, the other or both.
+class RegionPair:
+    """The surface as two color regions see it: areas with one color, the other or both.
 
-    Apart from cracks, edges are left between areas of one color and areas of both only, and are
-    joinable in one color. A way may be changed to cross such an edge once at most, and to enter
-    areas of its own color once at most: it goes along the edge, or through the area, where no
-    segment of the other color can be.
+    Areas of both colors are merged as far as both can go on, so that apart from cracks edges are
+    left between areas of one color and areas of both only.
+
+    Args:
+        instance: the topological graph.
+        first: a color region.
+        second: another one.
+
+    Attributes:
+        first: what segments of the first region do to those of the second.
+        second: what segments of the second region do to those of the first.
     """
 
     def __init__(self, instance: Instance, first: Region, second: Region) -> None:
         (color, near), (other, far) = first, second
-        colors = [
-            frozenset([color] * (cell.id in near) + [other] * (cell.id in far))
-            for cell in instance.cells
+        both = frozenset((color, other))
+        colors = dict.fromkeys(near - far, frozenset((color,)))
+        colors |= dict.fromkeys(far - near, frozenset((other,)))
+        colors |= dict.fromkeys(near & far, both)
+        self._merged = merge_cells(instance, colors)
+        surface = _Surface(self._merged)
+        ways = [
+            {edge for edge, shared in self._merged.joinable.items() if own in shared}
+            for own in (color, other)
         ]
-        self._merged: MergedCells = merge_cells(instance, colors)
-        self.of_first = sorted({self._merged.part_of[cell] for cell in near - far})
-        self.of_second = sorted({self._merged.part_of[cell] for cell in far - near})
-        self.has_handles = any(len(shared) > 1 for shared in self._merged.joinable.values())
-        self._ways: dict[int, list[int]] = {}
-        self._others: dict[int, list[int]] = {}
-        for area, loops in self._merged.loops.items():
-            darts = [dart for loop in loops for dart in loop]
-            is_way = [color in self._merged.joinable[abs(dart)] for dart in darts]
-            self._ways[area] = [dart for dart, own in zip(darts, is_way, strict=True) if own]
-            self._others[area] = [dart for dart, own in zip(darts, is_way, strict=True) if not own]
-        self.apart = cache(self._apart)
+        alone = [
+            sorted({self._merged.part_of[cell] for cell in cells})
+            for cells in (near - far, far - near)
+        ]
+        # An edge that merging left between two loops of one area is a handle.
+        usable = color != other and not ways[0] & ways[1] and surface.is_planar()
+        self.first = Side(surface, alone[0], alone[1], ways[0], ways[1], usable)
+        self.second = Side(surface, alone[1], alone[0], ways[1], ways[0], usable)
 
-    def cells(self, area: int) -> frozenset[int]:
-        """The cells that an area consists of."""
-        return frozenset(cell for cell, part in enumerate(self._merged.part_of) if part == area)
+    def area_of(self, cell: int) -> int:
+        """The area that a cell is part of; -1 for one of neither region."""
+        return self._merged.part_of.get(cell, -1)
 
-    def separated(self, start: int) -> dict[int, frozenset[tuple[int, int]]]:
-        """What every way from an area of the first region to each later one separates.
 
-        A state of a way is where it is, by which dart it came in, and what it has cut so far;
-        ways that cut less come first. A way goes on only where it may still show that something
-        is not always separated.
+class _Surface:
+    """What two regions cover, and its borders."""
+
+    def __init__(self, merged: MergedCells) -> None:
+        self.merged = merged
+        self.cells = merged.cells()
+        self.following: dict[int, int] = {}
+        self.loop_of: dict[int, int] = {}
+        count = 0
+        for loops in merged.loops.values():
+            for loop in loops:
+                self.following |= zip(loop, loop[1:] + loop[:1], strict=True)
+                self.loop_of |= dict.fromkeys(loop, count)
+                count += 1
+        self.before = {following: dart for dart, following in self.following.items()}
+
+    def area(self, dart: int) -> int:
+        """The area on whose border a dart is."""
+        left, right = self.merged.sides[abs(dart)]
+        return left if dart > 0 else right
+
+    def borders(self) -> UnionFind[int]:
+        """The border curves, each as the darts after which it runs.
+
+        Behind a dart, at the corner where it ends, the border goes on to what lies before the
+        dart's other side.
         """
-        ends = {area for area in self.of_first if area > start}
-        found: dict[int, frozenset[tuple[int, int]]] = {}
-        states: set[tuple[int, int, Cuts]] = {(start, 0, frozenset())}
-        heap: list[tuple[int, int, tuple[int, int, Cuts]]] = [(0, 0, (start, 0, frozenset()))]
-        while heap:
-            _, _, (area, entered, cuts) = heapq.heappop(heap)
-            onward = (
-                (dart, cuts | chord)
-                for dart in self._ways[area]
-                if dart != entered  # an edge is crossed once
-                for chord in self._chords(area, entered, dart)
-            )
-            for dart, further in onward:
-                separated = self.apart(further)
-                following = self._beyond(dart)
-                if following in ends:
-                    found[following] = found.get(following, separated) & separated
-                if len(found) == len(ends) and all(rest <= separated for rest in found.values()):
-                    continue
-                own = following in self.of_first
-                state = following, 0 if own else -dart, further
-                if state not in states and len(self._ways[following]) > 1:
-                    states.add(state)
-                    heapq.heappush(heap, (len(further), len(states), state))
-            if len(states) > MOST_STATES:
-                return {}
-        return found
+        borders: UnionFind[int] = UnionFind(self.following)
+        for dart in self.following:
+            borders.union(dart, self.before[-dart])
+        return borders
 
-    def _beyond(self, dart: int) -> int:
-        left, right = self._merged.sides[abs(dart)]
-        return right if dart > 0 else left
+    def is_planar(self) -> bool:
+        """Whether every closed curve parts the component that it lies in.
 
-    def _chords(self, area: int, entered: int, left: int) -> list[Cuts]:
-        """What a way through an area from one dart to another may cut off.
-
-        A way from one loop to another cuts off nothing. One from a loop to itself leaves the other
-        loops on either side: that is to choose for each.
+        By Euler's formula: an area with so many live loops, a sphere with holes, has the
+        characteristic 2 - loops, each edge across which areas are glued lowers it by one, and with
+        its border curves filled each component has to be a sphere, of characteristic 2.
         """
-        others = self._others[area]
-        loops = self._merged.loops[area]
-        own = next((loop for loop in loops if entered in loop and left in loop), None)
-        if own is None or not others:
-            return [frozenset()]
-        low, high = sorted((own.index(entered), own.index(left)))
-        islands = [loop for loop in loops if loop is not own]
+        component: UnionFind[int] = UnionFind(self.merged.loops)
+        for left, right in self.merged.sides.values():
+            component.union(left, right)
+        characteristic: Counter[int] = Counter()
+        for area, loops in self.merged.loops.items():
+            if loops:
+                characteristic[component[area]] += 2 - len(loops)
+        for left, _ in self.merged.sides.values():
+            characteristic[component[left]] -= 1
+        borders = self.borders()
+        for dart in {borders[dart]: dart for dart in self.following}.values():
+            characteristic[component[self.area(dart)]] += 1
+        return all(found == 2 for found in characteristic.values())
+
+
+class Side:
+    """What segments of one region do to those of the other.
+
+    Attributes:
+        areas: the areas that belong to the one region and not to the other.
+        parted: the areas that belong to the other region and not to the one.
+    """
+
+    def __init__(
+        self,
+        surface: _Surface,
+        areas: list[int],
+        parted: list[int],
+        own: set[int],
+        other: set[int],
+        usable: bool,
+    ) -> None:
+        self.areas = areas
+        self.parted = parted
+        self._surface = surface
+        self._own = own
+        self._number = {area: number for number, area in enumerate(surface.merged.loops)}
+        self._ways = [
+            (edge, *(self._number[area] for area in surface.merged.sides[edge]))
+            for edge in sorted(other)
+        ]
+        self._wall: list[tuple[list[int], frozenset[int]]] = []
+        self._trees: dict[int, dict[int, int]] = {}
+        if usable and len(areas) > 1 and len(parted) > 1:
+            self._wall = self._components(parted, other)
+
+    def partings(self, near: int, far: int) -> list[Parting]:
+        """What a segment that touches two areas of its own region does to the other region.
+
+        Args:
+            near: an area of the one region alone.
+            far: another one.
+
+        Returns:
+            One for each component of the wall (docs/solver.md, "Conflicts") of whose areas some
+            are parted; none at all if the two regions cover a handle.
+        """
+        if not self._wall or far not in self._tree(near):
+            return []
+        far_side, free = self._sides(near, far)
+        cells = self._surface.cells
         found = []
-        for chosen in product((False, True), repeat=len(islands)):
-            inside = set(own[low + 1 : high])
-            inside.update(*(loop for loop, within in zip(islands, chosen, strict=True) if within))
-            mask = sum(1 << place for place, dart in enumerate(others) if dart in inside)
-            mask = min(mask, (1 << len(others)) - 1 - mask)
-            found.append(frozenset([(area, mask)] if mask else []))
+        for areas, numbers in self._wall:
+            groups: dict[int, list[Area]] = {}
+            roots = self._reached(numbers, far_side, free)
+            for area in areas:
+                groups.setdefault(roots[2 * self._number[area]], []).append(cells[area])
+            if len(groups) > 1:
+                found.append(Parting((cells[near], cells[far]), tuple(map(tuple, groups.values()))))
         return found
 
-    def _apart(self, cuts: Cuts) -> frozenset[tuple[int, int]]:
-        """The pairs of areas of the second region that cuts separate."""
-        together: UnionFind[tuple[int, ...]] = UnionFind((area,) for area in self.of_second)
-        for area, darts in self._others.items():
-            masks = sorted(mask for its, mask in cuts if its == area)
-            for place, dart in enumerate(darts):
-                side = (mask >> place & 1 for mask in masks)
-                together.union((area, *side), (BORDER, abs(dart)))
-        return frozenset(
-            (near, far)
-            for near, far in combinations(self.of_second, 2)
-            if together[(near,)] != together[(far,)]
-        )
+    def _reached(self, wall: frozenset[int], far_side: set[int], free: set[int]) -> list[int]:
+        """For twice an area's number, plus a parity, what of the kind is connected with it.
+
+        Ways of the other region are followed, with the parity of their crossings with a curve of
+        the one region; areas of the wall may be passed in even parity only.
+        """
+        parent = list(range(2 * len(self._number)))
+
+        def root(node: int) -> int:
+            while parent[node] != node:
+                parent[node] = parent[parent[node]]
+                node = parent[node]
+            return node
+
+        for area in free:
+            parent[2 * self._number[area] + 1] = 2 * self._number[area]
+        for edge, left, right in self._ways:
+            turn = (edge in far_side) ^ (-edge in far_side)
+            for parity in (0, 1):
+                across = parity ^ turn
+                if (parity and left in wall) or (across and right in wall):
+                    continue
+                parent[root(2 * left + parity)] = root(2 * right + across)
+        return [root(node) for node in range(len(parent))]
+
+    def _sides(self, near: int, far: int) -> tuple[set[int], set[int]]:
+        """How a curve from one area to another cuts the areas that it passes through.
+
+        Returns:
+            The darts on the far side of the curve; and the areas in which it runs from one loop to
+            another, so that both of its sides are connected within the area.
+        """
+        surface, tree = self._surface, self._tree(near)
+        beyond: set[int] = set()
+        free: set[int] = set()
+        area, left_by = far, 0
+        while area != near:
+            entered = tree[area]
+            if left_by:
+                if surface.loop_of[entered] == surface.loop_of[left_by]:
+                    dart = surface.following[entered]
+                    while dart != left_by:
+                        beyond.add(dart)
+                        dart = surface.following[dart]
+                else:
+                    free.add(area)
+            left_by = -entered
+            area = surface.area(left_by)
+        return beyond, free
+
+    def _tree(self, root: int) -> dict[int, int]:
+        """Shortest ways of the one region: the dart by which each area is entered, inside it."""
+        if root not in self._trees:
+            tree: dict[int, int] = {root: 0}
+            queue = deque([root])
+            while queue:
+                for loop in self._surface.merged.loops[queue.popleft()]:
+                    for dart in loop:
+                        if abs(dart) in self._own:
+                            beyond = self._surface.area(-dart)
+                            if beyond not in tree:
+                                tree[beyond] = -dart
+                                queue.append(beyond)
+            self._trees[root] = tree
+        return self._trees[root]
+
+    def _components(
+        self, parted: list[int], other: set[int]
+    ) -> list[tuple[list[int], frozenset[int]]]:
+        """The components with two areas or more of all that the one region cannot pass.
+
+        That is the areas of the other region alone, every edge that is not joinable for the one,
+        corners, and the border curves. Each component comes as its areas and their numbers.
+        """
+        wall = self._surface.borders()
+        for edge in other:
+            wall.union(edge, self._surface.before[edge])
+        loops = self._surface.merged.loops
+        found: dict[int, list[int]] = {}
+        for area in parted:
+            wall.union(*(dart for loop in loops[area] for dart in loop))
+        for area in parted:
+            if loops[area]:
+                found.setdefault(wall[loops[area][0][0]], []).append(area)
+        return [
+            (areas, frozenset(self._number[area] for area in areas))
+            for areas in found.values()
+            if len(areas) > 1
+        ]

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
+
+from networkx.utils import UnionFind
 
 from cellcolor.data.instance import Instance
 
@@ -22,62 +24,110 @@ class MergedCells:
     """
 
     loops: dict[int, list[list[int]]]
-    sides: dict[int, list[int]]
+    sides: dict[int, tuple[int, int]]
     joinable: dict[int, frozenset[int]]
-    part_of: list[int]
+    part_of: dict[int, int]
+
+    def cells(self) -> dict[int, frozenset[int]]:
+        """The cells that each merged cell consists of."""
+        members: dict[int, list[int]] = {}
+        for cell, part in self.part_of.items():
+            members.setdefault(part, []).append(cell)
+        return {part: frozenset(cells) for part, cells in members.items()}
 
 
-def merge_cells(instance: Instance, colors: Sequence[frozenset[int]]) -> MergedCells:
+def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> MergedCells:
     """Merge neighboring cells where nothing separates them.
 
     Two cells with one and the same set of colors, and an edge between them that is joinable for
     the whole set, are one area in which any division can be drawn: the edge goes. An edge with one
-    merged cell on both sides goes as well, which may leave a hole. Dead darts are left out.
+    merged cell on both sides goes as well, which may leave a hole; an edge between two loops of
+    one merged cell stays, for it is a handle. Dead darts are left out.
 
     Args:
         instance: the topological graph.
-        colors: the colors each cell may be painted in, all, some or none of its own.
+        colors: the colors that each cell may be painted in, of the cells that are looked at.
     """
-    joinable = {
-        edge.id: colors[edge.left] & colors[edge.right] & frozenset(instance.joinable(edge.id))
-        for edge in instance.edges
-        if instance.joinable(edge.id)
-    }
-    joinable = {edge: shared for edge, shared in joinable.items() if shared}
-    loops = {
-        cell.id: [live for loop in cell.loops if (live := [d for d in loop if abs(d) in joinable])]
-        for cell in instance.cells
-    }
-    sides = {edge: [instance.edge(edge).left, instance.edge(edge).right] for edge in joinable}
-    part_of = [cell.id for cell in instance.cells]
-    for edge in sorted(joinable):
-        left, right = sides[edge]
-        if colors[left] != joinable[edge] or colors[right] != joinable[edge]:
+    joinable: dict[int, frozenset[int]] = {}
+    rings = _Rings()
+    for cell in colors:
+        for loop in instance.cells[cell].loops:
+            live: list[int] = []
+            for dart in loop:
+                own, beyond = instance.joinable(dart), instance.across(dart)
+                if own and beyond in colors:
+                    shared = colors[cell] & colors[beyond] & frozenset(own)
+                    if shared:
+                        joinable[abs(dart)] = shared
+                        live.append(dart)
+            rings.add(live)
+    merged: UnionFind[int] = UnionFind(colors)
+    for edge_id in sorted(joinable):
+        edge = instance.edge(edge_id)
+        if colors[edge.left] != joinable[edge_id] or colors[edge.right] != joinable[edge_id]:
             continue
-        near = next(loop for loop in loops[left] if edge in loop)
-        far = next(loop for loop in loops[right] if -edge in loop)
-        if near is far:
-            # The walk there and back along the edge was what held the two parts together.
-            turned = _from(near, edge)
-            place = turned.index(-edge)
-            parts = [turned[:place], turned[place + 1 :]]
-            loops[left] = [loop for loop in loops[left] if loop is not near]
-        elif left != right:
-            parts = [_from(near, edge) + _from(far, -edge)]
-            others = [loop for loop in loops.pop(right) if loop is not far]
-            loops[left] = [loop for loop in loops[left] if loop is not near] + others
-            for pair in sides.values():
-                pair[:] = [left if cell == right else cell for cell in pair]
-            part_of = [left if cell == right else cell for cell in part_of]
-        else:
+        left, right = merged[edge.left], merged[edge.right]
+        if left == right and not rings.same(edge_id, -edge_id):
             continue  # two loops of one cell: a handle, and without the edge it was not planar
-        loops[left] += [part for part in parts if part]
-        del joinable[edge]
-        del sides[edge]
+        if left != right:
+            merged.union(left, right)
+        rings.remove(edge_id)
+        del joinable[edge_id]
+    part_of = {cell: merged[cell] for cell in colors}
+    loops: dict[int, list[list[int]]] = {part: [] for part in part_of.values()}
+    sides = {
+        edge: (part_of[instance.edge(edge).left], part_of[instance.edge(edge).right])
+        for edge in joinable
+    }
+    for darts in rings.loops():
+        left, right = sides[abs(darts[0])]
+        loops[left if darts[0] > 0 else right].append(darts)
     return MergedCells(loops, sides, joinable, part_of)
 
 
-def _from(loop: list[int], dart: int) -> list[int]:
-    """A cyclic list from behind a dart on, without it."""
-    place = loop.index(dart)
-    return loop[place + 1 :] + loop[:place]
+class _Rings:
+    """Loops of darts from which edges are taken out, one after the other."""
+
+    def __init__(self) -> None:
+        self._next: dict[int, int] = {}
+        self._before: dict[int, int] = {}
+
+    def add(self, loop: list[int]) -> None:
+        """One more loop."""
+        for dart, following in zip(loop, loop[1:] + loop[:1], strict=True):
+            self._link(dart, following)
+
+    def same(self, one: int, other: int) -> bool:
+        """Whether two darts are on one loop; walks both ways at a time, as far as the nearer."""
+        ahead, behind = self._next[one], self._before[one]
+        while ahead != one and behind != one:
+            if other in (ahead, behind):
+                return True
+            ahead, behind = self._next[ahead], self._before[behind]
+        return False
+
+    def remove(self, edge: int) -> None:
+        """Open an edge: two loops become one, or a loop walked on both of its sides two."""
+        for dart in (edge, -edge):
+            # Where a walk came to the edge it goes on behind the other side.
+            self._link(self._before[dart], self._next[-dart])
+        for dart in (edge, -edge):
+            del self._next[dart], self._before[dart]
+
+    def loops(self) -> list[list[int]]:
+        """What is left of the loops."""
+        found = []
+        seen: set[int] = set()
+        for first in self._next:
+            if first in seen:
+                continue
+            loop = [first]
+            while self._next[loop[-1]] != first:
+                loop.append(self._next[loop[-1]])
+            seen.update(loop)
+            found.append(loop)
+        return found
+
+    def _link(self, one: int, following: int) -> None:
+        self._next[one] = following
+        self._before[following] = one

@@ -9,9 +9,8 @@ from cellcolor.check.cuts import cutting_paths
 from cellcolor.check.solution import Report, check_division, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, InstanceReference, Solution, Status
+from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.solvers.bounds import set_cover
 from cellcolor.solvers.interface import Answer, Options, Progress, Solver
 
 __all__ = [
@@ -84,10 +83,9 @@ def solve(
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
-    cover = len(set_cover(instance)) if instance.cells else 0
-    bounds = _needed((Bound("cover", cover, "surface"), *answer.bounds))
+    bounds = _needed(answer.bounds)
     surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")
-    segments = None if answer.division is None else _count(answer.division)
+    segments = None if answer.division is None else count_segments(answer.division)
     proved_for_surface = segments == surface_bound
     status: Status = "feasible"
     if segments is None:
@@ -158,10 +156,6 @@ def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
             if bound.holds_for == extent and bound.value > max((b.value for b in kept), default=0):
                 kept.append(bound)
     return tuple(kept)
-
-
-def _count(division: Division) -> int:
-    return len({sub.segment for cell in division for sub in cell.subcells})
 
 
 def _cuts(instance: Instance, answer: Answer) -> int | None:

@@ -12,6 +12,7 @@ from cellcolor.solvers.bounds import color_regions
 from cellcolor.solvers.cpsat.apart import build_apart, loops_apart, read_apart
 from cellcolor.solvers.cpsat.cuts import count_cuts, unseamed
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
+from cellcolor.solvers.cpsat.model import LARGEST_MODEL, model_size, too_large
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.cpsat.seams import Seamed, SeamWriter
@@ -38,6 +39,7 @@ class FewestCuts:
         bound: no division with so many segments has fewer cutting paths.
         best: the best division so far, written with seams; None as long as no better one than the
             first was found.
+        notes: what was left out and why, a sentence each.
     """
 
     def __init__(
@@ -64,6 +66,7 @@ class FewestCuts:
         self._cuts = 0
         self.bound = 0
         self.best: Seamed | None = None
+        self.notes: list[str] = []
 
     def run(self, graph: DartGraph, painting: Painting) -> None:
         """Search until the bound is met or there is no time left.
@@ -104,6 +107,9 @@ class FewestCuts:
         colors = [self._colors[cell] for cell in apart.origin]
         seams = seams_of(apart.instance, colors, self._strands, None)
         graph = dart_graph(apart.instance, colors, self._strands, seams)
+        if (size := model_size(graph)) > LARGEST_MODEL:
+            self.notes.append(too_large(size))
+            return 0.0
         built = build_apart(apart, graph, self._regions, self._segments, groups=groups)
         solver, status = self._solve(built.model)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):

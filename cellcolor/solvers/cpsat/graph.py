@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import Seam
+from cellcolor.solvers.cpsat.parts import Loops, live_loops, seam_places
 
 Strand = tuple[int, int]
 """A dart and its strand, strands counted from 1 along the positive dart."""
@@ -87,26 +88,38 @@ def seams_of(
     strands: Mapping[int, int],
     most: int | None,
 ) -> tuple[Seam, ...]:
-    """Seams from the first live loop of every cell to its other live loops.
+    """Seams from the first live loop of every cell to its other live loops; see ``widened``."""
+    loops = live_loops(instance)
+    return widened(instance, colors, strands, loops, seam_places(instance, loops), most)
+
+
+def widened(
+    instance: Instance,
+    colors: Sequence[frozenset[int]],
+    strands: Mapping[int, int],
+    loops: Loops,
+    places: Sequence[Seam],
+    most: int | None,
+) -> tuple[Seam, ...]:
+    """Seams with as many strands as are ever needed.
 
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge.
+        loops: the loops between which seams run.
+        places: where they run, in the order of cells and loops.
         most: no seam gets more strands than this; None for as many as are ever needed.
     """
+    left = iter(places)
     seams: list[Seam] = []
-    number = max((edge.id for edge in instance.edges), default=0)
-    for cell in instance.cells:
-        loops = _live_loops(instance, cell)
+    for cell, own in zip(instance.cells, loops, strict=True):
         counts = [
             sum(strands[abs(d)] for d in loop if _joinable(instance, colors, cell, d))
-            for loop in loops
+            for loop in own
         ]
-        for loop, count in zip(loops[1:], enough_strands(counts), strict=False):
-            number += 1
-            width = count if most is None else min(count, most)
-            seams.append(Seam(number, cell.id, loops[0][0], loop[0], width))
+        widths = [count if most is None else min(count, most) for count in enough_strands(counts)]
+        seams += [replace(next(left), strands=width) for width in widths]
     return tuple(seams)
 
 
@@ -115,6 +128,7 @@ def dart_graph(
     colors: Sequence[frozenset[int]],
     strands: Mapping[int, int],
     seams: Sequence[Seam] | None,
+    loops: Loops | None = None,
 ) -> DartGraph:
     """Put strands and seams into the instance's loops and leave out what is dead.
 
@@ -122,29 +136,35 @@ def dart_graph(
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge.
-        seams: one for each further live loop of a cell, all from the cell's first live loop; None
-            leaves the loops apart.
+        seams: one for each further loop of a cell, all from the cell's first loop; None leaves the
+            loops apart.
+        loops: the loops of each cell between which its seams run; None for its live ones.
     """
+    loops = live_loops(instance) if loops is None else loops
     found: list[tuple[Strand, int, frozenset[int]]] = []
     lists: list[tuple[tuple[int, ...], ...]] = []
-    for cell in instance.cells:
+    seams_of: dict[int, list[Seam]] = {}
+    for seam in seams or ():
+        seams_of.setdefault(seam.cell, []).append(seam)
+    for cell, own in zip(instance.cells, loops, strict=True):
         if seams is None:
-            walks = [_unseamed(loop) for loop in _live_loops(instance, cell)]
+            walks = [_unseamed(loop) for loop in own]
         else:
-            walks = [_walk(instance, cell, [s for s in seams if s.cell == cell.id])]
-        loops = []
+            walks = [_walk(own, seams_of.get(cell.id, []))]
+        cyclic = []
         for walk in walks:
             first = len(found)
-            for dart, seam in walk:
-                if seam is None:
-                    joinable, count = _joinable(instance, colors, cell, dart), strands[abs(dart)]
+            for dart, through in walk:
+                if through is None:
+                    joinable = _joinable(instance, colors, cell, dart)
+                    count = strands[abs(dart)] if joinable else 0
                 else:
-                    joinable, count = colors[cell.id], seam.strands
-                numbers = range(1, count + 1 if joinable else 1)
+                    joinable, count = colors[cell.id], through.strands
+                numbers = range(1, count + 1)
                 order = numbers if dart > 0 else reversed(numbers)
                 found += [((dart, strand), cell.id, joinable) for strand in order]
-            loops.append(tuple(range(first, len(found))))
-        lists.append(tuple(loops))
+            cyclic.append(tuple(range(first, len(found))))
+        lists.append(tuple(cyclic))
     index = {name: number for number, (name, _, _) in enumerate(found)}
     darts = tuple(
         Dart(name, cell, index[-name[0], name[1]], joinable) for name, cell, joinable in found
@@ -155,29 +175,22 @@ def dart_graph(
 def _joinable(
     instance: Instance, colors: Sequence[frozenset[int]], cell: Cell, dart: int
 ) -> frozenset[int]:
-    return colors[cell.id] & colors[instance.across(dart)] & frozenset(instance.joinable(dart))
-
-
-def _live_loops(instance: Instance, cell: Cell) -> list[list[int]]:
-    """Loops as their live darts; which are live must not depend on the colors left over, since
-    a solution is read without knowing what was left out."""
-    loops = [[dart for dart in loop if instance.joinable(dart)] for loop in cell.loops]
-    return [loop for loop in loops if loop]
+    own = instance.joinable(dart)
+    return colors[cell.id] & colors[instance.across(dart)] & frozenset(own) if own else frozenset()
 
 
 def _unseamed(loop: Sequence[int]) -> list[tuple[int, Seam | None]]:
     return [(dart, None) for dart in loop]
 
 
-def _walk(instance: Instance, cell: Cell, seams: Sequence[Seam]) -> list[tuple[int, Seam | None]]:
-    """The cell's live darts in one cyclic list, its seams with them."""
-    loops = _live_loops(instance, cell)
+def _walk(loops: list[list[int]], seams: Sequence[Seam]) -> list[tuple[int, Seam | None]]:
+    """A cell's darts in one cyclic list, its seams with them."""
     if not loops:
         return []
-    walk = _unseamed(loops[0])
-    for seam, loop in zip(seams, loops[1:], strict=True):
-        start = loop.index(seam.to) + 1
-        inner = _unseamed(loop[start:] + loop[:start])
-        place = walk.index((seam.from_, None)) + 1
-        walk[place:place] = [(seam.id, seam), *inner, (-seam.id, seam)]
-    return walk
+    base, *others = loops
+    walk = _unseamed(base[1:])
+    for seam, loop in zip(seams, others, strict=True):
+        # Every seam leaves after the first dart of the first loop, so the last one is met first,
+        # and arrives after the first dart of the other.
+        walk[:0] = [(seam.id, seam), *_unseamed(loop[1:] + loop[:1]), (-seam.id, seam)]
+    return [*_unseamed(base[:1]), *walk]

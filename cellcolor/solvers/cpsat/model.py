@@ -8,13 +8,29 @@ from dataclasses import dataclass
 
 from ortools.sat.python import cp_model
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.bounds import Region
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group, fixed_roots
 from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block, Painting
 from cellcolor.solvers.cpsat.variables import Variables, make_variables
 
-__all__ = ["Model", "add_hint", "build", "fewest_subcells", "read_painting"]
+__all__ = [
+    "LARGEST_MODEL",
+    "Model",
+    "add_hint",
+    "build",
+    "fewest_subcells",
+    "model_size",
+    "read_painting",
+    "too_large",
+]
+
+MANY_DARTS = 300
+"""Of a cell: with more of them all are taken to have a common color, which is quicker."""
+
+LARGEST_MODEL = 3e6
+"""Terms of a model that is built: OR-Tools takes some 500 bytes for each while it solves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,10 +48,38 @@ class Model:
     fixed_roots: set[int]
 
 
+def model_size(graph: DartGraph) -> float:
+    """About how many terms the constraints of a model have, without building it.
+
+    Nearly all are in ``no_crossing``: two literals for each three darts of a cell, as far as
+    darts have a common color; then in ``roots``, with some for each two.
+    """
+    total = 0.0
+    for cell in graph.lists:
+        count = len(cell)
+        total += 2 * count**2
+        if count > MANY_DARTS:
+            total += 2 / 3 * count**3
+            continue
+        colors = [graph.darts[dart].colors for dart in cell]
+        for place, one in enumerate(colors):
+            for far in range(place + 1, count):
+                if not one.isdisjoint(colors[far]):
+                    # Two literals, twice for each dart between the two.
+                    total += 4 * (far - place - 1) + 8 * len(one)
+    return total
+
+
+def too_large(size: float) -> str:
+    """The sentence that says that a model of so many terms was not built."""
+    return f"A model of {size:.1g} terms was not built; {LARGEST_MODEL:.1g} are the most."
+
+
 def build(
     graph: DartGraph,
     regions: Sequence[Region],
     groups: Sequence[Group] = DEFINING + REDUNDANT,
+    deadline: Deadline = NEVER,
 ) -> Model:
     """The model of fewest segments.
 
@@ -43,10 +87,15 @@ def build(
         graph: the dart graph.
         regions: the color regions of the instance, for the set-cover constraint.
         groups: the constraint groups.
+        deadline: when to stop.
+
+    Raises:
+        OutOfTime: the deadline came first.
     """
     model = cp_model.CpModel()
     variables = make_variables(model, graph)
     for group in groups:
+        deadline.check()
         group(model, graph, variables, regions)
     model.minimize(sum(variables.root) + sum(variables.alone))
     return Model(model, variables, fixed_roots(graph, regions))

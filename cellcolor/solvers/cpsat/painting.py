@@ -10,7 +10,7 @@ from networkx.utils import UnionFind
 from cellcolor.data.solution import DartName, Division, number_segments
 from cellcolor.solvers.cpsat.graph import DartGraph
 
-__all__ = ["Block", "Painting", "canonical", "division_of", "moved", "painting_of"]
+__all__ = ["Block", "Painting", "canonical", "division_of", "moved", "painting_of", "segments_of"]
 
 
 @dataclass(slots=True)
@@ -63,26 +63,70 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
     ]
 
 
+def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
+    """The cells that each segment touches."""
+    blocks = [block for cell in painting for block in cell]
+    cell_of = [number for number, cell in enumerate(painting) for _ in cell]
+    holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
+    reached = [-1] * len(blocks)
+    segments: list[set[int]] = []
+    for first in range(len(blocks)):
+        if reached[first] >= 0:
+            continue
+        reached[first] = len(segments)
+        segments.append({cell_of[first]})
+        stack = [first]
+        while stack:
+            for dart in blocks[stack.pop()].darts:
+                other = holder[graph.darts[dart].twin]
+                if reached[other] < 0:
+                    reached[other] = reached[first]
+                    segments[-1].add(cell_of[other])
+                    stack.append(other)
+    return segments
+
+
 def canonical(graph: DartGraph, painting: Painting) -> Painting:
     """Make a scheme of a legal painting, with no more segments (docs/semantics.md, section 3).
 
     Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order; a loop
-    without darts in state 1 lies in the first sub-cell of its cell.
+    without darts in state 1 lies in the first sub-cell of its cell. These are repeated, cell by
+    cell, until none changes anything:
 
     1. An edge in state 0 that shows one joinable color on both sides becomes joined.
     2. A cutting path between equal colors goes.
     3. A sub-cell with a single dart beside others goes. It ends its segment, so that the segment
-       stays in one piece without it. Then again from the start, with one sub-cell fewer.
+       stays in one piece without it.
 
-    On a graph without seams there are no more cutting paths than before either (docs/solver.md).
+    Each of them leaves as many segments or fewer. The first two only add joins or take away
+    sub-cells; the third takes away a join and a sub-cell, so that all this comes to an end. On a
+    graph without seams there are no more cutting paths than before either (docs/solver.md).
     """
     cells = [_Cell(loops, blocks) for loops, blocks in zip(graph.loops, painting, strict=True)]
-    while True:
-        _join(graph, cells)
-        for cell in cells:
-            cell.merge()
-        if not any(_dissolve(graph, cells, cell) for cell in cells):
-            return [cell.blocks() for cell in cells]
+    waiting = dict.fromkeys(reversed(range(len(cells))))
+    while waiting:
+        number, _ = waiting.popitem()
+        cell = cells[number]
+        for dart in graph.lists[number]:
+            if dart in cell.block_of:
+                continue
+            twin = graph.darts[dart].twin
+            beyond = graph.darts[twin].cell
+            one, its = cell.shown(dart), cells[beyond].shown(twin)
+            if one.color == its.color and one.color in graph.darts[dart].colors:
+                cell.add(dart, one)
+                cells[beyond].add(twin, its)
+                if len(graph.loops[beyond]) > 1:
+                    waiting[beyond] = None  # another sub-cell may be its first one now
+        cell.merge()
+        single = cell.superfluous()
+        if single is not None:
+            twin = graph.darts[single].twin
+            beyond = graph.darts[twin].cell
+            cell.remove(single)
+            cells[beyond].remove(twin)
+            waiting[number] = waiting[beyond] = None
+    return [cell.blocks() for cell in cells]
 
 
 class _Cell:
@@ -90,21 +134,25 @@ class _Cell:
 
     def __init__(self, loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> None:
         self._loops = loops
-        self._loop_of = {dart: loop for loop in loops for dart in loop}
         self.block_of: dict[int, Block] = {}
         self.own = blocks[0]
         for block in blocks:
             for dart in block.darts:
                 self.block_of[dart] = block
+        self._shown: dict[int, Block] | None = None
 
-    def before(self, dart: int) -> Block:
+    def shown(self, dart: int) -> Block:
         """The block that a dart in state 0 shows: the last one met before it."""
-        loop = self._loop_of[dart]
-        place = loop.index(dart)
-        for other in reversed([*loop[place + 1 :], *loop[:place]]):
-            if other in self.block_of:
-                return self.block_of[other]
-        return self.blocks()[0]
+        if self._shown is None:
+            self._shown = {}
+            first = self.blocks()[0]
+            for loop in self._loops:
+                joined = (self.block_of[dart] for dart in reversed(loop) if dart in self.block_of)
+                last = next(joined, first)
+                for place in loop:
+                    last = self.block_of.get(place, last)
+                    self._shown[place] = last
+        return self._shown[dart]
 
     def merge(self) -> None:
         """Undo cutting paths between equal colors: successive darts, and unconnected loops."""
@@ -135,45 +183,32 @@ class _Cell:
             one.darts |= other.darts
             for moved in other.darts:
                 self.block_of[moved] = one
+            self._shown = None
+
+    def superfluous(self) -> int | None:
+        """The only dart of a block beside others, if there is such a block."""
+        single = next((dart for dart, b in self.block_of.items() if len(b.darts) < 2), None)
+        if single is None or all(b is self.block_of[single] for b in self.block_of.values()):
+            return None
+        return single
 
     def add(self, dart: int, block: Block) -> None:
+        """Put a dart in state 1 into the block that it showed; its loop shows what it did."""
         block.darts.add(dart)
         self.block_of[dart] = block
+        if len(self._loops) > 1:
+            self._shown = None
 
     def remove(self, dart: int) -> None:
+        """Put a dart in state 0."""
         block = self.block_of.pop(dart)
         block.darts.discard(dart)
         if not self.block_of:
             self.own = block
+        self._shown = None
 
     def blocks(self) -> list[Block]:
-        found: list[Block] = []
-        for dart in self._loop_of:
-            block = self.block_of.get(dart)
-            if block is not None and not any(block is other for other in found):
-                found.append(block)
-        return found or [self.own]
-
-
-def _join(graph: DartGraph, cells: Sequence[_Cell]) -> None:
-    for edge in graph.edges:
-        dart = graph.darts[edge]
-        own, other = cells[dart.cell], cells[graph.darts[dart.twin].cell]
-        if edge in own.block_of:
-            continue
-        one, its = own.before(edge), other.before(dart.twin)
-        if one.color == its.color and one.color in dart.colors:
-            own.add(edge, one)
-            other.add(dart.twin, its)
-
-
-def _dissolve(graph: DartGraph, cells: Sequence[_Cell], cell: _Cell) -> bool:
-    blocks = cell.blocks()
-    single = next((block for block in blocks if len(block.darts) < 2), None)
-    if len(blocks) < 2 or single is None:
-        return False
-    (dart,) = single.darts
-    twin = graph.darts[dart].twin
-    cell.remove(dart)
-    cells[graph.darts[twin].cell].remove(twin)
-    return True
+        """The blocks with darts, in the order of their first dart; one without if there is none."""
+        darts = (dart for loop in self._loops for dart in loop)
+        found = {id(b): b for dart in darts if (b := self.block_of.get(dart)) is not None}
+        return list(found.values()) or [self.own]

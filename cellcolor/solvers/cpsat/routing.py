@@ -11,8 +11,10 @@ from __future__ import annotations
 
 import heapq
 import random
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
+from math import inf
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.cpsat.painting import Painting
 from cellcolor.solvers.cpsat.plans import Plan
 from cellcolor.solvers.cpsat.refined import RefinedGraph, painting_of_nodes
@@ -24,7 +26,7 @@ FIRST_PRICE, PRICE_FACTOR, HIGHEST_PRICE = 0.5, 1.3, 50.0
 
 
 def route(
-    graph: RefinedGraph, plan: Plan, rounds: int, seed: int, over: Callable[[], bool]
+    graph: RefinedGraph, plan: Plan, rounds: int, seed: int, deadline: Deadline = NEVER
 ) -> Painting:
     """Paint a plan.
 
@@ -33,14 +35,14 @@ def route(
         plan: the segments to route.
         rounds: of routing all nets that are in conflict.
         seed: of the order in which cells are connected.
-        over: whether there is no time left; looked at after each round.
+        deadline: when to stop; looked at after each net.
 
     Returns:
         A painting; with more segments than planned if some could not be connected.
     """
     router = _Router(graph, plan, seed)
     for _ in range(rounds):
-        if router.improve() or over():
+        if router.improve(deadline) or deadline.over:
             break
     return painting_of_nodes(graph, router.colors())
 
@@ -68,9 +70,11 @@ class _Router:
         self._past = [0.0] * len(graph.cell)
         self._price = FIRST_PRICE
 
-    def improve(self) -> bool:
+    def improve(self, deadline: Deadline) -> bool:
         """One round; whether no two nets share a node and every cell is touched."""
         for net in range(len(self._plan)):
+            if deadline.over:
+                return False
             if self._has_to_move(net):
                 self._reroute(net)
         shared = [node for node, count in enumerate(self._used) if count > 1]
@@ -117,43 +121,43 @@ class _Router:
             self._graph.nodes[cells[0]],
             key=lambda node: (self._cost(node, net), self._random.random()),
         )
-        route = set(self._taken(start))
-        left = set(cells) - {cells[0]}
-        while left:
-            path = self._path(net, route, left)
-            left.discard(self._graph.cell[path[0]])
-            for node in path:
-                route.update(self._taken(node))
-        self._routes[net] = route
-        for node in route:
+        self._routes[net] = self._grown(net, start, set(cells) - {cells[0]})
+        for node in self._routes[net]:
             self._used[node] += 1
 
-    def _path(self, net: int, route: set[int], targets: set[int]) -> list[int]:
-        """The cheapest way from any of the target cells to a route (Dijkstra)."""
+    def _grown(self, net: int, start: int, targets: set[int]) -> set[int]:
+        """A route from a node to all target cells, always on to the nearest one.
+
+        One search serves for all of them (Dijkstra): what a new way takes starts at distance 0
+        again, and distances that are known already can only become shorter by that.
+        """
         color = self._plan[net].region[0]
         graph = self._graph
+        route = set(self._taken(start))
+        left = set(targets)
         distance = dict.fromkeys(route, 0.0)
         before: dict[int, int] = {}
         heap = [(0.0, node) for node in sorted(route)]
-        done: set[int] = set()
-        while True:
+        while left:
             length, node = heapq.heappop(heap)
-            if node in done:
+            if length > distance[node]:
                 continue
-            done.add(node)
-            if graph.cell[node] in targets:
-                break
+            if graph.cell[node] in left:
+                left.discard(graph.cell[node])
+                while node not in route:
+                    for taken in self._taken(node):
+                        route.add(taken)
+                        distance[taken] = 0.0
+                        heapq.heappush(heap, (0.0, taken))
+                    node = before[node]
+                continue  # it stands in the heap again, at distance 0
             for other in self._next_to(node, color):
-                if other not in done:
-                    longer = length + self._cost(other, net)
-                    if longer < distance.get(other, float("inf")):
-                        distance[other] = longer
-                        before[other] = node
-                        heapq.heappush(heap, (longer, other))
-        path = [node]
-        while path[-1] in before:
-            path.append(before[path[-1]])
-        return path
+                longer = length + self._cost(other, net)
+                if longer < distance.get(other, inf):
+                    distance[other] = longer
+                    before[other] = node
+                    heapq.heappush(heap, (longer, other))
+        return route
 
     def _cost(self, node: int, net: int) -> float:
         if self._nets_of[self._graph.cell[node]] == [net]:

@@ -1,21 +1,24 @@
-"""Running CP-SAT models one after the other within one time limit, and Ctrl-C meanwhile."""
+"""Running CP-SAT models one after the other until the deadline or Ctrl-C."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import isfinite
-from threading import Event, Thread
 
 from ortools.sat.python import cp_model
 
-from cellcolor.deadline import OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.interface import PORTFOLIO, Options
+from cellcolor.solvers.interruptible import make_solver, solve_interruptibly
 
 __all__ = ["Runner"]
 
 
 class Runner:
-    """Solves models until the deadline."""
+    """Solves models with the options' workers and seed.
+
+    Args:
+        options: how to solve.
+    """
 
     def __init__(self, options: Options) -> None:
         self._options = options
@@ -26,22 +29,27 @@ class Runner:
         """Whether there is no time left, or Ctrl-C came."""
         return self._stopped or self._options.deadline.over
 
-    def solver(self, effort: float | None) -> cp_model.CpSolver:
-        """A solver with the options' limits, workers and seed.
+    def solver(
+        self,
+        effort: float | None,
+        deadline: Deadline | None = None,
+        workers: int | None = None,
+        seed: int = 0,
+    ) -> cp_model.CpSolver:
+        """A solver with limits.
 
         Args:
             effort: deterministic seconds a worker, None for as long as there is time.
+            deadline: an earlier one than the options'.
+            workers: other than the options' number of them.
+            seed: added to the options' seed.
         """
-        solver = cp_model.CpSolver()
-        solver.parameters.num_workers = self._options.workers or PORTFOLIO
-        solver.parameters.random_seed = self._options.seed
-        # Left to itself, OR-Tools makes the next Ctrl-C kill the process.
-        solver.parameters.catch_sigint_signal = False
-        if isfinite(self._options.deadline.moment):
-            solver.parameters.max_time_in_seconds = self._options.deadline.left
-        if effort is not None:
-            solver.parameters.max_deterministic_time = effort
-        return solver
+        return make_solver(
+            deadline or self._options.deadline,
+            workers or self._options.workers or PORTFOLIO,
+            self._options.seed + seed,
+            effort,
+        )
 
     def solve(
         self,
@@ -49,41 +57,16 @@ class Runner:
         model: cp_model.CpModel,
         found: Callable[[int], None] | None = None,
     ) -> cp_model.CpSolverStatus:
-        """Solve in a thread, so that an interrupt here ends the search with its best.
+        """Solve a model; after an interrupt that ends the search there is no time left.
 
         Args:
             solver: see above.
             model: what to solve.
             found: called with the objective of each better solution, in a thread of the solver.
         """
-        status: list[cp_model.CpSolverStatus] = []
-        finished = Event()
-
-        def work() -> None:
-            try:
-                status.append(solver.solve(model, None if found is None else _Watcher(found)))
-            finally:
-                finished.set()
-
-        Thread(target=work).start()
-        # Not Thread.join: interrupted, it takes a running thread for a finished one (Python 3.11).
-        interrupt: KeyboardInterrupt | None = None
-        while not finished.is_set():
-            try:
-                finished.wait()
-            except KeyboardInterrupt as error:
-                interrupt = error
-                self._stopped = True
-                solver.stop_search()
-        if interrupt is not None and not isinstance(interrupt, OutOfTime):
-            raise interrupt
-        return status[0]
-
-
-class _Watcher(cp_model.CpSolverSolutionCallback):
-    def __init__(self, found: Callable[[int], None]) -> None:
-        super().__init__()
-        self._found = found
-
-    def on_solution_callback(self) -> None:
-        self._found(round(self.objective_value))
+        status, interrupt = solve_interruptibly(solver, model, found)
+        if interrupt is not None:
+            self._stopped = True
+            if not isinstance(interrupt, OutOfTime):
+                raise interrupt
+        return status

@@ -17,7 +17,13 @@ from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import Seam
 from cellcolor.solvers.bounds import color_regions
 from cellcolor.solvers.cpsat.graph import DartGraph, Strand, dart_graph, enough_strands, seams_of
-from cellcolor.solvers.cpsat.model import build, fewest_subcells, read_painting
+from cellcolor.solvers.cpsat.model import (
+    LARGEST_MODEL,
+    build,
+    fewest_subcells,
+    model_size,
+    read_painting,
+)
 from cellcolor.solvers.cpsat.painting import Block, Painting
 
 __all__ = ["SeamWriter", "Seamed", "Solve"]
@@ -64,7 +70,7 @@ class SeamWriter:
         self.graph = dart_graph(instance, self._colors, strands, None)
 
     def write(self, painting: Painting) -> Seamed | None:
-        """The painting with seams; None if it cannot be drawn, or if there was no time to see."""
+        """The painting with seams; None if it cannot be drawn, or if that was too much to find out."""
         written = []
         for number, blocks in enumerate(painting):
             found = self._written(number, blocks)
@@ -137,6 +143,8 @@ class SeamWriter:
         ]
         colors = [frozenset(cell.colors) for cell in instance.cells]
         small = dart_graph(instance, colors, dict.fromkeys(local.values(), 1), own)
+        if model_size(small) > LARGEST_MODEL:
+            return None
         built = build(small, color_regions(instance))
         fewest_subcells(built.model, small, built.variables, built.variables.alone, spare)
         solver, status = self._solve(built.model)

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
 from cellcolor.data.solution import DartName
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.reference.cells import CellScheme, Known, cell_schemes
 from cellcolor.solvers.reference.graph import GraphCell, twin
 from cellcolor.solvers.reference.segments import Segments
@@ -48,7 +48,16 @@ class Search:
         self._chosen: list[CellScheme] = []
         self._index_darts()
         self.budget = 0
-        self.bound = self._cover(0, 0)
+        self.bound = self._first_bound()
+
+    def _first_bound(self) -> int:
+        """The size of a smallest cover; 1 if there is no time to find it."""
+        try:
+            return self._cover(0, 0)
+        except OutOfTime as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            return 1
 
     def _index_darts(self) -> None:
         """Number the darts, and note which ones face unsolved cells at each depth."""
@@ -161,7 +170,7 @@ class Search:
                     regions |= 1 << self._region[cell.id, color]
                 if not regions & held:
                     needed.append(regions)
-            known = held.bit_count() + _hitting(frozenset(needed))
+            known = held.bit_count() + _hitting(frozenset(needed), self._deadline)
             self._covers[depth][held] = known
         return known
 
@@ -170,8 +179,13 @@ def _preference(scheme: CellScheme) -> tuple[int, int]:
     return len(scheme.subcells), sum(side is not None and side[0] == 0 for side in scheme.sides)
 
 
-def _hitting(sets: frozenset[int]) -> int:
-    """The fewest bits that hit each of the given bit sets."""
+def _hitting(sets: frozenset[int], deadline: Deadline) -> int:
+    """The fewest bits that hit each of the given bit sets.
+
+    Raises:
+        OutOfTime: the deadline has passed.
+    """
+    deadline.check()
     if not sets:
         return 0
     sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
@@ -181,5 +195,5 @@ def _hitting(sets: frozenset[int]) -> int:
     while bits:
         bit = bits & -bits
         bits ^= bit
-        best = min(best, 1 + _hitting(frozenset(s for s in sets if not s & bit)))
+        best = min(best, 1 + _hitting(frozenset(s for s in sets if not s & bit), deadline))
     return best

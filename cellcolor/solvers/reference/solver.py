@@ -52,6 +52,7 @@ class ReferenceSolver:
         """
         graphs = Graphs(instance, options.strands)
         parts = [_Part(graphs, cells, options.deadline) for cells in graphs.parts()]
+        covers = sum(part.bound for part in parts)
 
         def report() -> None:
             if progress is not None:
@@ -69,7 +70,10 @@ class ReferenceSolver:
                     report()
         except OutOfTime:
             pass
-        bounds = (Bound("search", sum(part.bound for part in parts), "strands"),)
+        bounds = (
+            Bound("cover", covers, "surface"),
+            Bound("search", sum(part.bound for part in parts), "strands"),
+        )
         if any(part.segments is None for part in parts):
             return Answer(None, (), bounds)
         blocks = {cell: found for part in parts for cell, found in part.blocks.items()}

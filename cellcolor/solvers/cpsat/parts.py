@@ -1,0 +1,110 @@
+"""Parts of an instance that no segment connects, each solved on its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import networkx as nx
+
+from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.solution import Seam
+
+__all__ = ["Part", "live_loops", "seam_places", "split"]
+
+Loops = list[list[list[int]]]
+"""For each cell its loops with live darts, each as these darts."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """A connected part of an instance, in the colors that are left of each cell.
+
+    Attributes:
+        instance: its cells, numbered anew, and its live edges under their own ids. An edge to
+            another part leads outside.
+        cells: the cell of the whole instance that each one is.
+        loops: the loops between which the cells' seams run: those that are live in the whole
+            instance, so that a seam lies where everybody expects it, whatever was left out here.
+        seams: the seams of its cells, by the part's numbers of cells, without strands.
+    """
+
+    instance: Instance
+    cells: list[int]
+    loops: Loops
+    seams: tuple[Seam, ...]
+
+
+def live_loops(instance: Instance) -> Loops:
+    """The loops with live darts of each cell, each as its live darts."""
+    return [
+        [live for loop in cell.loops if (live := [d for d in loop if instance.joinable(d)])]
+        for cell in instance.cells
+    ]
+
+
+def seam_places(instance: Instance, loops: Loops) -> tuple[Seam, ...]:
+    """Seams from the first live loop of every cell to its other live loops, without strands."""
+    seams: list[Seam] = []
+    number = max((edge.id for edge in instance.edges), default=0)
+    for cell, (first, *others) in enumerate([found or [[]] for found in loops]):
+        for loop in others:
+            number += 1
+            seams.append(Seam(number, cell, first[0], loop[0], 0))
+    return tuple(seams)
+
+
+def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Part]:
+    """The parts of an instance that live edges connect, the smallest first.
+
+    Segments never reach from one into another, so their minima and bounds add up.
+
+    Args:
+        instance: the topological graph.
+        colors: the colors each cell may be painted in, all or some of its own, one at least.
+    """
+    loops = live_loops(instance)
+    seams = seam_places(instance, loops)
+    live: dict[int, tuple[int, ...]] = {}
+    graph: nx.Graph[int] = nx.Graph()
+    graph.add_nodes_from(range(len(instance.cells)))
+    for edge in instance.edges:
+        own = instance.joinable(edge.id)
+        if own and (shared := colors[edge.left] & colors[edge.right] & set(own)):
+            live[edge.id] = tuple(sorted(shared))
+            graph.add_edge(edge.left, edge.right)
+    found = sorted((sorted(cells) for cells in nx.connected_components(graph)), key=len)
+    number = {cell: place for cells in found for place, cell in enumerate(cells)}
+    seams_of: dict[int, list[Seam]] = {}
+    for seam in seams:
+        seams_of.setdefault(seam.cell, []).append(seam)
+    parts = []
+    for cells in found:
+        here = set(cells)
+        own_edges = {abs(dart) for cell in cells for loop in loops[cell] for dart in loop}
+        edges = []
+        for edge_id in sorted(own_edges):
+            edge = instance.edge(edge_id)
+            sides = [number[s] if s in here else OUTSIDE for s in (edge.left, edge.right)]
+            edges.append(Edge(edge_id, sides[0], sides[1], live.get(edge_id, ())))
+        parts.append(
+            Part(
+                Instance(
+                    instance.name,
+                    instance.colors,
+                    tuple(
+                        Cell(place, tuple(sorted(colors[cell])), tuple(map(tuple, loops[cell])))
+                        for place, cell in enumerate(cells)
+                    ),
+                    tuple(edges),
+                ),
+                cells,
+                [loops[cell] for cell in cells],
+                tuple(
+                    Seam(seam.id, number[cell], seam.from_, seam.to, 0)
+                    for cell in cells
+                    for seam in seams_of.get(cell, ())
+                ),
+            )
+        )
+    return parts

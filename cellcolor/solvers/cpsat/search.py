@@ -1,0 +1,290 @@
+"""The search for the fewest segments of one part: cover, plans, routes, and the full model."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import suppress
+from math import ceil, isfinite
+
+from ortools.sat.python import cp_model
+
+from cellcolor.data.solution import Seam
+from cellcolor.deadline import Deadline
+from cellcolor.solvers.bounds import color_regions, set_cover
+from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, widened
+from cellcolor.solvers.cpsat.model import (
+    LARGEST_MODEL,
+    Model,
+    add_hint,
+    build,
+    model_size,
+    read_painting,
+    too_large,
+)
+from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
+from cellcolor.solvers.cpsat.parts import Part
+from cellcolor.solvers.cpsat.plans import Plan, Planner, Undecided
+from cellcolor.solvers.cpsat.refined import refined
+from cellcolor.solvers.cpsat.routing import route
+from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.cpsat.windows import improve
+from cellcolor.solvers.crossings import enough_crossings
+from cellcolor.solvers.interface import Options
+
+__all__ = ["PartSearch"]
+
+FEW_STRANDS = 2
+"""Seams are tried this narrow first, which is enough when the result meets the bound."""
+
+PLAN_EFFORT = 0.05
+"""Deterministic seconds for a plan; most take a hundredth of that."""
+
+WINDOW_EFFORT = 0.1
+"""Deterministic seconds for the model of a window."""
+
+FIRST_ROUNDS, ROUNDS = 20, 60
+"""Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
+be routed takes a few."""
+
+ATTEMPTS = 3
+"""Plans to route before the full model has to decide."""
+
+TRIAL_EFFORT = 2.0
+"""Deterministic seconds a worker for a model that is not the widest: its bound proves nothing."""
+
+
+class PartSearch:
+    """The best division of a part so far, and what is proved of it.
+
+    Attributes:
+        segments: of the best division.
+        bound: no division in the search space has fewer segments.
+        surface_bound: no division of the surface has fewer.
+        best: the best division, on its dart graph.
+        cells: the cell of the whole instance that each cell of the part is.
+        cover_bound: the size of a smallest cover, or what is proved of it.
+        notes: what was left out and why, a sentence each.
+    """
+
+    def __init__(
+        self, part: Part, options: Options, runner: Runner, report: Callable[[], None]
+    ) -> None:
+        self._part = part
+        self._instance = part.instance
+        self._options = options
+        self._runner = runner
+        self._report = report
+        self._colors = tuple(frozenset(cell.colors) for cell in part.instance.cells)
+        self._enough = enough_crossings(part.instance, self._colors)
+        self._once = dict.fromkeys(self._enough, 1)
+        self.bound = self.surface_bound = 1
+        self.cells = part.cells
+        self.cover_bound = 1
+        self.notes: list[str] = []
+        self._running: int | None = None
+        graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
+        whole: Painting = [[Block(min(colors), set())] for colors in self._colors]
+        self.best = graph, canonical(graph, whole)
+        self.segments = _segments(*self.best)
+
+    @property
+    def done(self) -> bool:
+        """Whether the best division is proved, or there is no time left."""
+        return self.segments == self.bound or self._runner.over
+
+    @property
+    def known(self) -> int:
+        """Segments of the best division, that of a model that is still running included."""
+        return self.segments if self._running is None else min(self.segments, self._running)
+
+    @property
+    def proved_for_surface(self) -> int:
+        """No division of the surface has fewer segments.
+
+        Where more corridors across an edge are never needed, the bound is one for the surface.
+        """
+        wide = all(enough <= self._options.strands for enough in self._enough.values())
+        return self.bound if wide else self.surface_bound
+
+    def cover(self, deadline: Deadline) -> None:
+        """The first bound, and a division that follows from a smallest cover."""
+        self._regions = color_regions(self._instance)
+        found = set_cover(self._instance, None, deadline)
+        self.cover_bound = found.bound
+        self._planned = found.regions
+        self._raise(found.bound)
+        color_of = {cell: color for color, cells in found.regions for cell in cells}
+        whole: Painting = [[Block(color_of[c.id], set())] for c in self._instance.cells]
+        self._offer(self.best[0], whole)
+
+    def route_plans(self, deadline: Deadline) -> None:
+        """Divisions by routing what is planned; where nothing can be planned the bound rises."""
+        planner = Planner(
+            self._instance, self._regions, self.cover_bound, self._solve_plan, deadline
+        )
+        with suppress(Undecided):
+            for attempt in range(ATTEMPTS):
+                plan = self._plan_that_holds(planner, attempt, deadline)
+                for rings in (1, 2):
+                    self._route(plan, rings, ROUNDS, attempt, deadline)
+                if self.done:
+                    return
+            looser = planner.plan(self.bound + 1, 0)
+            if looser is not None:
+                self._route(looser, 1, ROUNDS, 0, deadline)
+
+    def _plan_that_holds(self, planner: Planner, attempt: int, deadline: Deadline) -> Plan:
+        """A plan with as many segments as the bound in which no two are known to cross.
+
+        Raises:
+            Undecided: none was found, nor that there is none.
+            OutOfTime: the deadline came first.
+        """
+        while True:
+            deadline.check()
+            plan = planner.plan(self.bound, attempt)
+            if plan is None:
+                self._raise(self.bound + 1)
+                continue
+            self._planned = [segment.region for segment in plan]
+            # Looking for segments that cross takes longer than routing when none do.
+            for rings in (0, 1):
+                self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
+            if self.done or not planner.find_partings(plan):
+                return plan
+
+    def improve(self, deadline: Deadline) -> None:
+        """Better divisions by solving some cells at a time anew."""
+        graph, painting = self.best
+        seed = self._options.seed
+        for better in improve(graph, painting, self._solve_window, seed, deadline):
+            self._offer(graph, better)
+            if self.done:
+                return
+
+    def _solve_window(
+        self, model: cp_model.CpModel, seed: int
+    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+        solver = self._runner.solver(WINDOW_EFFORT, workers=1, seed=seed)
+        return solver, self._runner.solve(solver, model)
+
+    def solve_small_model(self, deadline: Deadline) -> None:
+        """The full model in the colors of the last plan only."""
+        colors = tuple(
+            frozenset(color for color, cells in self._planned if cell.id in cells)
+            for cell in self._instance.cells
+        )
+        if all(colors) and colors != self._colors:
+            seams = self._seams(self._once, FEW_STRANDS)
+            self._minimize(self._once, seams, colors, deadline, final=False)
+
+    def solve_model(self, deadline: Deadline) -> None:
+        """The full model, with as many strands as were asked for and seams can need."""
+        stages = self._stages()
+        for number, stage in enumerate(stages):
+            if not self.done and stages.index(stage) == number:
+                self._minimize(*stage, self._colors, deadline, final=stage == stages[-1])
+
+    @property
+    def widest(self) -> dict[int, int]:
+        """As many strands of each live edge as were asked for and can be needed."""
+        most = self._options.strands
+        return {edge: int(min(most, enough)) for edge, enough in self._enough.items()}
+
+    def _stages(self) -> list[tuple[dict[int, int], tuple[Seam, ...]]]:
+        """Strands and seams, from narrow ones to as wide ones as can be needed."""
+        wanted = self.widest
+        # The paper's divisions are among the surface's, and usually enough for the bound.
+        widths = [self._once, wanted] if wanted != self._once else [wanted]
+        return [
+            (strands, self._seams(strands, width))
+            for strands in widths
+            for width in (FEW_STRANDS, None)
+        ]
+
+    def _solve_plan(
+        self, model: cp_model.CpModel, seed: int
+    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+        # Too small for a portfolio.
+        solver = self._runner.solver(PLAN_EFFORT, workers=1, seed=seed)
+        return solver, self._runner.solve(solver, model)
+
+    def _route(self, plan: Plan, rings: int, rounds: int, seed: int, deadline: Deadline) -> None:
+        if self.done:
+            return
+        graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
+        seed += self._options.seed
+        self._offer(graph, route(refined(graph, rings), plan, rounds, seed, deadline))
+
+    def _minimize(
+        self,
+        strands: dict[int, int],
+        seams: tuple[Seam, ...],
+        colors: tuple[frozenset[int], ...],
+        deadline: Deadline,
+        final: bool,
+    ) -> None:
+        """Solve one model; only the final one, the widest, proves a bound of its own."""
+        graph = dart_graph(self._instance, colors, strands, seams, self._part.loops)
+        if not self._fits(graph):
+            return
+        built = build(graph, color_regions(self._instance, colors), deadline=deadline)
+        self._hint(built, graph)
+        solver = self._runner.solver(None if final else TRIAL_EFFORT, deadline)
+        if final:
+            solver.best_bound_callback = lambda bound: self._raise(ceil(bound - 1e-6), False)
+        status = self._runner.solve(solver, built.model, self._watch)
+        self._running = None
+        if final and isfinite(solver.best_objective_bound):
+            self._raise(ceil(solver.best_objective_bound - 1e-6), False)
+        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            self._offer(graph, read_painting(graph, built.variables, solver))
+
+    def _fits(self, graph: DartGraph) -> bool:
+        """Whether the model of a graph is small enough to be built; noted if it is not."""
+        size = model_size(graph)
+        if size > LARGEST_MODEL:
+            self.notes.append(too_large(size))
+        return size <= LARGEST_MODEL
+
+    def _hint(self, built: Model, graph: DartGraph) -> None:
+        """Hint the best division, if it has no strands and no colors beyond the model's."""
+        known, painting = self.best
+        fits = all(
+            block.color in graph.colors[cell]
+            for cell, blocks in enumerate(painting)
+            for block in blocks
+        )
+        if fits and {dart.name for dart in known.darts} <= {dart.name for dart in graph.darts}:
+            add_hint(built, graph, canonical(graph, moved(known, painting, graph)))
+
+    def _graph(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> DartGraph:
+        return dart_graph(self._instance, self._colors, strands, seams, self._part.loops)
+
+    def _seams(self, strands: dict[int, int], most: int | None) -> tuple[Seam, ...]:
+        part = self._part
+        return widened(self._instance, self._colors, strands, part.loops, part.seams, most)
+
+    def _offer(self, graph: DartGraph, painting: Painting) -> None:
+        painting = canonical(graph, painting)
+        segments = _segments(graph, painting)
+        if segments < self.segments:
+            self.segments = segments
+            self.best = graph, painting
+            self._report()
+
+    def _raise(self, bound: int, for_surface: bool = True) -> None:
+        if bound > self.bound:
+            self.bound = bound
+            self._report()
+        if for_surface:
+            self.surface_bound = max(self.surface_bound, bound)
+
+    def _watch(self, segments: int) -> None:
+        # What the running model has found is not offered before it ends, but stays known.
+        self._running = segments
+        self._report()
+
+
+def _segments(graph: DartGraph, painting: Painting) -> int:
+    return len(segments_of(graph, painting))
