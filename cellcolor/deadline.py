@@ -78,6 +78,10 @@ class Deadline:
                 self.check()
             yield item
 
+    def earlier(self, seconds: float) -> Deadline:
+        """A deadline so much before this one, for what has to be done after the work."""
+        return Deadline(self.moment - seconds)
+
     def share(self, part: float) -> Deadline:
         """A deadline after a part (0 to 1) of the time that is left; none if there is none."""
         if math.isinf(self.moment):

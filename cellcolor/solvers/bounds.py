@@ -13,7 +13,7 @@ from cellcolor.deadline import NEVER, Deadline
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
 
-__all__ = ["Cover", "Region", "color_regions", "set_cover", "strangers"]
+__all__ = ["Cover", "Region", "color_regions", "greedy_strangers", "set_cover", "strangers"]
 
 Region = tuple[int, frozenset[int]]
 """A color, and the cells of one connected component of the part of the surface it reaches."""
@@ -129,6 +129,21 @@ def strangers(instance: Instance, deadline: Deadline = NEVER) -> list[int]:
             model.add_at_most_one(chosen[cell] for cell in sorted(cells))
     model.maximize(sum(chosen))
     return sorted(_solve(model, chosen, deadline).chosen or ())
+
+
+def greedy_strangers(instance: Instance) -> list[int]:
+    """Cells of which no two lie in one color region, found at once but not the most there are."""
+    touching: list[list[int]] = [[] for _ in instance.cells]
+    for number, (_, cells) in enumerate(color_regions(instance)):
+        for cell in cells:
+            touching[cell].append(number)
+    used: set[int] = set()
+    found = []
+    for cell in sorted(range(len(touching)), key=lambda cell: len(touching[cell])):
+        if used.isdisjoint(touching[cell]):
+            found.append(cell)
+            used.update(touching[cell])
+    return found
 
 
 def _greedy(regions: Sequence[Region], touching: Sequence[set[int]]) -> set[int]:

@@ -10,7 +10,7 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds import color_regions, set_cover
+from cellcolor.solvers.bounds import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, widened
 from cellcolor.solvers.cpsat.model import (
     LARGEST_MODEL,
@@ -77,9 +77,9 @@ class PartSearch:
         self._colors = tuple(frozenset(cell.colors) for cell in part.instance.cells)
         self._enough = enough_crossings(part.instance, self._colors)
         self._once = dict.fromkeys(self._enough, 1)
-        self.bound = self.surface_bound = 1
+        self.bound = self.surface_bound = len(greedy_strangers(part.instance))
         self.cells = part.cells
-        self.cover_bound = 1
+        self.cover_bound = self.bound
         self.notes: list[str] = []
         self._running: int | None = None
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
@@ -110,7 +110,7 @@ class PartSearch:
         """The first bound, and a division that follows from a smallest cover."""
         self._regions = color_regions(self._instance)
         found = set_cover(self._instance, None, deadline)
-        self.cover_bound = found.bound
+        self.cover_bound = max(self.bound, found.bound)
         self._planned = found.regions
         self._raise(found.bound)
         color_of = {cell: color for color, cells in found.regions for cell in cells}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -11,6 +12,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
+from cellcolor.solvers.bounds import greedy_strangers
 from cellcolor.solvers.cpsat.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.fewest import FewestCuts
 from cellcolor.solvers.cpsat.graph import DartGraph, Strand, dart_graph
@@ -22,6 +24,9 @@ from cellcolor.solvers.interface import Answer, Options, Progress, Start
 from cellcolor.solvers.reductions import drop_dominated
 
 __all__ = ["CpSatSolver"]
+
+RESERVES = 4
+"""Times what it takes to put a division together: kept back for what follows the search."""
 
 _Stage = Callable[[PartSearch, Deadline], None]
 
@@ -79,6 +84,12 @@ class _Search:
             OutOfTime: the deadline, or an interrupt.
         """
         options, deadline = self._options, self._options.deadline
+        begun = time.monotonic()
+        self._put_together()
+        # That much again for the answer, and as much for the checker and for writing it.
+        deadline = deadline.earlier(RESERVES * (time.monotonic() - begun))
+        self._options = options = replace(options, deadline=deadline)
+        self._runner = Runner(options)
         if options.start is not None:
             self._begin_with(options.start)
         colors = drop_dominated(self._instance, deadline)
@@ -191,7 +202,7 @@ class _Search:
     def _bounds(self) -> tuple[Bound, ...]:
         """What is proved of the number of segments, and how; bounds of parts add up."""
         if not self._parts:
-            return (Bound("cover", 1, "surface"),)
+            return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
         return (
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
             Bound("conflicts", sum(part.surface_bound for part in self._parts), "surface"),
