@@ -7,6 +7,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import islice
 from pathlib import Path
 
 import pytest
@@ -35,6 +36,7 @@ from cellcolor.families import blobs, planar_graph
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.interface import Answer, Options, Progress
 from cellcolor.solvers.reference import ReferenceSolver
+from cellcolor.solvers.run import ContradictionError
 
 RING = Instance.read(PAPER / "ring.json")
 EVERY_KIND = len(KINDS)
@@ -120,16 +122,17 @@ def test_a_wrong_minimum_is_noticed_and_made_small(
 
 
 def test_a_lost_scheme_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    def without_cuts(
+    def without_the_first(
         self: ReferenceSolver, instance: Instance, options: Options, segments: int
     ) -> Iterator[Division]:
-        for division in right_schemes(self, instance, options, segments):
-            if all(len(cell.subcells) == 1 for cell in division):
-                yield division
+        yield from islice(right_schemes(self, instance, options, segments), 1, None)
 
     figure = Instance.read(PAPER / "split-cell.json")  # its only optimum has a cutting path
     assert compare(figure, 10.0).always_cut
-    monkeypatch.setattr(ReferenceSolver, "optimal_schemes", without_cuts)
+    monkeypatch.setattr(ReferenceSolver, "optimal_schemes", without_the_first)
+    with pytest.raises(ContradictionError, match="dfs found no scheme with 2 segments"):
+        compare(figure, 10.0)
+    figure = Instance.read(PAPER / "crossing-zeros.json")  # three optimal schemes
     with pytest.raises(
         Disagreement, match="cp-sat lists 1 optimal schemes that dfs does not, dfs 0"
     ):
