@@ -16,7 +16,7 @@ from functools import cache
 import networkx as nx
 
 from cellcolor.data.instance import Cell, Edge, Instance
-from cellcolor.data.solution import Division, number_segments
+from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
 
 Loops = tuple[tuple[int, ...], ...]
 Blocks = frozenset[frozenset[int]]
@@ -151,6 +151,66 @@ def fewest(instance: Instance) -> tuple[int, int]:
             )
             best = min(best, (count, cuts))
     return best
+
+
+def optimal_schemes(instance: Instance) -> tuple[int, set[SchemeKey]]:
+    """The fewest segments of any division, and the schemes among those that have so many."""
+    best = len(instance.cells) * 100
+    found: set[SchemeKey] = set()
+    for division in divisions(instance):
+        count = segments(division)
+        if count < best:
+            best, found = count, set()
+        if count == best and is_scheme(instance, division):
+            found.add(scheme_key(as_division(division)))
+    return best, found
+
+
+def is_scheme(instance: Instance, division: Sequence[Painted]) -> bool:
+    """Rules 2, 4 and 5, the others being those of a division."""
+    gaps: list[list[dict[int, int]]] = []
+    for cell, painted in zip(instance.cells, division, strict=True):
+        loops = live_loops(instance, cell)
+        if len(painted) > 1 and any(len(block) < 2 for _, block in painted):
+            return False
+        holder = {dart: (color, block) for color, block in painted for dart in block}
+        reach: nx.Graph[object] = nx.Graph()
+        reach.add_nodes_from(painted)
+        for loop in loops:
+            ones = [dart for dart in loop if dart in holder]
+            for dart, after in zip(ones, ones[1:] + ones[:1], strict=True):
+                (color, block), (other, its) = holder[dart], holder[after]
+                if color == other and block != its:
+                    return False
+                reach.add_edge(holder[dart], holder[after])
+                start = loop.index(dart) + 1
+                following = (*loop[start:], *loop[: start - 1])
+                end = next((n for n, d in enumerate(following) if d in holder), len(following))
+                run = following[:end]
+                gaps.append(
+                    [
+                        {d: color if place < cut else other for place, d in enumerate(run)}
+                        for cut in range(len(run) + 1)
+                    ]
+                )
+            if not ones:
+                gaps.append([dict.fromkeys(loop, color) for color, _ in painted])
+        for part, apart in itertools.combinations(nx.connected_components(reach), 2):
+            if {color for color, _ in part} & {color for color, _ in apart}:
+                return False
+
+    def can_differ(number: int, shown: dict[int, int]) -> bool:
+        if number == len(gaps):
+            return True
+        return any(
+            not any(
+                (shown | more).get(-d) == c and c in instance.joinable(d) for d, c in more.items()
+            )
+            and can_differ(number + 1, shown | more)
+            for more in gaps[number]
+        )
+
+    return can_differ(0, {})
 
 
 def holed(seed: int, darts: int, loops: int, colors: int) -> Instance:

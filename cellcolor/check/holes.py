@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import combinations
+
+import networkx as nx
 
 from cellcolor.check.cuts import whole_subcells
 from cellcolor.check.lists import Strand, strands_along
@@ -17,15 +20,35 @@ class PaintedLoops:
     """A cell's division, loop by loop.
 
     Attributes:
+        id: the cell.
         loops: each live loop, with the sub-cells of the whole cell.
     """
 
+    id: int
     loops: tuple[Painted, ...]
 
     @property
-    def colors(self) -> Sequence[int]:
-        """The color of each sub-cell."""
-        return self.loops[0].colors
+    def whole(self) -> Painted:
+        """All loops as if they were one."""
+        darts = [dart for loop in self.loops for dart in loop.darts]
+        block_of = {dart: block for loop in self.loops for dart, block in loop.block_of.items()}
+        return Painted(darts, block_of, self.loops[0].colors)
+
+    def unconnected_pair(self) -> tuple[int, int] | None:
+        """Two sub-cells of one color that no chain of loops and sub-cells connects."""
+        graph: nx.Graph[int] = nx.Graph()
+        for loop in self.loops:
+            nx.add_path(graph, sorted(set(loop.block_of.values())))
+        group = {b: n for n, part in enumerate(nx.connected_components(graph)) for b in part}
+        colors = self.loops[0].colors
+        return next(
+            (
+                (one, other)
+                for one, other in combinations(sorted(group), 2)
+                if colors[one] == colors[other] and group[one] != group[other]
+            ),
+            None,
+        )
 
 
 def on_loops(
@@ -53,7 +76,7 @@ def on_loops(
             if loop
         )
         if painted:
-            found.append(PaintedLoops(painted))
+            found.append(PaintedLoops(cell.id, painted))
     return found
 
 
@@ -66,7 +89,7 @@ def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable)
     settled: list[Painted] = []
     open_loops: list[tuple[Painted, list[int]]] = []
     for cell in cells:
-        colors = sorted(set(cell.colors))
+        colors = sorted(set(cell.loops[0].colors))
         for loop in cell.loops:
             if loop.block_of:
                 settled.append(loop)

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import networkx as nx
 
-from cellcolor.check.holes import on_loops, unavoidable_join_on_loops
+from cellcolor.check.drawing import can_be_drawn
+from cellcolor.check.holes import PaintedLoops, on_loops, unavoidable_join_on_loops
 from cellcolor.check.lists import BadSeams, Strand, TooManyDarts, live_lists, strand_of, twin
 from cellcolor.check.numbers import number_problems
 from cellcolor.check.scheme import (
@@ -78,7 +79,7 @@ def check_division(
     problems: list[str] = []
     painted: list[Painted] = []
     for cell, darts in zip(division, lists, strict=True):
-        found = _cell_problems(instance, cell, darts)
+        found = _cell_problems(instance, cell, darts) or _crossing_problems(cell, darts)
         problems += found
         if not found:
             painted.append(_painted(cell, darts))
@@ -96,6 +97,49 @@ def check_division(
     labels, segments = _segments(division)
     problems += labels
     return Report(tuple(problems), tuple(_not_canonical(painted)), segments)
+
+
+def check_scheme(instance: Instance, division: Division) -> Report:
+    """Hold a scheme against the instance (docs/semantics.md, section 3).
+
+    Schemes know no seams: in cells with several loops sub-cells have to be such as can be drawn.
+
+    Args:
+        instance: the topological graph.
+        division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
+    """
+    live = [
+        [loop for loop in cell.loops if any(map(instance.joinable, loop))]
+        for cell in instance.cells
+    ]
+    if all(len(loops) < 2 for loops in live):
+        return check_division(instance, division)
+    if [cell.id for cell in division] != [cell.id for cell in instance.cells]:
+        return Report(
+            (f"cells: must be cells 0 to {len(instance.cells) - 1}, each once",), (), None
+        )
+
+    def joinable(strand: Strand) -> frozenset[int]:
+        return frozenset(instance.joinable(strand[0]))
+
+    problems: list[str] = []
+    for cell, loops in zip(division, live, strict=True):
+        darts = [(dart, 1) for loop in loops for dart in loop if instance.joinable(dart)]
+        problems += _cell_problems(instance, cell, darts)
+    if not problems:
+        cells = on_loops(instance, division, (), 1)
+        problems += [
+            f"cells[{cell.id}].subcells: cannot be drawn without crossing each other"
+            for cell in cells
+            if not can_be_drawn([[loop.block_of[d] for d in loop.joined()] for loop in cell.loops])
+        ] or _edge_problems(division, joinable)
+    if problems:
+        return Report(tuple(problems), (), None)
+    stuck = unavoidable_join_on_loops(cells, joinable)
+    if stuck is not None:
+        problems.append(f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0")
+    labels, segments = _segments(division)
+    return Report(tuple(problems + labels), tuple(_not_canonical_on_loops(cells)), segments)
 
 
 def check_solution(instance: Instance, solution: Solution) -> Report:
@@ -143,11 +187,14 @@ def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Stran
             if dart in seen:
                 problems.append(f"{where}.darts: {_text(dart)} stands twice")
             seen.add(dart)
-    if not problems:
-        crossed = crossing(_painted(cell, darts))
-        if crossed is not None:
-            problems.append(f"cells[{cell.id}].subcells: {crossed[0]} and {crossed[1]} cross")
     return problems
+
+
+def _crossing_problems(cell: CellDivision, darts: Sequence[Strand]) -> list[str]:
+    crossed = crossing(_painted(cell, darts))
+    if crossed is None:
+        return []
+    return [f"cells[{cell.id}].subcells: {crossed[0]} and {crossed[1]} cross"]
 
 
 def _painted(cell: CellDivision, darts: Sequence[Strand]) -> Painted:
@@ -215,6 +262,26 @@ def _not_canonical(cells: Sequence[Painted]) -> list[str]:
             reasons.append(
                 f"cells[{number}]: a cut between {_text(cut[0])} and {_text(cut[1])} "
                 "separates equal colors"
+            )
+    return reasons
+
+
+def _not_canonical_on_loops(cells: Sequence[PaintedLoops]) -> list[str]:
+    reasons = []
+    for cell in cells:
+        block = superfluous(cell.whole)
+        if block is not None:
+            reasons.append(f"cells[{cell.id}].subcells[{block}]: fewer than two darts in state 1")
+        reasons += [
+            f"cells[{cell.id}]: a cut between {_text(cut[0])} and {_text(cut[1])} "
+            "separates equal colors"
+            for cut in filter(None, map(idle_cut, cell.loops))
+        ]
+        pair = cell.unconnected_pair()
+        if pair is not None:
+            reasons.append(
+                f"cells[{cell.id}].subcells: {pair[0]} and {pair[1]} have one color and no chain "
+                "of loops connects them"
             )
     return reasons
 

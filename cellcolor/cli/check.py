@@ -8,7 +8,7 @@ from typing import Any
 
 from cellcolor.check.known import contradictions
 from cellcolor.check.numbers import claims
-from cellcolor.check.solution import check_division, check_solution
+from cellcolor.check.solution import check_scheme, check_solution
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import instance_of, read_subject
 from cellcolor.cli.terminal import print_json, say
@@ -59,7 +59,7 @@ def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
     keys: set[SchemeKey] = set()
     count = 0
     for count, division in enumerate(read_schemes(claim), start=1):
-        scheme = check_division(instance, division)
+        scheme = check_scheme(instance, division)
         faults = [*scheme.problems, *scheme.not_canonical]
         if not faults and scheme.segments != solution.segments:
             faults.append(f"has {scheme.segments} segments, the solution {solution.segments}")

@@ -198,7 +198,7 @@ def _solve(
     """Solve one instance and write what was found."""
     from cellcolor.solvers.run import solve
 
-    if request.every:
+    if request.every and request.solver == "dfs":
         _refuse_schemes(instance)
     if request.warm_start is not None:
         options = replace(options, start=_start(instance, request.warm_start, options))
@@ -231,7 +231,7 @@ def _refuse_schemes(instance: Instance) -> None:
             raise InputError(
                 None,
                 f"cells[{cell.id}].loops",
-                f"--all needs cells with one live loop, this one has {live}",
+                f"--all with --solver dfs needs cells with one live loop, this one has {live}",
             )
 
 

@@ -6,7 +6,7 @@ import time
 from collections.abc import Iterator
 
 from cellcolor.check.cuts import cutting_paths
-from cellcolor.check.solution import Report, check_division, check_solution
+from cellcolor.check.solution import Report, check_scheme, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
@@ -122,7 +122,7 @@ def enumerate_schemes(
     """Every optimal scheme (docs/semantics.md, section 3), each once, as they are found.
 
     Args:
-        instance: the topological graph; at most one live loop a cell.
+        instance: the topological graph.
         options: time limit and seed; the search space is ``paper``.
         solver: one of ``SOLVERS``.
         segments: the minimum.
@@ -135,7 +135,7 @@ def enumerate_schemes(
     found = False
     for division in make_solver(solver).optimal_schemes(instance, options, segments):
         found = True
-        report = check_division(instance, division)
+        report = check_scheme(instance, division)
         _insist(report, solver)
         if report.segments != segments or not report.is_scheme:
             reasons = "; ".join(report.not_canonical) or f"{report.segments} segments"

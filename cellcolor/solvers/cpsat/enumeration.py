@@ -9,6 +9,7 @@ the choices of several gaps together is sorted out as the solutions come.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from math import isfinite
 from queue import SimpleQueue
 from threading import Semaphore, Thread
@@ -19,8 +20,11 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, InputError, TooLarge
-from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.graph import DartGraph
+from cellcolor.solvers.cpsat.loops import literals_on_loops, same_blocks, unconnected_differ
 from cellcolor.solvers.cpsat.painting import Block, Painting, division_of
+from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.cpsat.seams import SeamWriter
 from cellcolor.solvers.cpsat.zeros import zeros_can_differ
 from cellcolor.solvers.interface import Options
 
@@ -39,13 +43,12 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
     The search runs in a thread that is never far ahead of who takes the schemes.
 
     Args:
-        instance: the topological graph; at most one live loop a cell.
+        instance: the topological graph.
         options: deadline and seed.
         segments: the minimum.
 
     Raises:
-        InputError: a cell has several loops with live darts, or the search space is ``surface``:
-            schemes are defined for neither.
+        InputError: the search space is ``surface``, for which schemes are not defined.
         OutOfTime: the deadline came first.
         TooLarge: the model would not fit into memory.
         CellcolorError: CP-SAT took the model for none.
@@ -55,13 +58,16 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
     if not instance.cells:
         yield ()
         return
-    for cell in instance.cells:
-        if sum(any(map(instance.joinable, loop)) for loop in cell.loops) > 1:
-            raise InputError(
-                None, f"cells[{cell.id}].loops", "schemes are defined for one loop with live darts"
-            )
-    colors = [frozenset(cell.colors) for cell in instance.cells]
-    graph = dart_graph(instance, colors, dict.fromkeys((e.id for e in instance.edges), 1), ())
+    runner = Runner(replace(options, workers=1))
+
+    def solve(
+        small: cp_model.CpModel,
+    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+        solver = runner.solver(None)
+        return solver, runner.solve(solver, small)
+
+    writer = SeamWriter(instance, dict.fromkeys((e.id for e in instance.edges), 1), solve)
+    graph = writer.graph
     _check_size(graph, options.deadline)
     model = _SchemeModel(graph, segments, options.deadline)
     solver = cp_model.CpSolver()
@@ -86,8 +92,11 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         while isinstance(painting := found.get(), list):
             options.deadline.check()
             collector.room.release()
-            if zeros_can_differ(graph, painting):
+            if not unconnected_differ(graph, painting) or not zeros_can_differ(graph, painting):
+                continue
+            if writer.can_be_drawn(painting):
                 yield division_of(graph, painting)
+            options.deadline.check()
     finally:
         collector.stop()
         while thread.is_alive():  # a stop that comes before the search does is lost
@@ -108,7 +117,7 @@ def _check_size(graph: DartGraph, deadline: Deadline) -> None:
     keep it from crossing others and in 2 n that want blocks of two darts; rule 4 looks at the
     darts between the two for each color that they share.
     """
-    literals = 0
+    literals = sum(literals_on_loops(loops) for loops in graph.loops if len(loops) > 1)
     for cell in graph.lists:
         for place, one in enumerate(cell):
             deadline.check()
@@ -147,9 +156,17 @@ class _SchemeModel:
         self._label = [model.new_int_var(0, dart, "") for dart in darts]
         self._distance = [model.new_int_var(0, len(graph.darts), "") for _ in darts]
         self._root = [model.new_bool_var("") for _ in darts]
-        for number in range(len(graph.lists)):
-            self._chains(number)
-            self._successive(number)
+        for number, loops in enumerate(graph.loops):
+            cell = graph.lists[number]
+            model.add_exactly_one(
+                [*self.own[number].values(), self._any([self.joined[dart] for dart in cell])]
+            )
+            if len(loops) > 1:
+                variables = self.joined, self.joined_in
+                self.link |= same_blocks(model, graph, loops, variables, deadline)
+            else:
+                self._chains(number)
+                self._successive(number)
         self._certain_zeros()
         self._certificate()
         # A cell without darts in state 1 is a segment of its own, in the one color it shows.
@@ -195,9 +212,6 @@ class _SchemeModel:
     def _successive(self, number: int) -> None:
         """Rule 4: successive darts in state 1 of one color are in one block."""
         model, cell = self.model, self.graph.lists[number]
-        model.add_exactly_one(
-            [*self.own[number].values(), self._any([self.joined[d] for d in cell])]
-        )
         first, last = self._outermost(cell), self._outermost(cell[::-1])
         with_first = {dart: model.new_bool_var("") for dart in cell}
         for place, dart in enumerate(cell):
@@ -245,12 +259,15 @@ class _SchemeModel:
         """Rule 5 where nothing is free: the same color before and after, on both sides."""
         before: dict[tuple[int, int], cp_model.IntVar] = {}
         after: dict[tuple[int, int], cp_model.IntVar] = {}
-        for number, cell in enumerate(self.graph.lists):
-            self._seen(number, cell, before)
-            self._seen(number, cell[::-1], after)
+        for number, loops in enumerate(self.graph.loops):
+            if len(loops) == 1:
+                self._seen(number, loops[0], before)
+                self._seen(number, loops[0][::-1], after)
         for edge in self.graph.edges:
             twin = self.graph.darts[edge].twin
             for color in self.graph.darts[edge].colors:
+                if (edge, color) not in before or (twin, color) not in before:
+                    continue  # cells with several loops are looked at in each solution
                 sides = [seen[d, color] for d in (edge, twin) for seen in (before, after)]
                 self.model.add_bool_or([self.joined[edge], *(~literal for literal in sides)])
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from networkx.utils import UnionFind
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Cell, Edge, Instance
@@ -94,6 +95,17 @@ class SeamWriter:
             for blocks, cell in zip(painting, written, strict=True)
         ]
 
+    def can_be_drawn(self, painting: Painting) -> bool:
+        """Whether the sub-cells, which do not cross on any one loop, do not cross at all.
+
+        Also False if there was no time to see. Loops and sub-cells that hang together like a forest
+        can be drawn in any case.
+        """
+        return all(
+            _forest(self.graph.loops[number], blocks) or self._written(number, blocks) is not None
+            for number, blocks in enumerate(painting)
+        )
+
     def _written(self, number: int, blocks: Sequence[Block]) -> _Written | None:
         names = tuple(
             frozenset(self.graph.darts[dart].name for dart in block.darts) for block in blocks
@@ -173,3 +185,16 @@ class SeamWriter:
                 for color in range(len(blocks))
             ),
         )
+
+
+def _forest(loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> bool:
+    """Whether loops and the blocks that have darts on them make no circle."""
+    holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
+    connected: UnionFind[tuple[str, int]] = UnionFind()
+    for number, loop in enumerate(loops):
+        for block in {holder[dart] for dart in loop if dart in holder}:
+            one, other = ("loop", number), ("block", block)
+            if connected[one] == connected[other]:
+                return False
+            connected.union(one, other)
+    return True

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import product
 
 from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block
@@ -18,11 +19,37 @@ def zeros_can_differ(graph: DartGraph, painting: Sequence[Sequence[Block]]) -> b
     has a choice, early or late; a 2-satisfiability problem, solved by trying and propagating:
     what a choice forces is kept when it leads to no contradiction, for it then hinders nothing.
 
+    A loop without darts in state 1, in a cell that has some on another loop, lies in one of the
+    cell's blocks: each color that these have is tried.
+
     Args:
         graph: the dart graph.
         painting: each cell's blocks.
     """
-    colors, forced = _gaps(graph, painting)
+    open_loops = {}
+    for loops, blocks in zip(graph.loops, painting, strict=True):
+        joined = {dart for block in blocks for dart in block.darts}
+        for loop in loops if joined else ():
+            if joined.isdisjoint(loop):
+                open_loops[loop] = _colors_for(graph, loop, sorted({b.color for b in blocks}))
+    return any(
+        _can_differ(graph, painting, dict(zip(open_loops, colors, strict=True)))
+        for colors in product(*open_loops.values())
+    )
+
+
+def _colors_for(graph: DartGraph, loop: Sequence[int], colors: list[int]) -> list[int]:
+    """The colors worth trying for a loop: one that joins nowhere is as good as any."""
+    idle = [c for c in colors if not any(c in graph.darts[dart].colors for dart in loop)]
+    return idle[:1] or colors
+
+
+def _can_differ(
+    graph: DartGraph,
+    painting: Sequence[Sequence[Block]],
+    color_of_loop: Mapping[tuple[int, ...], int],
+) -> bool:
+    colors, forced = _gaps(graph, painting, color_of_loop)
     chosen: dict[int, bool] = {}
 
     def consequences(dart: int, late: bool) -> list[tuple[int, bool]]:
@@ -54,7 +81,9 @@ def zeros_can_differ(graph: DartGraph, painting: Sequence[Sequence[Block]]) -> b
 
 
 def _gaps(
-    graph: DartGraph, painting: Sequence[Sequence[Block]]
+    graph: DartGraph,
+    painting: Sequence[Sequence[Block]],
+    color_of_loop: Mapping[tuple[int, ...], int],
 ) -> tuple[dict[int, tuple[int, int]], dict[tuple[int, bool], int | None]]:
     """The colors before and after each dart in state 0, and which dart its choice forces.
 
@@ -63,19 +92,22 @@ def _gaps(
     """
     colors: dict[int, tuple[int, int]] = {}
     forced: dict[tuple[int, bool], int | None] = {}
-    for cell, blocks in zip(graph.lists, painting, strict=True):
+    for loops, blocks in zip(graph.loops, painting, strict=True):
         color_of = {dart: block.color for block in blocks for dart in block.darts}
-        start = next((place for place, dart in enumerate(cell) if dart in color_of), 0)
-        before = color_of[cell[start]] if color_of else blocks[0].color
-        run: list[int] = []
-        for dart in [*cell[start:], *cell[:start]]:
-            if dart not in color_of:
-                run.append(dart)
+        for loop in loops:
+            start = next((place for place, dart in enumerate(loop) if dart in color_of), None)
+            if start is None:
+                own = color_of_loop.get(loop, blocks[0].color)
+                _add_run(loop, (own, own), colors, forced)
                 continue
-            _add_run(run, (before, color_of[dart]), colors, forced)
-            before, run = color_of[dart], []
-        after = color_of[cell[start]] if color_of else blocks[0].color
-        _add_run(run, (before, after), colors, forced)
+            before = color_of[loop[start]]
+            run: list[int] = []
+            for dart in [*loop[start:], *loop[: start + 1]]:
+                if dart not in color_of:
+                    run.append(dart)
+                    continue
+                _add_run(run, (before, color_of[dart]), colors, forced)
+                before, run = color_of[dart], []
     return colors, forced
 
 
