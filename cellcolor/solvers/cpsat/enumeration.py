@@ -92,11 +92,12 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         while isinstance(painting := found.get(), list):
             options.deadline.check()
             collector.room.release()
-            if not unconnected_differ(graph, painting) or not zeros_can_differ(graph, painting):
-                continue
-            if writer.can_be_drawn(painting):
+            if (
+                unconnected_differ(graph, painting)
+                and zeros_can_differ(graph, painting, options.deadline)
+                and writer.can_be_drawn(painting)
+            ):
                 yield division_of(graph, painting)
-            options.deadline.check()
     finally:
         collector.stop()
         while thread.is_alive():  # a stop that comes before the search does is lost

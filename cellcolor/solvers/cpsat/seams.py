@@ -16,6 +16,8 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import Seam
+from cellcolor.deadline import OutOfTime
+from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds import color_regions
 from cellcolor.solvers.cpsat.graph import DartGraph, Strand, dart_graph, enough_strands, seams_of
 from cellcolor.solvers.cpsat.model import (
@@ -24,6 +26,7 @@ from cellcolor.solvers.cpsat.model import (
     fewest_subcells,
     model_size,
     read_painting,
+    too_large,
 )
 from cellcolor.solvers.cpsat.painting import Block, Painting
 
@@ -74,7 +77,10 @@ class SeamWriter:
         """The painting with seams; None if it cannot be drawn or was not found out."""
         written = []
         for number, blocks in enumerate(painting):
-            found = self._written(number, blocks)
+            try:
+                found = self._written(number, blocks)
+            except (OutOfTime, TooLarge):
+                return None
             if found is None:
                 return None
             written.append(found)
@@ -98,8 +104,11 @@ class SeamWriter:
     def can_be_drawn(self, painting: Painting) -> bool:
         """Whether the sub-cells, which do not cross on any one loop, do not cross at all.
 
-        Also False if there was no time to see. Loops and sub-cells that hang together like a forest
-        can be drawn in any case.
+        Loops and sub-cells that hang together like a forest can be drawn in any case.
+
+        Raises:
+            OutOfTime: there was no time to see.
+            TooLarge: the model that is to decide would not fit into memory.
         """
         return all(
             _forest(self.graph.loops[number], blocks) or self._written(number, blocks) is not None
@@ -121,7 +130,7 @@ class SeamWriter:
     def _draw(
         self, number: int, blocks: Sequence[frozenset[int]], seams: Sequence[Seam]
     ) -> _Written | None:
-        """Paint the cell alone, a color for each sub-cell."""
+        """Paint the cell alone, a color for each sub-cell; None if that cannot be drawn."""
         graph = self.graph
         loops = graph.loops[number]
         corners = [
@@ -155,13 +164,15 @@ class SeamWriter:
         ]
         colors = [frozenset(cell.colors) for cell in instance.cells]
         small = dart_graph(instance, colors, dict.fromkeys(local.values(), 1), own)
-        if model_size(small) > LARGEST_MODEL:
-            return None
+        if (size := model_size(small)) > LARGEST_MODEL:
+            raise TooLarge(too_large(size))
         built = build(small, color_regions(instance))
         fewest_subcells(built.model, small, built.variables, built.variables.alone, spare)
         solver, status = self._solve(built.model)
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        if status == cp_model.INFEASIBLE:
             return None
+        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            raise OutOfTime("there was no time to draw the sub-cells of a cell")
         pieces = [
             (block.color, [small.darts[dart].name for dart in block.darts])
             for block in read_painting(small, built.variables, solver)[0]

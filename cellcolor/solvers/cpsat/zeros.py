@@ -6,13 +6,16 @@ from collections import deque
 from collections.abc import Mapping, Sequence
 from itertools import product
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.cpsat.graph import DartGraph
 from cellcolor.solvers.cpsat.painting import Block
 
 __all__ = ["zeros_can_differ"]
 
 
-def zeros_can_differ(graph: DartGraph, painting: Sequence[Sequence[Block]]) -> bool:
+def zeros_can_differ(
+    graph: DartGraph, painting: Sequence[Sequence[Block]], deadline: Deadline = NEVER
+) -> bool:
     """Whether the darts in state 0 can be dealt to the blocks before and after them.
 
     Within a gap the dealt colors change once, from that before to that after. Each dart in state 0
@@ -25,6 +28,10 @@ def zeros_can_differ(graph: DartGraph, painting: Sequence[Sequence[Block]]) -> b
     Args:
         graph: the dart graph.
         painting: each cell's blocks.
+        deadline: when to stop.
+
+    Raises:
+        OutOfTime: the deadline has passed.
     """
     open_loops = {}
     for loops, blocks in zip(graph.loops, painting, strict=True):
@@ -32,10 +39,11 @@ def zeros_can_differ(graph: DartGraph, painting: Sequence[Sequence[Block]]) -> b
         for loop in loops if joined else ():
             if joined.isdisjoint(loop):
                 open_loops[loop] = _colors_for(graph, loop, sorted({b.color for b in blocks}))
-    return any(
-        _can_differ(graph, painting, dict(zip(open_loops, colors, strict=True)))
-        for colors in product(*open_loops.values())
-    )
+    for colors in product(*open_loops.values()):
+        deadline.check()
+        if _can_differ(graph, painting, dict(zip(open_loops, colors, strict=True))):
+            return True
+    return False
 
 
 def _colors_for(graph: DartGraph, loop: Sequence[int], colors: list[int]) -> list[int]:
