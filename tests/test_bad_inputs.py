@@ -82,6 +82,9 @@ GRAPHS = {
     "infinite coordinate": surface_of(
         put("vertices", 2, 1, to=float("inf")), "vertices[2][1]", "finite"
     ),
+    "coordinate beyond everything": surface_of(
+        put("vertices", 2, 1, to=-1e308), "vertices[2][1]", "beyond 1e+09 m"
+    ),
     "edge of three faces": surface_of(
         lambda d: (
             d["vertices"].append([0, 0, 1]),

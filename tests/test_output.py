@@ -160,7 +160,11 @@ class TestForeignFiles:
     def test_folder_of_a_campaign(self, tmp_path: Path, capsys: Capture) -> None:
         path = tmp_path / "file"
         path.touch()
-        refused(["campaign", "--count", 1, "-o", path], capsys, str(path), "must be a folder")
+        circle = tmp_path / "circle"
+        circle.symlink_to(circle)
+        for output, named in ((path, path), (path / "a" / "b", path), (circle, circle)):
+            arguments = ["campaign", "--count", 1, "-o", output]
+            refused(arguments, capsys, f"{named}: must be a folder")
 
 
 class TestPictures:

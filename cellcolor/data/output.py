@@ -157,9 +157,12 @@ def is_folder_or_nothing(path: Path) -> bool:
     Raises:
         InputError: something else is there.
     """
-    if not is_folder(path) and path.exists():
-        raise InputError(str(path), None, "must be a folder, is none")
-    return path.exists()
+    if is_folder(path):
+        return True
+    nearest = next(place for place in (path, *path.parents) if os.path.lexists(place))
+    if not nearest.is_dir():
+        raise InputError(str(nearest), None, "must be a folder, is none")
+    return False
 
 
 def write(outputs: Sequence[Output], inputs: Sequence[Path] = ()) -> None:

@@ -18,6 +18,7 @@ from cellcolor.data.values import json_content, plain, settle, validate_python
 from cellcolor.errors import InputError
 
 FORMAT = "cellcolor/labelled-surface"
+_FARTHEST = 1e9  # m
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,6 +93,10 @@ class LabelledSurface:
         bad = np.argwhere(~np.isfinite(self.vertices))
         if len(bad):
             raise InputError(None, f"vertices[{bad[0][0]}][{bad[0][1]}]", "is not a finite number")
+        bad = np.argwhere(np.abs(self.vertices) > _FARTHEST)
+        if len(bad):
+            message = f"is beyond {_FARTHEST:g} m: areas could not be computed"
+            raise InputError(None, f"vertices[{bad[0][0]}][{bad[0][1]}]", message)
         if len(self.vertex_colors) != len(self.vertices):
             raise InputError(
                 None,
