@@ -261,21 +261,22 @@ class _SchemeModel:
         before: dict[tuple[int, int], cp_model.IntVar] = {}
         after: dict[tuple[int, int], cp_model.IntVar] = {}
         for number, loops in enumerate(self.graph.loops):
-            if len(loops) == 1:
-                self._seen(number, loops[0], before)
-                self._seen(number, loops[0][::-1], after)
+            for loop in loops:
+                self._seen(number, loop, before)
+                self._seen(number, loop[::-1], after)
         for edge in self.graph.edges:
             twin = self.graph.darts[edge].twin
             for color in self.graph.darts[edge].colors:
-                if (edge, color) not in before or (twin, color) not in before:
-                    continue  # cells with several loops are looked at in each solution
                 sides = [seen[d, color] for d in (edge, twin) for seen in (before, after)]
                 self.model.add_bool_or([self.joined[edge], *(~literal for literal in sides)])
 
     def _seen(
         self, number: int, cell: tuple[int, ...], seen: dict[tuple[int, int], cp_model.IntVar]
     ) -> None:
-        """The color of the nearest dart in state 1 behind each dart, or the cell's own."""
+        """The color of the nearest dart in state 1 behind each dart of a loop, or the cell's own.
+
+        None where only other loops of the cell have darts in state 1.
+        """
         model, own = self.model, self.own[number]
         for dart in cell:
             for color in own:
@@ -291,6 +292,10 @@ class _SchemeModel:
                 else:
                     model.add_implication(self.joined[previous], ~here)
             model.add_at_most_one(seen[dart, color] for color in own)
+        joined_here = [self.joined[dart] for dart in cell]
+        for dart in cell:
+            for color, literal in own.items():
+                model.add_bool_or([~seen[dart, color], literal, *joined_here])
 
     def _certificate(self) -> None:
         """Each segment has one root, its first dart, and distances from there."""
