@@ -95,11 +95,11 @@ def test_a_signal_that_a_library_swallows(number: signal.Signals, tmp_path: Path
         "try:\n    import cellcolor.frontend\nexcept ModuleNotFoundError:\n    sys.exit(3)\n"
         "import cellcolor.frontend as frontend\n"
         "build = frontend.build_surface\n"
-        "def swallowed(path):\n"
+        "def swallowed(*arguments):\n"
         "    try:\n"
         f"        signal.raise_signal({int(number)})\n"
         "    except BaseException:\n        pass\n"
-        "    return build(path)\n"
+        "    return build(*arguments)\n"
         "frontend.build_surface = swallowed\n"
         "from cellcolor.cli import main\nsys.exit(main())\n"
     )
