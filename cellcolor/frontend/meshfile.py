@@ -20,7 +20,7 @@ from cellcolor.frontend.surfaces import Faces, Surface, face_normals
 
 __all__ = ["load_mesh"]
 
-_FARTHEST, _SMALLEST = 1e4, 1e-6  # m
+_FARTHEST, _SMALLEST = 1e6, 1e-6  # m
 _HEADER = 4096  # bytes; where a PLY file names its elements
 
 

@@ -47,8 +47,8 @@ Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 # Far beyond what an arm covers, well within what distances can be computed of.
-Length = Annotated[FiniteFloat, Field(ge=1e-6, le=1e4)]
-Coordinate = Annotated[FiniteFloat, Field(ge=-1e4, le=1e4)]
+Length = Annotated[FiniteFloat, Field(ge=1e-6, le=1e6)]
+Coordinate = Annotated[FiniteFloat, Field(ge=-1e6, le=1e6)]
 Position = tuple[Coordinate, Coordinate, Coordinate]
 
 
