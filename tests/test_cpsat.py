@@ -21,7 +21,7 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import TooLarge
 from cellcolor.families import blobs, hub, hub_minimum, planar_graph
-from cellcolor.solvers.bounds import color_regions
+from cellcolor.solvers.bounds import color_regions, strangers
 from cellcolor.solvers.cpsat import CpSatSolver, enumeration
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
@@ -307,11 +307,12 @@ def test_a_canonical_painting_joins_what_shows_one_color() -> None:
 
 
 def test_without_any_time_there_is_a_division_all_the_same() -> None:
-    """Every cell painted whole; and that there has to be a segment is all that is claimed."""
+    """Every cell painted whole; and a bound that takes no search."""
     instance = decompose(blobs(3))
     found = solve(instance, Options(deadline=Deadline.after(0.0)))
-    assert (found.status, found.lower_bound, found.surface_lower_bound) == ("feasible", 1, 1)
-    assert found.segments is not None and 1 < found.segments <= len(instance.cells)
+    assert found.status == "feasible" and [bound.kind for bound in found.bounds] == ["strangers"]
+    assert found.segments is not None and found.segments <= len(instance.cells)
+    assert 1 <= found.surface_lower_bound <= len(strangers(instance)) < found.segments
 
 
 @pytest.mark.parametrize("instance", [Instance("empty", (), (), ()), Instance("e", ("r",), (), ())])
