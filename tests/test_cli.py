@@ -260,7 +260,7 @@ class TestMore:
         assert run("solve", instance, "-o", start) == 0
         assert run("solve", instance, "--warm-start", start, "--time-limit", "1e-9", "-o", target)
         assert Solution.read(target).cells == Solution.read(start).cells
-        # Without it every cell is painted whole: 25 segments, but for the petals in the hub's color.
+        # Without it every cell is painted whole, so that only one color's petals are joined.
         assert run("solve", instance, "--time-limit", "1e-9", "-o", target)
         assert (Solution.read(target).segments or 0) > (Solution.read(start).segments or 0)
 
