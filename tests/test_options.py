@@ -36,6 +36,7 @@ CORRIDORS = Instance.read(PAPER / "parallel-corridors.json")
         ({"search_space": "surface", "strands": True}, "strands", "valid integer"),
         ({"workers": -3}, "workers", "greater than or equal to 1"),
         ({"workers": 0}, "workers", "greater than or equal to 1"),
+        ({"workers": 10**14}, "workers", "less than or equal to 1000"),
         ({"workers": math.nan}, "workers", "valid integer"),
         ({"seed": -1}, "seed", "greater than or equal to 0"),
         ({"seed": 2**31}, "seed", "less than or equal to 2147483647"),
@@ -114,3 +115,9 @@ class TestStatusesOfTheSchemes:
         self.end_with(monkeypatch, cp_model.INFEASIBLE)
         with pytest.raises(ContradictionError, match="no scheme with 2 segments"):
             list(enumerate_schemes(RING, Options(), "cp-sat", 2))
+
+
+@pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
+def test_more_strands_than_fit_into_memory_are_refused(solver: str) -> None:
+    with pytest.raises(InputError, match=r"strands: .* are too many"):
+        solve(CORRIDORS, Options("surface", 10**20), solver)

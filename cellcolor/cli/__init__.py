@@ -31,17 +31,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None:
         atexit.register(INTERRUPTS.ignore)  # the first registered is the last called
     try:
-        with INTERRUPTS.end_the_command():
+        with INTERRUPTS.end_the_command(last=arguments is None):
             from cellcolor.cli.run import run
 
             code = run(arguments)
+            if arguments is None:
+                # The work is done; a signal can only hasten the end of the process.
+                INTERRUPTS.handle_with(lambda *_: os._exit(code))
     except (KeyboardInterrupt, ImportError):
         # In the moments before and after the command proper.
         if not INTERRUPTS.seen:
             raise
         print("cellcolor: interrupted", file=sys.stderr)
         code = Exit.STOPPED
-    if arguments is None:
-        # The work is done; a signal can only hasten the end of the process.
-        INTERRUPTS.handle_with(lambda *_: os._exit(code))
     return code

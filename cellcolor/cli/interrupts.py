@@ -41,8 +41,13 @@ class Interrupts:
         self.seen = False
 
     @contextmanager
-    def end_the_command(self) -> Iterator[None]:
-        """Turn signals into :class:`Stopped`, and forget those of earlier commands."""
+    def end_the_command(self, *, last: bool) -> Iterator[None]:
+        """Turn signals into :class:`Stopped`, and forget those of earlier commands.
+
+        Args:
+            last: the process ends with this command: the former handlers, which would answer a
+                late signal with a traceback, do not come back.
+        """
 
         def handle(_number: int, _frame: FrameType | None) -> None:
             self.seen = True
@@ -58,8 +63,12 @@ class Interrupts:
 
         sys.unraisablehook = quiet
         try:
-            with handled_by(handle):
+            if last:
+                self.handle_with(handle)
                 yield
+            else:
+                with handled_by(handle):
+                    yield
         finally:
             sys.unraisablehook = report
 

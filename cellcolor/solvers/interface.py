@@ -47,7 +47,7 @@ class Options:
         strands: strands per topological edge, at least 1; left out, what ``STRANDS`` has for the
             search space.
         deadline: when everything has to end.
-        workers: CP-SAT's search workers, None for ``PORTFOLIO``.
+        workers: CP-SAT's search workers, at most 1000, None for ``PORTFOLIO``.
         seed: of everything random.
         start: a division to start from (CP-SAT only).
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
@@ -60,7 +60,7 @@ class Options:
     search_space: SearchSpace = "paper"
     strands: Annotated[int, Ge(1)] = cast(int, None)  # until __post_init__
     deadline: Deadline = NEVER
-    workers: Annotated[int, Ge(1)] | None = None
+    workers: Annotated[int, Ge(1), Le(1000)] | None = None
     seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
     start: Start | None = None
     fewest_cuts: bool = False

@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 
 from cellcolor.check.cuts import cutting_paths
+from cellcolor.check.lists import MOST_DARTS
 from cellcolor.check.solution import Report, check_scheme, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
@@ -69,13 +70,22 @@ def solve(
         The solution, held against the instance by the checker.
 
     Raises:
-        InputError: an option is of CP-SAT only, and the solver is another.
+        InputError: an option is of CP-SAT only, and the solver is another; or there are too many
+            strands.
         ContradictionError: the checker refuses what the solver found.
     """
     if solver == "dfs":
         for name, asked in (("start", options.start), ("fewest_cuts", options.fewest_cuts)):
             if asked:
                 raise InputError(None, name, "goes with the solver cp-sat")
+    live = sum(bool(instance.joinable(edge.id)) for edge in instance.edges)
+    if 2 * live * options.strands > MOST_DARTS:
+        raise InputError(
+            None,
+            "strands",
+            f"{options.strands} for each of {live} live edges are too many; "
+            f"they may have {MOST_DARTS} darts together",
+        )
     chosen = make_solver(solver)
     start = time.monotonic()
     answer = chosen.minimize(instance, options, progress)

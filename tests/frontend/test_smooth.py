@@ -74,7 +74,14 @@ turns = st.floats(0.0, 2.5)
 def test_smooth_motions_are_smooth_and_unwound(
     length: float, turn: float, total: float, even: float, power: float, start: float
 ) -> None:
-    """A joint goes one way, faster and faster; its ends do not say how often around."""
+    """A joint goes one way, faster and faster; its ends do not say how often around.
+
+    Beyond some speed a motion counts as a jump: a step of the bound on a part that is too short.
+    """
+    policy = MEASURE.policy
+    fastest = abs(total) * (even + (1 - even) * power)
+    shortest = policy.probe_spacing_m / 2**11 / (length + LEVER * turn)
+    assume(fastest * shortest < policy.base_step_rad / 2)
     found = followed(
         edge(length, turn), lambda at: start + total * (even * at + (1 - even) * at**power)
     )

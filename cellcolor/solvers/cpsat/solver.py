@@ -74,6 +74,7 @@ class _Search:
         self._loops = live_loops(instance)
         self._own = tuple(frozenset(cell.colors) for cell in instance.cells)
         self._start: tuple[DartGraph, Painting] | None = None
+        self._whole: tuple[DartGraph, Painting] | None = None
         self._parts: list[PartSearch] = []
         self._fewest: FewestCuts | None = None
 
@@ -85,18 +86,19 @@ class _Search:
         """
         options, deadline = self._options, self._options.deadline
         begun = time.monotonic()
-        self._put_together()
+        self._whole = self._put_together()
         # That much again for the answer, and as much for the checker and for writing it.
         deadline = deadline.earlier(RESERVES * (time.monotonic() - begun))
         self._options = options = replace(options, deadline=deadline)
         self._runner = Runner(options)
         if options.start is not None:
             self._begin_with(options.start)
+        deadline.check()
         colors = drop_dominated(self._instance, deadline)
         deadline.check()
         self._parts = [
             PartSearch(part, options, self._runner, self._report)
-            for part in split(self._instance, colors)
+            for part in deadline.watch(split(self._instance, colors))
         ]
         self._report()
         for stage in self._stages():
@@ -171,7 +173,9 @@ class _Search:
         self._start = graph, canonical(graph, painting_of(graph, start.division))
 
     def _put_together(self) -> tuple[DartGraph, Painting]:
-        """The best divisions of all parts as one; cells of no part are painted whole."""
+        """The best divisions of all parts as one; without parts every cell is painted whole."""
+        if not self._parts and self._whole is not None:
+            return self._whole
         found: dict[int, list[tuple[int, list[Strand]]]] = {}
         widths: dict[int, int] = {}
         for part in self._parts:
