@@ -59,7 +59,7 @@ Rows = Iterator[list[str]]
 
 def whole_command(file: Path, space: str, repeat: int) -> list[str]:
     """Cells, most live darts, answer, and the medians of whole command and solving alone."""
-    command = [sys.executable, "-m", "cellcolor.cli", "solve", str(file), "--json"]
+    command = [sys.executable, "-m", "cellcolor", "solve", str(file), "--json"]
     command += ["--search-space", space, "--time-limit", "60"]
     wholes, solves = [], []
     for _ in range(repeat):
