@@ -39,8 +39,11 @@ class PlannedSegment:
 Plan = tuple[PlannedSegment, ...]
 
 MOST_LITERALS = 100_000
-"""In the constraints that keep segments from crossing; with more of them a plan takes as long as
-the full model."""
+"""For the areas that segments touch."""
+
+MOST_PARTED = 2_000
+"""Literals of the constraints that keep segments from crossing. Around a cell with many petals nearly
+everything is in conflict, which the full model bounds better; where plans help there are less."""
 
 MOST_PARTINGS = 200
 """Found at a time, before the next plan is made with them."""
@@ -110,7 +113,7 @@ class Planner:
         """
         copies = segments - self._fewest + 1
         parted = [parting for partings in self._partings.values() for parting in partings]
-        if copies**2 * sum(2 + len(parting.groups) for parting in parted) > MOST_LITERALS:
+        if copies**2 * sum(2 + len(parting.groups) for parting in parted) > MOST_PARTED:
             raise Undecided
         if copies * sum(map(len, self._areas_of)) > MOST_LITERALS:
             raise Undecided

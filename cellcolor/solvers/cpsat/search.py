@@ -39,6 +39,9 @@ FEW_STRANDS = 2
 PLAN_EFFORT = 0.05
 """Deterministic seconds for a plan; most take a hundredth of that."""
 
+LARGE_MODEL = 200_000
+"""Terms of a part's model; a larger part is first improved window by window."""
+
 WINDOW_EFFORT = 0.1
 """Deterministic seconds for the model of a window."""
 
@@ -153,9 +156,11 @@ class PartSearch:
             if self.done or not planner.find_partings(plan):
                 return plan
 
-    def improve(self, deadline: Deadline) -> None:
-        """Better divisions by solving some cells at a time anew."""
+    def improve_large(self, deadline: Deadline) -> None:
+        """Better divisions by solving some cells at a time anew, of a part too large for more."""
         graph, painting = self.best
+        if model_size(graph) < LARGE_MODEL:
+            return
         seed = self._options.seed
         for better in improve(graph, painting, self._solve_window, seed, deadline):
             self._offer(graph, better)

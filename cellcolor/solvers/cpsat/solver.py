@@ -147,7 +147,7 @@ class _Search:
         return [
             PartSearch.cover,
             lambda part, deadline: part.route_plans(deadline.share(1 / 2)),
-            PartSearch.improve,
+            PartSearch.improve_large,
             PartSearch.solve_small_model,
             PartSearch.solve_model,
         ]
