@@ -43,7 +43,7 @@ MOST_LITERALS = 100_000
 
 MOST_PARTED = 2_000
 """Literals of the constraints that keep segments from crossing. Around a cell with many petals
-nearly everything is in conflict, which the full model bounds better; where plans help they are few."""
+nearly all is in conflict, which the full model bounds better; where plans help they are few."""
 
 MOST_PARTINGS = 200
 """Found at a time, before the next plan is made with them."""
