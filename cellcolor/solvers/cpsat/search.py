@@ -29,7 +29,7 @@ from cellcolor.solvers.cpsat.routing import route
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.crossings import enough_crossings
-from cellcolor.solvers.interface import Options
+from cellcolor.solvers.interface import PORTFOLIO, Options
 
 __all__ = ["PartSearch"]
 
@@ -158,10 +158,19 @@ class PartSearch:
 
     def improve_large(self, deadline: Deadline) -> None:
         """Better divisions by solving some cells at a time anew, of a part too large for more."""
-        graph, painting = self.best
-        if model_size(graph) < LARGE_MODEL:
-            return
+        if model_size(self.best[0]) >= LARGE_MODEL:
+            self._improve(self._options.seed, deadline)
+
+    def improve_on(self, deadline: Deadline) -> None:
+        """Better divisions by other windows, as long as there is time."""
         seed = self._options.seed
+        while isfinite(deadline.moment) and not self.done:
+            deadline.check()
+            seed += 1
+            self._improve(seed, deadline)
+
+    def _improve(self, seed: int, deadline: Deadline) -> None:
+        graph, painting = self.best
         for better in improve(graph, painting, self._solve_window, seed, deadline):
             self._offer(graph, better)
             if self.done:
@@ -248,6 +257,8 @@ class PartSearch:
     def _fits(self, graph: DartGraph) -> bool:
         """Whether the model of a graph is small enough to be built; noted if it is not."""
         size = model_size(graph)
+        # Every worker has a copy of its own.
+        size *= max(1.0, (self._options.workers or PORTFOLIO) / PORTFOLIO)
         if size > LARGEST_MODEL:
             self.notes.append(too_large(size))
         return size <= LARGEST_MODEL

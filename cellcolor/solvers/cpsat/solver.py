@@ -147,9 +147,10 @@ class _Search:
         return [
             PartSearch.cover,
             lambda part, deadline: part.route_plans(deadline.share(1 / 2)),
-            PartSearch.improve_large,
+            lambda part, deadline: part.improve_large(deadline.share(1 / 2)),
             PartSearch.solve_small_model,
             PartSearch.solve_model,
+            PartSearch.improve_on,
         ]
 
     def _run_stage(self, stage: _Stage, parts: list[PartSearch]) -> None:
