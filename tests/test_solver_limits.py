@@ -20,7 +20,7 @@ from cellcolor.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.conflicts import RegionPair, conflicts
 from cellcolor.solvers.cpsat import model as model_module
-from cellcolor.solvers.cpsat import search
+from cellcolor.solvers.cpsat import search, windows
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model import build, model_size
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, division_of
@@ -343,3 +343,31 @@ def test_windows_get_as_far_as_the_whole_model() -> None:
         reached += count_segments(division_of(graph, last))
         best += found.segments or 0
     assert best <= reached <= best + 2
+
+
+def test_windows_leave_out_what_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hub of 150 petals has 2 million terms; no window may hold it, or face it with all darts."""
+    graph = graph_of(hub(1, 150, 3))
+    assert model_size(graph) > 10 * windows.LARGEST_WINDOW
+    sizes = []
+
+    def noted(window: DartGraph, *rest: object, **named: object) -> object:
+        sizes.append(model_size(window))
+        return build(window, *rest, **named)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(windows, "build", noted)
+    list(improve(graph, whole_cells(graph), solved, 0, NEVER))
+    assert all(size <= windows.LARGEST_WINDOW for size in sizes)
+
+
+def test_twenty_loops() -> None:
+    """Seams of half a million strands are told by their widths; not even their darts are made."""
+    instance = hub_with_loops(1, 20, 3, 3)
+    once = {edge.id: 1 for edge in instance.edges}
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    seams = seams_of(instance, colors, once, None)
+    assert max(seam.strands for seam in seams) > 500_000
+    assert model_module.seams_size(seams) > model_module.LARGEST_MODEL
+    found = solve(instance, Options(deadline=Deadline.after(4.0), workers=1, fewest_cuts=True))
+    assert found.segments is not None
+    assert any("was not built" in note for note in found.notes) or found.proved_for_surface

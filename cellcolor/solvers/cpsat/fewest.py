@@ -12,7 +12,7 @@ from cellcolor.solvers.bounds import color_regions
 from cellcolor.solvers.cpsat.apart import build_apart, loops_apart, read_apart
 from cellcolor.solvers.cpsat.cuts import count_cuts, unseamed
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model import LARGEST_MODEL, model_size, too_large
+from cellcolor.solvers.cpsat.model import LARGEST_MODEL, model_size, seams_size, too_large
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical
 from cellcolor.solvers.cpsat.runner import Runner
 from cellcolor.solvers.cpsat.seams import Seamed, SeamWriter
@@ -106,8 +106,10 @@ class FewestCuts:
         apart = loops_apart(self._instance, set(self._holed) - set(seamed))
         colors = [self._colors[cell] for cell in apart.origin]
         seams = seams_of(apart.instance, colors, self._strands, None)
-        graph = dart_graph(apart.instance, colors, self._strands, seams)
-        if (size := model_size(graph)) > LARGEST_MODEL:
+        if (size := seams_size(seams)) <= LARGEST_MODEL:
+            graph = dart_graph(apart.instance, colors, self._strands, seams)
+            size = model_size(graph)
+        if size > LARGEST_MODEL:
             self.notes.append(too_large(size))
             return 0.0
         built = build_apart(apart, graph, self._regions, self._segments, groups=groups)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from ortools.sat.python import cp_model
 
+from cellcolor.data.solution import Seam
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.bounds import Region
 from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group, fixed_roots
@@ -23,6 +24,7 @@ __all__ = [
     "fewest_subcells",
     "model_size",
     "read_painting",
+    "seams_size",
     "too_large",
 ]
 
@@ -68,6 +70,17 @@ def model_size(graph: DartGraph) -> float:
                     # Two literals, twice for each dart between the two.
                     total += 4 * (far - place - 1) + 8 * len(one)
     return total
+
+
+def seams_size(seams: Sequence[Seam]) -> float:
+    """About how many terms a model has for its seams alone, told before its graph is made.
+
+    All darts of a cell's seams have all of its colors in common.
+    """
+    widths: dict[int, int] = {}
+    for seam in seams:
+        widths[seam.cell] = widths.get(seam.cell, 0) + seam.strands
+    return sum(2 / 3 * (2 * min(width, 10**6)) ** 3 for width in widths.values())
 
 
 def too_large(size: float) -> str:

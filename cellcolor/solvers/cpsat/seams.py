@@ -26,6 +26,7 @@ from cellcolor.solvers.cpsat.model import (
     fewest_subcells,
     model_size,
     read_painting,
+    seams_size,
     too_large,
 )
 from cellcolor.solvers.cpsat.painting import Block, Painting
@@ -163,6 +164,8 @@ class SeamWriter:
             )
         ]
         colors = [frozenset(cell.colors) for cell in instance.cells]
+        if seams_size(own) > LARGEST_MODEL:
+            return None
         small = dart_graph(instance, colors, dict.fromkeys(local.values(), 1), own)
         if (size := model_size(small)) > LARGEST_MODEL:
             raise TooLarge(too_large(size))

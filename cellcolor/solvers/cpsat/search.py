@@ -19,6 +19,7 @@ from cellcolor.solvers.cpsat.model import (
     build,
     model_size,
     read_painting,
+    seams_size,
     too_large,
 )
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
@@ -239,8 +240,10 @@ class PartSearch:
         final: bool,
     ) -> None:
         """Solve one model; only the final one, the widest, proves a bound of its own."""
+        if not self._fits(seams_size(seams)):
+            return
         graph = dart_graph(self._instance, colors, strands, seams, self._part.loops)
-        if not self._fits(graph):
+        if not self._fits(model_size(graph)):
             return
         built = build(graph, color_regions(self._instance, colors), deadline=deadline)
         self._hint(built, graph)
@@ -254,9 +257,8 @@ class PartSearch:
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             self._offer(graph, read_painting(graph, built.variables, solver))
 
-    def _fits(self, graph: DartGraph) -> bool:
-        """Whether the model of a graph is small enough to be built; noted if it is not."""
-        size = model_size(graph)
+    def _fits(self, size: float) -> bool:
+        """Whether a model of so many terms is small enough to be built; noted if it is not."""
         # Every worker has a copy of its own.
         size *= max(1.0, (self._options.workers or PORTFOLIO) / PORTFOLIO)
         if size > LARGEST_MODEL:

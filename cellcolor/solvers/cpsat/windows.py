@@ -17,13 +17,16 @@ from ortools.sat.python import cp_model
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds import Region
 from cellcolor.solvers.cpsat.graph import Dart, DartGraph
-from cellcolor.solvers.cpsat.model import build, read_painting
+from cellcolor.solvers.cpsat.model import build, model_size, read_painting
 from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, segments_of
 
 __all__ = ["improve"]
 
 WINDOW_SIZES = (1_000, 2_000, 4_000, 8_000)
 """Terms of a window's model, about: it is solved in some tenths of a second."""
+
+LARGEST_WINDOW = 30_000
+"""Terms of a window's model, with what lies around it."""
 
 FRUITLESS = 3
 """Tries for each segment of a division before nothing better is expected."""
@@ -68,10 +71,13 @@ def improve(
         # Small segments are the likeliest that others can do without.
         weights = [1 / len(segment) for segment in segments]
         (segment,) = chance.choices(segments, weights)
+        fruitless += 1
         cells = _cells_around(graph, segment, chance.choice(WINDOW_SIZES), chance)
         window = _contracted(graph, painting, cells)
+        # A piece outside may face the window with many darts.
+        if not cells or model_size(window.graph) > LARGEST_WINDOW:
+            continue
         changed = _solved(window, graph, painting, solve, chance.randrange(2**20))
-        fruitless += 1
         if changed is None:
             continue
         found = segments_of(graph, changed)
@@ -85,7 +91,10 @@ def improve(
 def _cells_around(
     graph: DartGraph, segment: set[int], room: float, chance: random.Random
 ) -> list[int]:
-    """A segment's cells, as many as a window has room for, and those around them."""
+    """A segment's cells, as many as a window has room for, and those around them.
+
+    None at all if the search begins at a cell that is too large itself, or among such cells.
+    """
     start = chance.choice(sorted(segment))
     found = [start]
     size = 0.0
@@ -93,7 +102,7 @@ def _cells_around(
     kept: list[int] = []
     for cell in found:
         terms = 2 / 3 * len(graph.lists[cell]) ** 3
-        if kept and size + terms > room:
+        if size + terms > room:
             continue
         size += terms
         kept.append(cell)
