@@ -18,7 +18,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.families import blobs, hub, planar_graph
 from cellcolor.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds import color_regions, greedy_strangers, set_cover
-from cellcolor.solvers.conflicts import RegionPair, conflicts
+from cellcolor.solvers.conflicts import conflicts
 from cellcolor.solvers.cpsat import model as model_module
 from cellcolor.solvers.cpsat import search, windows
 from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, seams_of
@@ -78,25 +78,6 @@ def test_loops_beside_do_not_hide_a_conflict(islands: int) -> None:
     found = conflicts(instance, *color_regions(instance))
     outer = [c for c in found if all(max(area) < 5 for area in (*c.one, *c.other))]
     assert [({*map(min, c.one)}, {*map(min, c.other)}) for c in outer] == [({2, 4}, {1, 3})]
-
-
-@settings(max_examples=40, deadline=None)
-@given(seed=SEEDS, cells=st.integers(3, 12))
-def test_a_parting_and_its_conflicts_say_the_same_from_either_side(seed: int, cells: int) -> None:
-    """If a blue curve parts two red areas, a red curve between these parts the blue ones.
-
-    The two are found by different walks: over red ways past a blue curve, and the other way round.
-    Where only one component of the wall is met, both are exact.
-    """
-    instance = planar_graph(seed, cells, cells + 4, 3)
-    for first, second in combinations(color_regions(instance), 2):
-        pair = RegionPair(instance, first, second)
-        for one, other in ((pair.first, pair.second), (pair.second, pair.first)):
-            for near, far in combinations(one.areas, 2):
-                for parting in one.partings(near, far):
-                    assert len(parting.groups) > 1
-                    held = [area for group in parting.groups for area in group]
-                    assert len(held) == len(set(held)) <= len(other.areas)
 
 
 # --- bounds ---------------------------------------------------------------------------------------
@@ -289,28 +270,6 @@ def test_parts_are_what_live_edges_connect(seed: int, cells: int, colors: int) -
         regions = color_regions(part.instance)
         assert all(cells <= set(range(len(part.cells))) for _, cells in regions)
         assert [frozenset(c.colors) for c in part.instance.cells] == [left[c] for c in part.cells]
-
-
-def test_a_seam_stays_where_it_is_when_its_first_loop_is_dead() -> None:
-    """Blue is dominated and goes; with it the outer loop of the ring, from which seams start."""
-    colors = ("red", "blue", "green")
-    instance = Instance(
-        "ring",
-        colors,
-        (
-            Cell(0, (0, 2), ((1,), (2, 3), (4, 5))),
-            Cell(1, (2,), ((-1,),)),
-            Cell(2, (0,), ((-2,),)),
-            Cell(3, (2,), ((-3,),)),
-            Cell(4, (0,), ((-4,),)),
-            Cell(5, (2,), ((-5,),)),
-        ),
-        tuple(Edge(n, 0, n, () if n == 0 else None) for n in range(1, 6)),
-    )
-    found = solve(instance, Options(workers=1))
-    dfs = solve(instance, Options(workers=1), "dfs")
-    assert found.segments == dfs.segments
-    assert [(seam.from_, seam.to) for seam in found.seams] == [(1, 2), (1, 4)]
 
 
 # --- windows --------------------------------------------------------------------------------------
