@@ -14,11 +14,11 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
-from cellcolor.solvers.bounds import color_regions
-from cellcolor.solvers.cpsat.constraints import DEFINING, REDUNDANT, Group
-from cellcolor.solvers.cpsat.graph import dart_graph, seams_of
-from cellcolor.solvers.cpsat.model import build
-from cellcolor.solvers.reductions import drop_dominated
+from cellcolor.solvers.bounds.cover import color_regions
+from cellcolor.solvers.bounds.domination import drop_dominated
+from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, Group
+from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
+from cellcolor.solvers.cpsat.model.full import build
 
 
 def variants() -> dict[str, tuple[Group, ...]]:

@@ -22,8 +22,8 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.scene import load_scene
+from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.run import solve
 
 TOP = Path(__file__).parents[1]
 SCENES, ROBOTS = TOP / "instances" / "scenes", TOP / "models" / "robots"

@@ -20,10 +20,10 @@ import fcl
 import numpy as np
 import pinocchio as pin
 
+from cellcolor.arrays import Array
 from cellcolor.frontend import Reason, build_surface
-from cellcolor.frontend.collision import body_shape
-from cellcolor.frontend.prepare import Stage, prepare
-from cellcolor.frontend.robot import Array
+from cellcolor.frontend.contact.collision import body_shape
+from cellcolor.frontend.stage import Stage, prepare
 
 TOP = Path(__file__).parents[1]
 

@@ -38,7 +38,7 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGKILL)
 WRONG = """
 import sys, time
 import cellcolor.cli.campaign as module
-from cellcolor.campaign.run import Outcome, Wrong
+from cellcolor.lab.campaign.pool import Outcome, Wrong
 text = open(sys.argv.pop(1), encoding="utf-8").read()
 def disagreeing(count, *_):
     for number in range(count):

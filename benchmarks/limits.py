@@ -32,7 +32,7 @@ from typing import Any, Literal
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.families import (
+from cellcolor.lab.families import (
     SHAPES,
     Shape,
     blobs,

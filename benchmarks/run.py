@@ -22,15 +22,15 @@ from math import radians
 from pathlib import Path
 from statistics import median
 
-from cellcolor.bench import Run, max_live_darts, measure
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
-from cellcolor.families import blobs, hub, hub_grid
-from cellcolor.peers import measure_clingo
+from cellcolor.lab.families import blobs, hub, hub_grid
+from cellcolor.lab.peers import measure_clingo
+from cellcolor.lab.races import Run, max_live_darts, measure
+from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.run import solve
 
 ROOT = Path(__file__).resolve().parents[1]
 SCENES = sorted((ROOT / "instances/scenes/feasibility").glob("*.surface.json"))

@@ -27,14 +27,14 @@ from pathlib import Path
 
 import numpy as np
 
+from cellcolor.arrays import Array, Mask
 from cellcolor.errors import InputError
-from cellcolor.frontend.collision import Mask
-from cellcolor.frontend.kinematics import forward
-from cellcolor.frontend.prepare import Stage, prepare
-from cellcolor.frontend.robot import Array, Robot
-from cellcolor.frontend.surfaces import rotation_from_rpy
-from cellcolor.frontend.ur import BRANCHES
-from cellcolor.frontend.validity import Reason
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.ur import BRANCHES
+from cellcolor.frontend.reach.validity import Reason
+from cellcolor.frontend.stage import Stage, prepare
+from cellcolor.frontend.target.surface import rotation_from_rpy
 
 TOP = Path(__file__).parents[1]
 SCENES, ROBOTS = TOP / "instances" / "scenes", TOP / "models" / "robots"

@@ -32,7 +32,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         atexit.register(INTERRUPTS.ignore)  # the first registered is the last called
     try:
         with INTERRUPTS.end_the_command(last=arguments is None):
-            from cellcolor.cli.run import run
+            from cellcolor.cli.failures import run
 
             code = run(arguments)
             if arguments is None:

@@ -8,13 +8,13 @@ from pathlib import Path
 from rich import box
 from rich.table import Table
 
-from cellcolor.bench import SOLVERS, Run, compare, max_live_darts
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.progress import progress_of
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain, shown
 from cellcolor.errors import CellcolorError, InputError
+from cellcolor.lab.races import SOLVERS, Run, compare, max_live_darts
 
 
 def bench_files(files: Sequence[Path], time_limit: float) -> Exit:

@@ -13,8 +13,15 @@ from cellcolor.cli.terminal import apart_from, complain, say
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
-from cellcolor.data.output import SIDE_FILE, Output, check_output, is_stream, kind_of_format, write
 from cellcolor.errors import InputError
+from cellcolor.files.writing import (
+    SIDE_FILE,
+    Output,
+    check_output,
+    is_stream,
+    kind_of_format,
+    write,
+)
 
 _INSTANCE = kind_of_format(instance_file.FORMAT)
 _SURFACE = kind_of_format(surface_file.FORMAT)

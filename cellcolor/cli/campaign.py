@@ -12,16 +12,16 @@ from pathlib import Path
 from rich import box
 from rich.table import Table
 
-from cellcolor.campaign.run import Outcome, campaign
-from cellcolor.campaign.summary import Kind, Summary
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
-from cellcolor.data.output import Output, is_folder_or_nothing, kind_of_format, write
-from cellcolor.data.temporary import remove_strays
 from cellcolor.errors import InputError
+from cellcolor.files.temporary import remove_strays
+from cellcolor.files.writing import Output, is_folder_or_nothing, kind_of_format, write
+from cellcolor.lab.campaign.pool import Outcome, campaign
+from cellcolor.lab.campaign.summary import Kind, Summary
 
 
 def run_campaign(count: int, seed: int, time_limit: float, jobs: int, output: Path) -> Exit:

@@ -6,19 +6,19 @@ import json
 from pathlib import Path
 from typing import Any
 
-from cellcolor.check.known import contradictions
-from cellcolor.check.numbers import claims
-from cellcolor.check.solution import check_scheme, check_solution
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import instance_of, read_subject
 from cellcolor.cli.terminal import print_json, say
 from cellcolor.data import plan as plan_file
-from cellcolor.data.files import read_document
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document
+from cellcolor.judges.claimed_numbers import claims
+from cellcolor.judges.division import check_scheme, check_solution
+from cellcolor.judges.known_results import contradictions
 
 
 def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) -> Exit:

@@ -13,12 +13,12 @@ from cellcolor.cli.progress import build_progress_of
 from cellcolor.cli.terminal import complain
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
-from cellcolor.data.files import read_document
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ def build_scene(path: Path, deadline: Deadline = NEVER) -> Scene:
     """
     with extras_for(path):
         from cellcolor.frontend import build_surface
-        from cellcolor.frontend.sidefile import side_file
+        from cellcolor.frontend.candidates_file import side_file
     INTERRUPTS.check()
     with build_progress_of(path) as report_stage:
         result = build_surface(path, deadline, report_stage)

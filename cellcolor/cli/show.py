@@ -12,16 +12,16 @@ from cellcolor.cli.inputs import instance_of, is_scene, read_graph
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import say
 from cellcolor.data.instance import OUTSIDE, Instance
-from cellcolor.data.output import HTML, PNG, SVG, Output, check_output, write
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
+from cellcolor.files.writing import HTML, PNG, SVG, Output, check_output, write
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
     from cellcolor.frontend import BuildResult
-    from cellcolor.viz.picture import Picture2D, Picture3D
+    from cellcolor.pictures.picture import Picture2D, Picture3D
 
 _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
@@ -92,11 +92,11 @@ def show_files(files: tuple[Path, ...], output: Path, view: View) -> Exit:
     with extras_for(output):
         picture = _picture(subject, files[1] if len(files) > 1 else None, view)
         if output.suffix == ".html":
-            from cellcolor.viz import interactive
+            from cellcolor.pictures import interactive
 
             content = interactive.render(picture)
         else:
-            from cellcolor.viz import static
+            from cellcolor.pictures import static
 
             content = static.render(picture, output.suffix[1:])
     INTERRUPTS.check()
@@ -139,8 +139,8 @@ def _same_surface(path: Path, instance: Instance, surface: LabelledSurface) -> N
 
 
 def _picture(subject: _Subject, claim: Path | None, view: View) -> Picture2D | Picture3D:
-    from cellcolor.viz import paintings
-    from cellcolor.viz.surface import draw
+    from cellcolor.pictures import by_cell_and_color as paintings
+    from cellcolor.pictures.mesh_picture import draw
 
     if view.graph:
         return _graph(subject)
@@ -177,7 +177,7 @@ def _cells(instance: Instance) -> NDArray[np.int64]:
 
 
 def _graph(subject: _Subject) -> Picture2D:
-    from cellcolor.viz.graph import draw_graph, places_on
+    from cellcolor.pictures.topological_graph import draw_graph, places_on
 
     instance = subject.graph()
     if subject.surface is None:
@@ -187,10 +187,10 @@ def _graph(subject: _Subject) -> Picture2D:
 
 
 def _solution(subject: _Subject, claim: Path) -> Picture3D:
-    from cellcolor.check.solution import check_solution
     from cellcolor.data.solution import Solution
-    from cellcolor.viz.solution import by_solution
-    from cellcolor.viz.surface import draw
+    from cellcolor.judges.division import check_solution
+    from cellcolor.pictures.by_segment import by_solution
+    from cellcolor.pictures.mesh_picture import draw
 
     instance, surface = subject.graph(), subject.mesh()
     solution = Solution.read(claim)
@@ -203,8 +203,8 @@ def _solution(subject: _Subject, claim: Path) -> Picture3D:
 
 
 def _reasons(subject: _Subject, branch: str | None) -> Picture3D:
-    from cellcolor.viz.reasons import Verdicts, by_reason, read_verdicts
-    from cellcolor.viz.surface import draw
+    from cellcolor.pictures.by_reason import Verdicts, by_reason, read_verdicts
+    from cellcolor.pictures.mesh_picture import draw
 
     surface = subject.mesh()
     if subject.result is None:
@@ -225,7 +225,7 @@ def _arm(subject: _Subject, vertex: int, branch: str) -> Picture3D:
     if subject.result is None:
         raise InputError(str(subject.path), "format", "the arm is in a scene (.toml)")
     from cellcolor.frontend import Reason
-    from cellcolor.viz.arm import arm_at
+    from cellcolor.pictures.arm import arm_at
 
     result = subject.result
     count = len(result.surface.vertices)

@@ -15,18 +15,19 @@ from typing import IO
 
 import click
 
-from cellcolor.check.known import contradictions
-from cellcolor.check.solution import check_solution
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
-from cellcolor.cli.searching import Interrupted, end_the_search
+from cellcolor.cli.search_end import Interrupted, end_the_search
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
 from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
-from cellcolor.data.output import (
+from cellcolor.data.solution import Solution, scheme_line
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import CellcolorError, InputError, TooLarge
+from cellcolor.files.writing import (
     Output,
     check_output,
     is_folder,
@@ -35,9 +36,8 @@ from cellcolor.data.output import (
     kind_of_format,
     write,
 )
-from cellcolor.data.solution import Solution, scheme_line
-from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import CellcolorError, InputError, TooLarge
+from cellcolor.judges.division import check_solution
+from cellcolor.judges.known_results import contradictions
 from cellcolor.solvers.interface import PORTFOLIO, Options, Start
 
 _SOLUTION = kind_of_format(solution_file.FORMAT)
@@ -196,7 +196,7 @@ def _solve(
     options: Options,
 ) -> Solution:
     """Solve one instance and write what was found."""
-    from cellcolor.solvers.run import solve
+    from cellcolor.solvers.checked import solve
 
     if request.every and request.solver == "dfs":
         _refuse_schemes(instance)
@@ -273,7 +273,7 @@ def _with_schemes(
 
     One more than the limit is looked for: only so is it known whether the limit cut any off.
     """
-    from cellcolor.solvers.run import enumerate_schemes
+    from cellcolor.solvers.checked import enumerate_schemes
 
     if solution.status != "optimal" or solution.segments is None:
         return replace(solution, schemes=0, complete=False)

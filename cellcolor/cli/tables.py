@@ -151,7 +151,7 @@ def _extent(solution: Solution) -> str:
 
 def _witness(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
     """Why there cannot be fewer segments, where a person can see it."""
-    from cellcolor.solvers.bounds import strangers
+    from cellcolor.solvers.bounds.cover import strangers
 
     if not solution.proved_for_surface or not 1 < (solution.segments or 0) <= _CELLS_SHOWN:
         return []

@@ -12,7 +12,7 @@ from contextlib import contextmanager, redirect_stdout, suppress
 from pathlib import Path
 from typing import Any, TextIO, cast
 
-from cellcolor.data.output import is_standard_output
+from cellcolor.files.writing import is_standard_output
 
 __all__ = [
     "Listener",

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import Ge
 from pydantic import ConfigDict
 
-from cellcolor.data.values import json_content, settle
+from cellcolor.files.validation import json_content, settle
 
 __all__ = ["Bound", "greatest"]
 

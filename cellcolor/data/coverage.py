@@ -8,8 +8,8 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 from pydantic import ConfigDict
 
-from cellcolor.data.values import settle
 from cellcolor.errors import InputError
+from cellcolor.files.validation import settle
 
 _ROUNDING = 1e-9
 """Shares are sums of floating-point areas, divided."""

@@ -14,10 +14,10 @@ from annotated_types import Ge
 from pydantic import ConfigDict, TypeAdapter
 
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.files import dump_lines, read_document, take_body, validate
-from cellcolor.data.fingerprint import sha256_of
-from cellcolor.data.values import json_content, settle
 from cellcolor.errors import InputError
+from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.fingerprint import sha256_of
+from cellcolor.files.validation import json_content, settle
 
 FORMAT = "cellcolor/instance"
 OUTSIDE = -1

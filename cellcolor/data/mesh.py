@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from cellcolor.arrays import Index
 from cellcolor.errors import InputError
 
 __all__ = ["directed_edges"]
-
-Index = NDArray[np.int64]
 
 
 def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[int, int], int]:

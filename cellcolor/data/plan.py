@@ -9,9 +9,9 @@ from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter
 
-from cellcolor.data.files import read_document, take_body, validate
-from cellcolor.data.values import settle
 from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document, take_body, validate
+from cellcolor.files.validation import settle
 
 FORMAT = "cellcolor/plan"
 

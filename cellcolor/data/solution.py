@@ -13,9 +13,9 @@ from pydantic import ConfigDict, Field, TypeAdapter
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.files import dump_lines, parse_json, read_text, take_body, validate
-from cellcolor.data.values import settle
 from cellcolor.errors import InputError
+from cellcolor.files.documents import dump_lines, parse_json, read_text, take_body, validate
+from cellcolor.files.validation import settle
 
 FORMAT = "cellcolor/solution"
 SCHEME_FORMAT = "cellcolor/scheme"

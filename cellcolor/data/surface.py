@@ -11,11 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter
 
-from cellcolor.data.files import dump_lines, read_document, take_body, validate
-from cellcolor.data.fingerprint import sha256_of
 from cellcolor.data.mesh import directed_edges
-from cellcolor.data.values import json_content, plain, settle, validate_python
 from cellcolor.errors import InputError
+from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.fingerprint import sha256_of
+from cellcolor.files.validation import json_content, plain, settle, validate_python
 
 FORMAT = "cellcolor/labelled-surface"
 _FARTHEST = 1e9  # m

@@ -1,5 +1,5 @@
 """From a labelled surface to its topological graph (paper, section III-C)."""
 
-from cellcolor.decomposition.build import decompose
+from cellcolor.decomposition.cells import decompose
 
 __all__ = ["decompose"]

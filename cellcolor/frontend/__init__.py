@@ -5,7 +5,7 @@ imports those.
 """
 
 from cellcolor.frontend.build import BuildResult, build_surface
+from cellcolor.frontend.reach.validity import Reason
 from cellcolor.frontend.report import BuildReport, ColorReport
-from cellcolor.frontend.validity import Reason
 
 __all__ = ["BuildReport", "BuildResult", "ColorReport", "Reason", "build_surface"]

@@ -13,34 +13,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 import cellcolor
+from cellcolor.arrays import Array, Mask
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.between import at_domain_border, longest_steps, remains_valid
-from cellcolor.frontend.collision import Mask
-from cellcolor.frontend.conditioning import Conditioning
-from cellcolor.frontend.continuity import (
+from cellcolor.frontend.arm.conditioning import Conditioning
+from cellcolor.frontend.arm.kinematics import (
+    forward,
+    manipulability,
+    task_determinant,
+    tip_jacobian,
+)
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.ur import BRANCHES
+from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.reach.between import at_domain_border, remains_valid
+from cellcolor.frontend.reach.continuity import (
     Coloring,
     color,
     find_cracks,
     link,
     node_links,
 )
-from cellcolor.frontend.kinematics import (
-    forward,
-    manipulability,
-    task_determinant,
-    tip_jacobian,
-)
-from cellcolor.frontend.prepare import Stage, prepare
+from cellcolor.frontend.reach.slivers import SliverReport, clean
+from cellcolor.frontend.reach.smooth import Measure
+from cellcolor.frontend.reach.validity import Candidates, Reason
 from cellcolor.frontend.report import BuildReport, make_report
-from cellcolor.frontend.robot import Array, Robot
 from cellcolor.frontend.scene import Scene, Setup
-from cellcolor.frontend.slivers import SliverReport, clean
-from cellcolor.frontend.smooth import Measure
+from cellcolor.frontend.stage import Stage, prepare
 from cellcolor.frontend.survey import survey
-from cellcolor.frontend.ur import BRANCHES
-from cellcolor.frontend.validity import Candidates, Reason
 
 __all__ = ["BuildResult", "build_surface"]
 
@@ -58,7 +59,7 @@ class BuildResult:
         surface: what the decomposition takes.
         branches: names of the eight inverse-kinematic branches.
         configurations: (n, 8, 6) in rad, NaN where a branch has no solution.
-        reasons: (n, 8) uint8 codes of :class:`~cellcolor.frontend.validity.Reason`, the first
+        reasons: (n, 8) uint8 codes of :class:`~cellcolor.frontend.reach.validity.Reason`, the first
             test that a candidate fails.
         node_color: (n, 8) the color of each valid candidate, -1 for the others and for those
             that a sliver policy took away.

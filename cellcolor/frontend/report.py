@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.frontend.continuity import Coloring
-from cellcolor.frontend.slivers import SliverReport
-from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.reach.continuity import Coloring
+from cellcolor.frontend.reach.slivers import SliverReport
+from cellcolor.frontend.reach.validity import Candidates, Reason
 from cellcolor.frontend.survey import Survey
-from cellcolor.frontend.validity import Candidates, Reason
+from cellcolor.frontend.target.surface import Surface
 
 __all__ = ["BuildReport", "ColorReport", "make_report"]
 

@@ -14,8 +14,8 @@ from typing import Annotated, Literal, Self, TypeVar, get_args
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
 from pydantic_core import PydanticCustomError
 
-from cellcolor.data.files import read_text
 from cellcolor.errors import InputError
+from cellcolor.files.documents import read_text
 from cellcolor.frontend.sizes import MOST_VERTICES
 
 __all__ = [

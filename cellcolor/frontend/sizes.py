@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.robot import Array
 
 __all__ = ["MOST_VERTICES", "check_faces", "check_points", "check_refinement", "check_vertices"]
 

@@ -11,9 +11,9 @@ import fcl
 import numpy as np
 import trimesh
 
-from cellcolor.frontend.robot import Array
-from cellcolor.frontend.surfaces import Faces, Surface, face_normals
-from cellcolor.frontend.ur import UrGeometry
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.ur import UrGeometry
+from cellcolor.frontend.target.surface import Faces, Surface, face_normals
 
 __all__ = ["Survey", "survey"]
 

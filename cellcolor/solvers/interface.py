@@ -11,9 +11,9 @@ from annotated_types import Ge, Le
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, SearchSpace
-from cellcolor.data.values import settle
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.files.validation import settle
 
 PORTFOLIO = 8
 """CP-SAT's workers unless asked for otherwise: different searches, useful beyond the cores."""

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 from shipped import ROBOTS, WOK, edited
 
-from cellcolor.frontend.robot import Robot, load_robot
+from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.ur import UrGeometry, ur_geometry
 from cellcolor.frontend.scene import Setup, load_setup
-from cellcolor.frontend.ur import UrGeometry, ur_geometry
 
 Rewrite = Callable[..., Path]
 

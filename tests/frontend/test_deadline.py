@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_bad_scenes import BOX, OUTWARD, obj
+from box import BOX, OUTWARD, obj
 
 from cellcolor.cli import main
 from cellcolor.deadline import Deadline, OutOfTime

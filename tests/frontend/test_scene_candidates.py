@@ -24,19 +24,19 @@ from independent import (
 from shipped import at_resolution
 from world import World
 
+from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, Reason, build_surface
-from cellcolor.frontend.collision import body_ends, hits_ground, hits_itself
-from cellcolor.frontend.kinematics import (
+from cellcolor.frontend.arm.kinematics import (
     forward,
     gravity_torques,
     manipulability,
     task_determinant,
     tip_jacobian,
 )
-from cellcolor.frontend.prepare import Stage, prepare
-from cellcolor.frontend.robot import Array
+from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
+from cellcolor.frontend.contact.solids import mesh_solid, primitive_solid
 from cellcolor.frontend.scene import CylinderObstacle
-from cellcolor.frontend.solids import mesh_solid, primitive_solid
+from cellcolor.frontend.stage import Stage, prepare
 
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
 

@@ -10,15 +10,16 @@ import pinocchio as pin
 import pytest
 from shipped import SCENES, at_resolution
 
+from cellcolor.arrays import Array
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, Reason, build_surface
-from cellcolor.frontend.robot import Array, Robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.scene import load_scene
+from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.run import solve
 
 # Section VI of the paper; the square is not in it.
 LIFT_OFFS = {

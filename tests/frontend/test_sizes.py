@@ -10,15 +10,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
+from box import BOX, OUTWARD, obj
 from hypothesis import given
 from hypothesis import strategies as st
-from test_bad_scenes import BOX, OUTWARD, obj
 
 from cellcolor.cli import main
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface, sizes
-from cellcolor.frontend.meshfile import load_mesh
-from cellcolor.frontend.remesh import refine
+from cellcolor.frontend.target.mesh_file import load_mesh
+from cellcolor.frontend.target.remesh import refine
 
 Scene = Callable[..., Path]
 

@@ -13,12 +13,12 @@ from shipped import SCENES, edited
 
 from cellcolor.cli import main
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.generators import disc_mesh, grid_mesh, rectangle, spherical_cap
-from cellcolor.frontend.prepare import prepare
+from cellcolor.frontend.arm.ur import UrGeometry
 from cellcolor.frontend.scene import Placement
-from cellcolor.frontend.surfaces import Surface
+from cellcolor.frontend.stage import prepare
 from cellcolor.frontend.survey import survey
-from cellcolor.frontend.ur import UrGeometry
+from cellcolor.frontend.target.shapes import disc_mesh, grid_mesh, rectangle, spherical_cap
+from cellcolor.frontend.target.surface import Surface
 
 
 def turned_over(surface: Surface) -> Surface:

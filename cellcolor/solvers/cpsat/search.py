@@ -10,9 +10,10 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds import color_regions, greedy_strangers, set_cover
-from cellcolor.solvers.cpsat.graph import DartGraph, dart_graph, widened
-from cellcolor.solvers.cpsat.model import (
+from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
+from cellcolor.solvers.bounds.crossings import enough_crossings
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, widened
+from cellcolor.solvers.cpsat.model.full import (
     LARGEST_MODEL,
     Model,
     add_hint,
@@ -22,14 +23,13 @@ from cellcolor.solvers.cpsat.model import (
     seams_size,
     too_large,
 )
-from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, moved, segments_of
+from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, moved, segments_of
+from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import Part
-from cellcolor.solvers.cpsat.plans import Plan, Planner, Undecided
-from cellcolor.solvers.cpsat.refined import refined
-from cellcolor.solvers.cpsat.routing import route
-from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.cpsat.routes.routing import route
+from cellcolor.solvers.cpsat.routes.sectors import refined
+from cellcolor.solvers.cpsat.routes.segment_plans import Plan, Planner, Undecided
 from cellcolor.solvers.cpsat.windows import improve
-from cellcolor.solvers.crossings import enough_crossings
 from cellcolor.solvers.interface import PORTFOLIO, Options
 
 __all__ = ["PartSearch"]

@@ -12,16 +12,22 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.solvers.bounds import greedy_strangers
-from cellcolor.solvers.cpsat.enumeration import optimal_schemes
-from cellcolor.solvers.cpsat.fewest import FewestCuts
-from cellcolor.solvers.cpsat.graph import DartGraph, Strand, dart_graph
-from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, division_of, painting_of
+from cellcolor.solvers.bounds.cover import greedy_strangers
+from cellcolor.solvers.bounds.domination import drop_dominated
+from cellcolor.solvers.cpsat.cuts.fewest import FewestCuts
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, Strand, dart_graph
+from cellcolor.solvers.cpsat.model.painting import (
+    Block,
+    Painting,
+    canonical,
+    division_of,
+    painting_of,
+)
+from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import live_loops, seam_places, split
-from cellcolor.solvers.cpsat.runner import Runner
+from cellcolor.solvers.cpsat.schemes.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.search import PartSearch
 from cellcolor.solvers.interface import Answer, Options, Progress, Start
-from cellcolor.solvers.reductions import drop_dominated
 
 __all__ = ["CpSatSolver"]
 

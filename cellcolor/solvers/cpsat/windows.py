@@ -15,10 +15,10 @@ from networkx.utils import UnionFind
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds import Region
-from cellcolor.solvers.cpsat.graph import Dart, DartGraph
-from cellcolor.solvers.cpsat.model import build, model_size, read_painting
-from cellcolor.solvers.cpsat.painting import Block, Painting, canonical, segments_of
+from cellcolor.solvers.bounds.cover import Region
+from cellcolor.solvers.cpsat.model.dart_graph import Dart, DartGraph
+from cellcolor.solvers.cpsat.model.full import build, model_size, read_painting
+from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
 
 __all__ = ["improve"]
 

@@ -1,0 +1,101 @@
+"""Values made in Python: held to the same types as values read from JSON."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import fields
+from functools import cache
+from typing import Any, TypeVar, get_type_hints
+
+import numpy as np
+from pydantic import ConfigDict, TypeAdapter, ValidationError
+from pydantic.fields import FieldInfo
+
+from cellcolor.errors import InputError
+from cellcolor.files.documents import field_name
+
+__all__ = ["json_content", "plain", "settle", "validate_python"]
+
+T = TypeVar("T")
+
+_STRICT = ConfigDict(strict=True, allow_inf_nan=False)
+
+
+def settle(value: object, arrays: tuple[str, ...] = ()) -> None:
+    """Hold a dataclass's members to their annotations, and normalise what Python knows more of.
+
+    Lists and arrays become tuples, numbers of numpy Python's own; anything else that JSON would
+    not take for the member (``True`` for a number, 2.0 for an integer) is refused, with the
+    sentence that JSON would be refused with. To be called first in ``__post_init__``.
+
+    Args:
+        value: the dataclass.
+        arrays: members that are arrays of numpy, which are left to it.
+
+    Raises:
+        InputError: a member is not what its annotation says.
+    """
+    kind: Any = type(value)
+    names, adapter = _members(kind, arrays)
+    given = tuple([plain(getattr(value, name)) for name in names])
+    try:
+        settled = adapter.validate_python(given)
+    except ValidationError as error:
+        place, message = _first_fault(error)
+        raise InputError(None, field_name((names[int(place[0])], *place[1:])), message) from error
+    for name, content in zip(names, settled, strict=True):
+        object.__setattr__(value, name, content)
+
+
+def validate_python(adapter: TypeAdapter[T], content: Any, member: str) -> T:
+    """Hold the content of a member against a schema; the first fault becomes the error."""
+    try:
+        return adapter.validate_python(content)
+    except ValidationError as error:
+        place, message = _first_fault(error)
+        raise InputError(None, field_name((member, *place)), message) from error
+
+
+def _first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
+    fault = error.errors(include_url=False)[0]
+    return fault["loc"], fault["msg"]
+
+
+def plain(content: Any) -> Any:
+    """Lists and arrays as tuples, numbers of numpy as Python's; all else as it is."""
+    if isinstance(content, np.ndarray):
+        content = content.tolist()
+    if isinstance(content, np.generic):
+        return content.item()
+    if isinstance(content, (list, tuple)):
+        return tuple([part if type(part) is int else plain(part) for part in content])
+    return content
+
+
+def json_content(content: Any, member: str) -> Any:
+    """Free content as it comes back from JSON.
+
+    Raises:
+        InputError: JSON has no text for it.
+    """
+    try:
+        return json.loads(json.dumps(content, allow_nan=False))
+    except (TypeError, ValueError, RecursionError) as error:
+        raise InputError(None, member, f"cannot be written as JSON: {error}") from error
+
+
+@cache
+def _members(kind: type, arrays: tuple[str, ...]) -> tuple[list[str], TypeAdapter[tuple[Any, ...]]]:
+    """The names of a dataclass's members, and the schema of their values as one tuple."""
+    hints = get_type_hints(kind, include_extras=True)
+    names = [field.name for field in fields(kind) if field.name not in arrays]
+    types = tuple(_without_alias(hints[name]) for name in names)
+    return names, TypeAdapter(tuple[types], config=_STRICT)  # type: ignore[valid-type]
+
+
+def _without_alias(hint: Any) -> Any:
+    """The annotation of a member without its name in a file."""
+    metadata = getattr(hint, "__metadata__", ())
+    if any(isinstance(part, FieldInfo) for part in metadata):
+        return hint.__origin__
+    return hint

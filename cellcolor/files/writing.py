@@ -1,0 +1,250 @@
+"""Writing files: whole or not at all, together or not at all, and never over something else."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from cellcolor.errors import InputError
+from cellcolor.files.temporary import Temporary, remove_strays, undisturbed
+
+__all__ = [
+    "HTML",
+    "PNG",
+    "SIDE_FILE",
+    "SVG",
+    "Kind",
+    "Output",
+    "check_output",
+    "is_folder",
+    "is_folder_or_nothing",
+    "is_standard_output",
+    "is_stream",
+    "kind_of_format",
+    "write",
+]
+
+MARKER = "cellcolor/picture"
+"""What pictures carry: ``generator`` of a page, ``Creator`` of the others."""
+SIDE_MARKER = b"cellcolor/reasons"
+"""The comment of the archive that a side file is."""
+
+_LOOKED_AT = 4096  # bytes at the beginning and at the end of a file that may be ours
+
+
+@dataclass(frozen=True, slots=True)
+class Kind:
+    """A kind of file that cellcolor writes, and may therefore overwrite.
+
+    Attributes:
+        name: for messages, like ``a file of the format cellcolor/instance``.
+        pattern: what the first and last bytes of each such file match, searched from the start.
+    """
+
+    name: str
+    pattern: re.Pattern[bytes]
+
+
+def kind_of_format(name: str) -> Kind:
+    """JSON documents, and JSON Lines whose first line is one: their ``format`` comes first."""
+    begin = rb'\s*\{\s*"format"\s*:\s*"' + re.escape(name.encode()) + rb'"'
+    return Kind(f"a file of the format {name}", re.compile(begin))
+
+
+def _kind(name: str, pattern: bytes) -> Kind:
+    return Kind(f"{name} written by cellcolor", re.compile(pattern, re.DOTALL))
+
+
+HTML = _kind(
+    "a page",
+    rb'(?:<!doctype html>)?\s*<html>\s*<head><meta name="generator" content="cellcolor/picture"',
+)
+PNG = _kind("a picture", rb"\x89PNG\r\n.*tEXtCreator\0cellcolor/picture")
+SVG = _kind("a picture", rb"<\?xml.*<dc:title>cellcolor/picture</dc:title>")
+SIDE_FILE = _kind("a side file", rb"PK.*cellcolor/reasons\Z")
+
+
+@dataclass(frozen=True, slots=True)
+class Output:
+    """A file to be written.
+
+    Attributes:
+        path: where; a symbolic link stands for what it leads to.
+        kind: what it will be.
+        content: its bytes in pieces, taken once.
+    """
+
+    path: Path
+    kind: Kind
+    content: Iterable[bytes]
+
+
+def is_stream(path: Path) -> bool:
+    """Whether a path leads to a device, a pipe or the like, which nothing can replace."""
+    try:
+        mode = path.stat().st_mode
+    except (OSError, ValueError):
+        return False
+    return is_standard_output(path) or not (stat.S_ISREG(mode) or stat.S_ISDIR(mode))
+
+
+def is_standard_output(path: Path) -> bool:
+    """Whether a path leads to where this process prints, the null device excepted."""
+    try:
+        own, other = os.fstat(1), path.stat()
+    except (OSError, ValueError):
+        return False
+    return os.path.samestat(own, other) and (not stat.S_ISCHR(own.st_mode) or os.isatty(1))
+
+
+def check_output(path: Path, kind: Kind, inputs: Iterable[Path] = ()) -> None:
+    """Refuse a place where writing would destroy something, or cannot succeed.
+
+    What a file of another format holds is never lost: an existing file has to be of the kind
+    that is about to be written, or empty. That covers what inputs refer to as well.
+
+    Args:
+        path: where a file is to be written.
+        kind: of the file.
+        inputs: files that are read.
+
+    Raises:
+        InputError: with the reason.
+    """
+    try:
+        place = _place(path)
+        if is_stream(path):
+            if stat.S_ISBLK(path.stat().st_mode):
+                raise InputError(str(path), None, "is a disk, not a file to write")
+            return
+        if place.is_dir():
+            raise InputError(str(path), None, "is a folder, not a file to write")
+        if not place.parent.is_dir():
+            raise InputError(str(path), None, "its folder does not exist")
+        if not place.exists():
+            return
+        if any(_same(place, source) for source in inputs):
+            raise InputError(str(path), None, "is an input, which would be overwritten")
+        if place.stat().st_size and not kind.pattern.match(_ends(place)):
+            message = f"exists and is not {kind.name}; it is not overwritten"
+            raise InputError(str(path), None, message)
+        if not os.access(place, os.W_OK):
+            raise InputError(str(path), None, "exists and is write-protected")
+    except (OSError, ValueError) as error:
+        raise _unwritable(path, error) from error
+
+
+def is_folder(path: Path) -> bool:
+    """Whether a folder is there.
+
+    Raises:
+        InputError: nothing can have this name, or nobody may look.
+    """
+    try:
+        return path.is_dir()
+    except (OSError, ValueError) as error:
+        raise _unwritable(path, error) from error
+
+
+def is_folder_or_nothing(path: Path) -> bool:
+    """Whether a folder is there already; where it is not, one can be made.
+
+    Raises:
+        InputError: something else is there.
+    """
+    if is_folder(path):
+        return True
+    nearest = next(place for place in (path, *path.parents) if os.path.lexists(place))
+    if not nearest.is_dir():
+        raise InputError(str(nearest), None, "must be a folder, is none")
+    return False
+
+
+def write(outputs: Sequence[Output], inputs: Sequence[Path] = ()) -> None:
+    """Write files that belong together: all of them or, after any failure or signal, none.
+
+    Every file is written to a temporary name first; then all are renamed in the order given,
+    which no signal but SIGKILL interrupts. What is to vouch for the others goes last. Devices and
+    pipes are written to directly, before anything is renamed.
+
+    Args:
+        outputs: the files.
+        inputs: see :func:`check_output`, which is asked again.
+
+    Raises:
+        InputError: a place cannot be written to, or two files would go to one.
+    """
+    for output in outputs:
+        check_output(output.path, output.kind, inputs)
+    places = [_place(o.path) for o in outputs if not is_stream(o.path)]
+    if len(set(places)) < len(places):
+        twice = next(place for place in places if places.count(place) > 1)
+        raise InputError(str(twice), None, "two files would be written to it")
+    for folder in {place.parent for place in places}:
+        remove_strays(folder)
+    staged: list[Temporary] = []
+    try:
+        for output in outputs:
+            try:
+                if is_stream(output.path):
+                    _stream(output)
+                else:
+                    with undisturbed():
+                        staged.append(Temporary(_place(output.path)))
+                    staged[-1].fill(output.content)
+            except (OSError, ValueError) as error:
+                raise _unwritable(output.path, error) from error
+        with undisturbed():
+            for temporary in staged:
+                try:
+                    temporary.rename()
+                except OSError as error:
+                    raise _unwritable(temporary.place, error) from error
+    finally:
+        with undisturbed():
+            for temporary in staged:
+                temporary.discard()
+
+
+def _place(path: Path) -> Path:
+    """What a path leads to, through symbolic links."""
+    try:
+        return path.resolve()
+    except RuntimeError as error:  # Python before 3.13
+        raise InputError(str(path), None, "symbolic links lead in a circle") from error
+
+
+def _same(place: Path, source: Path) -> bool:
+    try:
+        return place.samefile(source)
+    except OSError:  # no such input, which is said elsewhere
+        return False
+
+
+def _ends(path: Path) -> bytes:
+    """The first and the last bytes of a file; all of a small one."""
+    with path.open("rb") as stream:
+        head = stream.read(_LOOKED_AT)
+        size = stream.seek(0, os.SEEK_END)
+        stream.seek(max(len(head), size - _LOOKED_AT))
+        return head + stream.read()
+
+
+def _stream(output: Output) -> None:
+    if is_standard_output(output.path):
+        sys.stdout.flush()
+        handle = os.dup(1)
+    else:
+        handle = os.open(output.path, os.O_WRONLY)
+    with os.fdopen(handle, "wb") as stream:
+        stream.writelines(output.content)
+
+
+def _unwritable(path: Path, error: Exception) -> InputError:
+    reason = error.strerror if isinstance(error, OSError) else str(error)
+    return InputError(str(path), None, reason or "cannot be written")

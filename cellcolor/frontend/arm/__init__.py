@@ -1,0 +1,1 @@
+"""The robot arm: its URDF files, forward and inverse kinematics, and conditioning."""

@@ -1,0 +1,49 @@
+"""What counts as well conditioned for one arm (``docs/frontend.md``, "Conditioning").
+
+Manipulability and task determinant are volumes: the three rows of the Jacobian for the tip's
+position are in meters, and those for a direction have no unit. So a share of the cube of the arm's
+reach means the same for a small arm and a large one, and a number in cubic meters does not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from cellcolor.frontend.arm.ur import UrGeometry
+from cellcolor.frontend.scene import Setup
+
+__all__ = ["Conditioning", "conditioning"]
+
+_POSITION = 3  # rows of the task's Jacobian that are lengths
+
+
+@dataclass(frozen=True)
+class Conditioning:
+    """Thresholds in m^3.
+
+    Attributes:
+        min_manipulability, min_task_determinant: what is below is not valid.
+        near_singular_determinant: from here on down motions are looked into.
+    """
+
+    min_manipulability: float
+    min_task_determinant: float
+    near_singular_determinant: float
+
+
+def conditioning(setup: Setup, geometry: UrGeometry) -> Conditioning:
+    """The thresholds of a setup for an arm, whichever way the setup has them."""
+    unit = geometry.arm_reach**_POSITION
+
+    def volume(absolute: float | None, share: float | None) -> float:
+        if absolute is not None:
+            return absolute
+        assert share is not None  # one of both: the setup has been checked
+        return share * unit
+
+    limits, policy = setup.thresholds, setup.continuity
+    return Conditioning(
+        volume(limits.min_manipulability_m3, limits.min_manipulability),
+        volume(limits.min_task_determinant_m3, limits.min_task_determinant),
+        volume(policy.near_singular_determinant_m3, policy.near_singular_determinant),
+    )

@@ -1,0 +1,151 @@
+"""Forward kinematics, Jacobians and static torques of many configurations at once (numpy).
+
+Everything is in the world frame; ``n`` is the number of configurations. Held against Pinocchio
+in the tests.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.robot import JOINTS, Robot
+
+__all__ = [
+    "TASK_JOINTS",
+    "Poses",
+    "forward",
+    "gravity_torques",
+    "manipulability",
+    "static_torques",
+    "task_determinant",
+    "tip_jacobian",
+    "turned",
+]
+
+TASK_JOINTS = 5  # the sixth turns about the tool's own axis and does not move the task
+
+
+@dataclass(frozen=True)
+class Poses:
+    """Where everything is: frame 0 is the world, frame i the one behind joint i.
+
+    Attributes:
+        rotation: (n, 7, 3, 3).
+        origin: (n, 7, 3) in m.
+        axis: (n, 6, 3) joint axes.
+        tip: (n, 3) tool tip in m.
+        tool_axis: (n, 3) the tool's z axis, from the flange to the tip.
+    """
+
+    rotation: Array
+    origin: Array
+    axis: Array
+    tip: Array
+    tool_axis: Array
+
+    def take(self, rows: NDArray[np.intp]) -> Poses:
+        """The poses of some of the configurations."""
+        return Poses(
+            self.rotation[rows],
+            self.origin[rows],
+            self.axis[rows],
+            self.tip[rows],
+            self.tool_axis[rows],
+        )
+
+
+def forward(robot: Robot, configurations: Array) -> Poses:
+    """Poses of all frames for configurations (n, 6) in rad."""
+    n = len(configurations)
+    # In memory joint after joint, so that one frame of all configurations is one piece.
+    rotation = np.empty((JOINTS + 1, n, 3, 3)).swapaxes(0, 1)
+    origin = np.empty((JOINTS + 1, n, 3)).swapaxes(0, 1)
+    axis = np.empty((n, JOINTS, 3))
+    rotation[:, 0], origin[:, 0] = np.eye(3), 0.0
+    for joint in range(JOINTS):
+        fixed, (x, y, z) = robot.placement[joint], robot.axis[joint]
+        # Rodrigues' formula, its constant matrices multiplied for all configurations at once.
+        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        before, once, twice = (
+            turned(rotation[:, joint], fixed[:3, :3] @ turn)
+            for turn in (np.eye(3), cross, cross @ cross)
+        )
+        sine, cosine = np.sin(configurations[:, joint]), np.cos(configurations[:, joint])
+        once *= sine[:, None, None]
+        twice *= (1.0 - cosine)[:, None, None]
+        before += once
+        before += twice
+        rotation[:, joint + 1] = before
+        origin[:, joint + 1] = origin[:, joint] + turned(rotation[:, joint], fixed[:3, 3])
+        # The axis stays where it is when the joint turns.
+        axis[:, joint] = turned(before, robot.axis[joint])
+    tip = origin[:, -1] + turned(rotation[:, -1], robot.tip[:3, 3])
+    tool_axis = turned(rotation[:, -1], robot.tip[:3, 2])
+    return Poses(rotation, origin, axis, tip, tool_axis)
+
+
+def turned(rotation: Array, columns: Array) -> Array:
+    """Rotations (n, 3, 3) times the same vector (3,) or matrix (3, m), as one large product."""
+    product: Array = (rotation.reshape(-1, 3) @ columns).reshape(-1, 3, *columns.shape[1:])
+    return product
+
+
+def tip_jacobian(poses: Poses) -> tuple[Array, Array]:
+    """Linear and angular Jacobian of the tip, (n, 3, 6) each: m and rad per rad."""
+    arm = poses.tip[:, None] - poses.origin[:, 1:]
+    linear = np.cross(poses.axis, arm)
+    return linear.transpose(0, 2, 1), poses.axis.transpose(0, 2, 1)
+
+
+def manipulability(linear: Array) -> Array:
+    """Translational manipulability sqrt(det(J J^T)) of the five task joints, (n,), m^3.
+
+    Yoshikawa, Translational and rotational manipulability of robotic manipulators, 1990.
+    """
+    task = linear[:, :, :TASK_JOINTS]
+    gram = task @ task.transpose(0, 2, 1)
+    measure: Array = np.sqrt(np.maximum(np.linalg.det(gram), 0.0))
+    return measure
+
+
+def task_determinant(linear: Array, angular: Array, tool_axis: Array) -> Array:
+    """|det| (n,) of the 5x5 Jacobian of tip position and tool direction, m^3.
+
+    The direction has two rows, the angular velocity across the tool axis; which two
+    perpendicular ones does not change the absolute value. Unlike translational manipulability
+    it vanishes at every singularity of the task, the aligned wrist included.
+    """
+    # A perpendicular that is never near zero: cross with the coordinate axis farthest off.
+    farthest = np.eye(3)[np.argmin(np.abs(tool_axis), axis=1)]
+    first = np.cross(tool_axis, farthest)
+    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    across = np.stack([first, np.cross(tool_axis, first)], axis=1)
+    rows = np.concatenate([linear, across @ angular], axis=1)[:, :, :TASK_JOINTS]
+    size: Array = np.abs(np.linalg.det(rows))
+    return size
+
+
+def gravity_torques(robot: Robot, poses: Poses, gravity: Array) -> Array:
+    """Torques (n, 6) in N m that hold arm and tool still against gravity (3,) in m/s^2."""
+    centers = poses.origin[:, 1:] + np.einsum("njab,jb->nja", poses.rotation[:, 1:], robot.center)
+    # Mass and first moment of all that hangs behind each joint.
+    behind = np.cumsum(robot.mass[::-1])[::-1]
+    moments = np.cumsum((robot.mass[:, None] * centers)[:, ::-1], axis=1)[:, ::-1]
+    lever = moments - behind[:, None] * poses.origin[:, 1:]
+    torques: Array = -np.einsum("nja,nja->nj", poses.axis, np.cross(lever, gravity))
+    return torques
+
+
+def static_torques(
+    robot: Robot, poses: Poses, linear: Array, gravity: Array, normal_force: float
+) -> Array:
+    """Torques (n, 6) in N m while the tip presses with ``normal_force`` (N) along the tool axis.
+
+    Gravity plus J^T times the force that the robot exerts on the surface.
+    """
+    push: Array = normal_force * np.einsum("naj,na->nj", linear, poses.tool_axis)
+    return gravity_torques(robot, poses, gravity) + push

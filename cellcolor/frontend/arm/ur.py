@@ -1,0 +1,245 @@
+"""UR-type geometry and its closed-form inverse kinematics, all branches, vectorised.
+
+A UR-type arm has three parallel axes (2, 3, 4) across the first, and axes 4-5 and 5-6 that meet
+at right angles. With the tool on the axis of joint 6, tip position and tool direction leave that
+joint free, and up to eight solutions of the other five: shoulder x elbow x wrist
+(Hawkins, Analytic inverse kinematics for the Universal Robots UR-5/UR-10 arms, 2013).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import minimize_scalar
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+
+__all__ = ["BRANCHES", "UrGeometry", "solve_inverse", "ur_geometry"]
+
+BRANCHES = tuple(
+    f"shoulder-{shoulder} elbow-{elbow} wrist-{wrist}"
+    for shoulder in ("left", "right")
+    for elbow in ("up", "down")
+    for wrist in ("unflipped", "flipped")
+)
+"""Branch names; the index has the shoulder in bit 2, the elbow in bit 1, the wrist in bit 0.
+
+Shoulder left: the upper arm passes to the left of the base as seen when looking out to the wrist.
+Elbow up: with the upper arm horizontal and the wrist out in front, the forearm hangs below it.
+Wrist unflipped and flipped: canonical angle of joint 5 positive and negative.
+"""
+
+_TOLERANCE = 1e-6  # m and rad; a calibrated arm's deviations are far larger and are refused
+_ROUNDING = 1e-12  # how far a cosine may exceed 1 and still count as 1
+
+
+@dataclass(frozen=True)
+class UrGeometry:
+    """Denavit-Hartenberg constants of a UR-type arm in canonical form.
+
+    The canonical form has a2, a3 < 0 and d4, d5, reach > 0, whatever the URDF's own frames.
+
+    Attributes:
+        a2, a3: lengths of upper arm and forearm, negative as in the manufacturer's table, m.
+        d4, d5: offsets of the wrist, m.
+        reach: from the crossing of axes 5 and 6 to the tool tip (d6 plus tool), m.
+        shoulder: (3,) crossing of axes 1 and 2 in the world, m.
+        frame: (3, 3) columns x0, y0, z1 of the canonical base in the world.
+        sign, offset: (5,) canonical angle = sign * q + offset.
+    """
+
+    a2: float
+    a3: float
+    d4: float
+    d5: float
+    reach: float
+    shoulder: Array
+    frame: Array
+    sign: Array
+    offset: Array
+
+    @property
+    def arm_reach(self) -> float:
+        """The farthest that the tip gets from the shoulder, joint limits aside, m.
+
+        Upper arm and forearm are stretched out towards the rest, which makes the least of it when
+        the tool is turned by some angle out of the arm's plane.
+        """
+
+        def shortfall(turn: float) -> float:
+            in_plane = -self.a2 - self.a3 + math.hypot(self.d5, self.reach * math.sin(turn))
+            return -math.hypot(in_plane, self.d4 + self.reach * math.cos(turn))
+
+        return -float(minimize_scalar(shortfall, bounds=(0.0, math.pi), method="bounded").fun)
+
+
+def ur_geometry(robot: Robot) -> UrGeometry:
+    """Derive the constants from the joint axes at zero.
+
+    Raises:
+        InputError: the arm is not UR-type, or the tool is not on the axis of joint 6; names
+            the joint.
+    """
+    poses = forward(robot, np.zeros((1, len(robot.axis))))
+    w, p = poses.axis[0], poses.origin[0, 1:]
+
+    def refuse(joint: int, message: str) -> InputError:
+        name = robot.joint_names[joint]
+        return InputError(str(robot.files[0]), f"joint[{name}]", f"not a UR-type arm: {message}")
+
+    for joint, other in ((2, 1), (3, 1)):
+        if float(np.linalg.norm(np.cross(w[joint], w[other]))) > _TOLERANCE:
+            raise refuse(joint, f"its axis is not parallel to that of joint {other + 1}")
+    for joint, other in ((1, 0), (4, 3), (5, 4)):
+        if abs(float(w[joint] @ w[other])) > _TOLERANCE:
+            raise refuse(joint, f"its axis is not at right angles to that of joint {other + 1}")
+        if abs(float((p[joint] - p[other]) @ np.cross(w[joint], w[other]))) > _TOLERANCE:
+            raise refuse(joint, f"its axis does not meet that of joint {other + 1}")
+
+    shoulder, wrist, knuckle = (_crossing(p[i], w[i], p[j]) for i, j in _MEETING)
+    z1 = -w[0] if w[0, 2] < 0 else w[0]  # up in the world, so that the names mean the same
+    z2 = w[1] * np.sign((wrist - shoulder) @ w[1])
+    z5 = w[4] * np.sign((knuckle - wrist) @ w[4])
+    z6 = poses.tool_axis[0]
+    off_axis = np.cross(poses.tip[0] - knuckle, w[5])
+    if np.linalg.norm(np.cross(z6, w[5])) > _TOLERANCE or np.linalg.norm(off_axis) > _TOLERANCE:
+        raise refuse(5, "the tool tip and its z axis must lie on this joint's axis")
+    upper_arm = _across(p[2] - shoulder, z2)
+    forearm = _across(p[3] - p[2], z2)
+    lengths = {
+        "a2": -float(np.linalg.norm(upper_arm)),
+        "a3": -float(np.linalg.norm(forearm)),
+        "d4": float((wrist - shoulder) @ z2),
+        "d5": float((knuckle - wrist) @ z5),
+        "reach": float((poses.tip[0] - knuckle) @ z6),
+    }
+    for joint, (name, length) in zip((2, 3, 3, 4, 5), lengths.items(), strict=True):
+        if abs(length) < _TOLERANCE:
+            raise refuse(joint, f"the link length {name} is zero")
+    if lengths["reach"] < 0:
+        raise refuse(5, "the tool's z axis points back into the wrist")
+
+    x1 = np.cross(z1, z2)
+    axes = np.array([z1, z2, z2, z2, z5])
+    x = [
+        x1,  # the canonical base takes its x axis from the arm at zero
+        x1,
+        upper_arm / lengths["a2"],
+        forearm / lengths["a3"],
+        np.cross(z2, z5),
+        np.cross(z6, z5),
+    ]
+    offset = [_angle(x[i], x[i + 1], axes[i]) for i in range(5)]
+    return UrGeometry(
+        **lengths,
+        shoulder=shoulder,
+        frame=np.column_stack([x1, np.cross(z1, x1), z1]),
+        sign=np.einsum("ij,ij->i", axes, w[:5]).round(),
+        offset=np.array(offset),
+    )
+
+
+_MEETING = ((0, 1), (3, 4), (4, 5))
+
+
+def _crossing(p: Array, u: Array, q: Array) -> Array:
+    """Where the line p + t u meets another one through q at right angles."""
+    return p + ((q - p) @ u) * u
+
+
+def _across(vector: Array, axis: Array) -> Array:
+    return vector - (vector @ axis) * axis
+
+
+def _angle(start: Array, end: Array, about: Array) -> float:
+    return float(np.arctan2(np.cross(start, end) @ about, start @ end))
+
+
+def solve_inverse(
+    geometry: UrGeometry,
+    points: Array,
+    directions: Array,
+    locked_angle: float,
+    branches: NDArray[np.intp] | None = None,
+) -> Array:
+    """All configurations that put the tip on a point with the tool along a direction.
+
+    Args:
+        points: (n, 3) tip positions in the world, m.
+        directions: (n, 3) unit vectors from the flange to the tip.
+        locked_angle: the angle of joint 6 in rad, which the task leaves free.
+        branches: (n,) the only one wanted of each point; all without it.
+
+    Returns:
+        (n, 8, 6), or (n, 1, 6) with ``branches``: angles in (-pi, pi], NaN where a branch has no
+        solution. At an aligned wrist, where a whole circle of solutions exists, one of them (the
+        task determinant is zero there).
+    """
+    g = geometry
+    # Signs of the branches' choices, (n or 1, 2 or 1 shoulders, the same of elbows and wrists).
+    if branches is None:
+        both = np.array([1.0, -1.0])
+        left, unflipped = both[None, :, None, None], both[None, None, None, :]
+        elbow_up = both[None, None, :, None]
+    else:
+        left, elbow_up, unflipped = (
+            _wide(1.0 - 2.0 * ((branches >> bit) & 1).astype(np.float64)) for bit in (2, 1, 0)
+        )
+    target = (points - g.shoulder) @ g.frame
+    tool = directions @ g.frame
+    knuckle = target - g.reach * tool  # crossing of axes 5 and 6
+
+    # Joint 1: the wrist plane keeps the distance d4 from the base axis.
+    distance = np.hypot(knuckle[:, 0], knuckle[:, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        spread = _arccos(g.d4 / distance)
+    heading = np.arctan2(knuckle[:, 1], knuckle[:, 0]) + np.pi / 2
+    t1 = _wide(heading) + _wide(spread) * left
+
+    c1, s1 = np.cos(t1), np.sin(t1)
+    along = c1 * _wide(tool[:, 0]) + s1 * _wide(tool[:, 1])
+    aside = s1 * _wide(tool[:, 0]) - c1 * _wide(tool[:, 1])
+    up = _wide(tool[:, 2])
+
+    # Joint 5, wrist unflipped or flipped; then the direction of the wrist in the arm's plane.
+    t5 = _arccos(aside) * unflipped
+    side = np.where(t5 >= 0, 1.0, -1.0)
+    total = np.arctan2(-up * side, -along * side)  # joints 2 + 3 + 4
+
+    # Joints 2 and 3: a planar arm of two links.
+    px = c1 * _wide(knuckle[:, 0]) + s1 * _wide(knuckle[:, 1]) - g.d5 * np.sin(total)
+    py = _wide(knuckle[:, 2]) + g.d5 * np.cos(total)
+    bend = _arccos((px**2 + py**2 - g.a2**2 - g.a3**2) / (2 * g.a2 * g.a3))
+    # Elbow up is a left turn for the left shoulder, which reaches out along -x1, and a right
+    # turn for the right one.
+    t3 = bend * (left * elbow_up)
+    t2 = np.arctan2(py, px) - np.arctan2(g.a3 * np.sin(t3), g.a2 + g.a3 * np.cos(t3))
+    t4 = total - t2 - t3
+
+    canonical = np.stack(np.broadcast_arrays(t1, t2, t3, t4, t5), axis=-1)
+    canonical = canonical.reshape(len(points), 8 if branches is None else 1, 5)
+    five = _principal((canonical - g.offset) * g.sign)
+    five[np.isnan(five).any(axis=2)] = np.nan
+    sixth = np.where(np.isnan(five[:, :, :1]), np.nan, locked_angle)
+    return np.concatenate([five, sixth], axis=2)
+
+
+def _wide(values: Array) -> Array:
+    return values[:, None, None, None]
+
+
+def _arccos(cosine: Array) -> Array:
+    """arccos with NaN out of reach; rounding beyond 1 counts as 1."""
+    near = np.abs(cosine) <= 1.0 + _ROUNDING
+    return np.arccos(np.where(near, np.clip(cosine, -1.0, 1.0), np.nan))
+
+
+def _principal(angles: Array) -> Array:
+    """The same angles in (-pi, pi]."""
+    return np.pi - np.mod(np.pi - angles, 2 * np.pi)

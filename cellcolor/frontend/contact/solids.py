@@ -1,0 +1,244 @@
+"""What stands still: the object and the obstacles, prepared for many queries.
+
+A body is settled by distances of points on its axis, all configurations at once: a slice of the
+body is clear if a ball around it is, a ball in the body that reaches the solid is a hit, and what
+lies between is halved. The distance to a mesh is looked up in a grid, and where its spacing leaves
+a doubt it is taken to the nearest of many samples. What is left, within some tenths of a
+millimeter of a contact, reaches fcl.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import fcl
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array, Mask
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.contact.collision import body_poses, body_shape
+from cellcolor.frontend.contact.samples import sample_mesh
+from cellcolor.frontend.scene import BoxObstacle, CylinderObstacle, SphereObstacle
+from cellcolor.frontend.target.surface import Faces, rotation_from_rpy
+
+__all__ = ["Solid", "mesh_solid", "primitive_solid"]
+
+_FINEST = 0.002  # m; half a slice that is left to fcl rather than halved again
+_CLOSE = 0.025  # m; half a slice from which on the nearest sample is worth its price
+_SPACING = 0.003  # m; wanted distance of a mesh's points to the nearest sample
+_SAMPLES = 500_000  # at most about so many; large objects are sampled more coarsely
+_PITCH, _PARTS = 0.006, 80  # of the grid: m, or parts of the longest side of a large object
+_ROUNDING = 1e-9  # m
+_AROUND = 0.06  # m; by so much the grid is larger than the object
+
+Rows = NDArray[np.intp]
+Distances = Callable[[Array], tuple[Array, Array]]
+"""Points (k, 3) to a lower and an upper bound (k,) of their distance from the solid in m."""
+Near = Callable[[Array, float], tuple[Array, Array]]
+"""The same with closer bounds, as far as a distance is below a given one; others are infinite."""
+
+
+class Solid:
+    """A thing in the world, for fcl and as bounds of distances from points.
+
+    A mesh is a shell: a body wholly inside a closed one does not touch it. That cannot happen
+    unnoticed to an arm whose bodies touch one another in a row and of which a part is outside.
+
+    ``width`` is the second of its three extents, in m: of a plate not how thick it is.
+    """
+
+    def __init__(
+        self,
+        shape: fcl.CollisionObject,
+        width: float,
+        distances: Distances,
+        near: Near | None = None,
+    ) -> None:
+        self.width = width
+        self._shape, self._distances, self._near = shape, distances, near
+        self._request = fcl.CollisionRequest()
+
+    def hits(self, robot: Robot, ends: Array) -> Mask:
+        """Whether any moving body touches the solid, (n,).
+
+        Args:
+            ends: (bodies, 2, n, 3), see :func:`~cellcolor.frontend.contact.collision.body_ends`.
+        """
+        hit = np.zeros(ends.shape[2], dtype=bool)
+        # From the tool to the base: what is near the object is asked first.
+        for index, body in reversed(list(enumerate(robot.bodies))):
+            if body.joint == 0:
+                continue
+            rows = np.flatnonzero(~hit)
+            hit[rows] = self.touched_by(body, ends[index][:, rows])
+        return hit
+
+    def touched_by(self, body: Body, ends: Array) -> Mask:
+        """Whether one body touches the solid, (n,); ``ends`` (2, n, 3) are those of its axis."""
+        touching, open_ = self._sweep(body, ends)
+        asked = np.flatnonzero(open_)
+        if len(asked):
+            touching[asked] = self._touches(body, ends[:, asked])
+        return touching
+
+    def at_least(self, points: Array) -> Array:
+        """Lower bounds (k,) of the distances of points (k, 3), m."""
+        return self._distances(points)[0]
+
+    def touched_by_fixed(self, robot: Robot, ends: Array) -> str | None:
+        """The link of the robot that cannot move and touches the solid, if there is one."""
+        for body, both in zip(robot.bodies, ends, strict=True):
+            if body.joint == 0 and self._touches(body, both).any():
+                return body.link
+        return None
+
+    def _sweep(self, body: Body, ends: Array) -> tuple[Mask, Mask]:
+        """Sure hits (n,), and what is left open (n,); the others are clear.
+
+        A body is made of slices across its axis and, if its ends are round, of two balls there.
+        """
+        start, along = ends[0], ends[1] - ends[0]
+        hit, left_open = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=bool)
+
+        def ask(rows: Rows, place: Array, half: float, around: float) -> Mask:
+            """Are balls of the radius ``around`` about points of the axis in doubt?"""
+            # A ball about a point of the axis lies in the body if it does not leave its ends.
+            inside = np.full(len(rows), body.radius)
+            if body.flat:
+                inside = np.minimum(inside, body.length * np.minimum(place, 1 - place))
+            points = start[rows] + place[:, None] * along[rows]
+            near, far = self._distances(points)
+            hit[rows[far <= inside]] = True
+            doubtful: Mask = (near <= around) & ~hit[rows]
+            if self._near is not None and half <= _CLOSE:
+                again = np.flatnonzero(doubtful)
+                near, far = self._near(points[again], around)
+                hit[rows[again[far <= inside[again]]]] = True
+                doubtful[again] = (near <= around) & ~hit[rows[again]]
+            return doubtful
+
+        half = body.length / 2
+        rows, place = np.arange(len(start)), np.full(len(start), 0.5)
+        whole = np.hypot(half, body.radius) if body.flat else half + body.radius
+        rows = rows[ask(rows, place, half, whole)]
+        if body.length == 0:
+            left_open[rows] = True
+            return hit, left_open
+        if not body.flat:
+            for end in (0.0, 1.0):
+                asked = rows[~hit[rows]]
+                doubt = ask(asked, np.full(len(asked), end), 0.0, body.radius)
+                left_open[asked[doubt]] = True
+        # One hit or one open end is enough: the rest of that body is not looked at.
+        rows = rows[~(hit | left_open)[rows]]
+        place = np.full(len(rows), 0.5)
+        while len(rows):
+            doubtful = ask(rows, place, half, float(np.hypot(half, body.radius)))
+            doubtful &= ~hit[rows]
+            if half <= _FINEST:
+                left_open[rows[doubtful]] = True
+                break
+            half /= 2
+            step = half / body.length
+            rows = np.repeat(rows[doubtful], 2)
+            place = (place[doubtful][:, None] + [-step, step]).ravel()
+        return hit, left_open & ~hit
+
+    def _touches(self, body: Body, ends: Array) -> Mask:
+        """By fcl, one after the other: ends (2, n, 3) to (n,)."""
+        other = fcl.CollisionObject(body_shape(body), fcl.Transform())
+        touching = np.zeros(ends.shape[1], dtype=bool)
+        for row, (turn, center) in enumerate(zip(*body_poses(body, ends), strict=True)):
+            other.setTransform(fcl.Transform(turn, center))
+            touching[row] = fcl.collide(self._shape, other, self._request, fcl.CollisionResult())
+        return touching
+
+
+def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Solid:
+    """A triangle mesh in the world.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    deadline.check()
+    model = fcl.BVHModel()
+    model.beginModel(len(faces), len(vertices))
+    model.addSubModel(vertices, faces)
+    model.endModel()
+    deadline.check()
+    samples, slack = sample_mesh(vertices, faces, _SPACING, _SAMPLES)
+    lowest, highest = vertices.min(axis=0), vertices.max(axis=0)
+    extent = highest - lowest
+    pitch = max(_PITCH, float(extent.max()) / _PARTS)
+    origin = lowest - _AROUND
+    counts = np.ceil((extent + 2 * _AROUND) / pitch).astype(int) + 1
+    empty = np.ones(counts, dtype=bool)
+    empty[tuple(np.rint((samples - origin) / pitch).astype(int).T)] = False
+    grid = pitch * distance_transform_edt(empty)
+    # A sample is at most half a diagonal from the middle of its cell.
+    half_diagonal = pitch * np.sqrt(3) / 2
+
+    def distances(points: Array) -> tuple[Array, Array]:
+        beyond = np.maximum(np.maximum(lowest - points, points - highest), 0.0)
+        place = (points - origin) / pitch
+        index = np.clip(np.rint(place).astype(int), 0, counts - 1)
+        off = place - index
+        off_by = pitch * np.sqrt(np.einsum("ij,ij->i", off, off)) + half_diagonal
+        stored = grid[index[:, 0], index[:, 1], index[:, 2]]
+        outside = np.sqrt(np.einsum("ij,ij->i", beyond, beyond))
+        return np.maximum(outside, to_mesh(stored - off_by)), stored + off_by
+
+    deadline.check()
+    tree = cKDTree(samples, balanced_tree=False, compact_nodes=False)
+
+    def near(points: Array, reach: float) -> tuple[Array, Array]:
+        to_sample, _ = tree.query(points, distance_upper_bound=np.hypot(reach, slack) + _ROUNDING)
+        return to_mesh(to_sample), to_sample
+
+    def to_mesh(to_sample: Array) -> Array:
+        """A lower bound of distances from the mesh, from one of those to the nearest sample.
+
+        The way from a point to the nearest one of the mesh is at right angles to the face or the
+        edge that this lies on, and a sample on these is at most ``slack`` aside of it; corners
+        are samples.
+        """
+        return np.sqrt(np.maximum(np.maximum(to_sample, 0.0) ** 2 - slack**2, 0.0))
+
+    shape = fcl.CollisionObject(model, fcl.Transform())
+    return Solid(shape, sorted(extent.tolist())[1], distances, near)
+
+
+def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -> Solid:
+    """A box, cylinder or sphere; unlike a mesh it is filled."""
+    turn, center = rotation_from_rpy(*obstacle.rpy_rad), np.array(obstacle.position_m)
+    match obstacle:
+        case BoxObstacle(size_m=size):
+            shape, extents = fcl.Box(*size), size
+
+            def outside(local: Array) -> Array:
+                return np.asarray(np.abs(local) - np.array(size) / 2)
+
+        case CylinderObstacle(radius_m=radius, height_m=height):
+            shape, extents = fcl.Cylinder(radius, height), (2 * radius, 2 * radius, height)
+
+            def outside(local: Array) -> Array:
+                across = np.hypot(local[:, 0], local[:, 1]) - radius
+                return np.column_stack([across, np.abs(local[:, 2]) - height / 2])
+
+        case SphereObstacle(radius_m=radius):
+            shape, extents = fcl.Sphere(radius), (2 * radius,) * 3
+
+            def outside(local: Array) -> Array:
+                return np.asarray(np.linalg.norm(local, axis=1)[:, None] - radius)
+
+    def distances(points: Array) -> tuple[Array, Array]:
+        beyond = outside((points - center) @ turn)
+        distance = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
+        return distance, distance
+
+    placed = fcl.CollisionObject(shape, fcl.Transform(turn, center))
+    return Solid(placed, sorted(extents)[1], distances)

@@ -1,0 +1,76 @@
+"""Where the tool works: the region at its tip that needs room on the surface.
+
+Bodies end short of the tip, since the tip touches the object. What else is there, obstacles and
+the ground, must leave room for it (``docs/frontend.md``, "Validity"). The region hangs on the
+tool's pose alone, whatever the arm does.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.arm.robot import JOINTS, Body, Robot
+from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.contact.solids import Solid
+from cellcolor.frontend.target.surface import Faces, Surface, along_edges
+
+__all__ = ["Tip"]
+
+
+class Tip:
+    """All points within the contact radius of the tool's axis, from the tip to the tool's body."""
+
+    def __init__(
+        self, robot: Robot, radius: float, obstacles: list[Solid], ground: float | None
+    ) -> None:
+        """``radius`` and ``ground``, the height of the ground if there is one, in m."""
+        point, axis = robot.tip[:3, 3], robot.tip[:3, 2]
+        # How far behind the tip the axis of each body on the last link begins.
+        behind = [
+            min(float((point - end) @ axis) for end in (body.start, body.end))
+            for body in robot.bodies
+            if body.joint == JOINTS
+        ]
+        length = max(min(behind, default=0.0), 0.0)
+        self._body = Body("tool tip", JOINTS, point, point - length * axis, radius, flat=False)
+        self._obstacles, self._ground = obstacles, ground
+
+    def blocked(self, points: Array, directions: Array) -> Mask:
+        """Whether something is in the way, (k,).
+
+        Args:
+            points: (k, 3) where the tip is, m.
+            directions: (k, 3) unit vectors along the tool, from the flange to the tip.
+        """
+        ends = np.stack([points, points - self._body.length * directions])
+        hit = np.zeros(len(points), dtype=bool)
+        if self._ground is not None:
+            hit |= ends[:, :, 2].min(axis=0) - self._body.radius < self._ground
+        for obstacle in self._obstacles:
+            hit[~hit] = obstacle.touched_by(self._body, ends[:, ~hit])
+        return hit
+
+    def free_along(self, surface: Surface, edges: Faces) -> Mask:
+        """Whether obstacles leave room all along mesh edges (k, 2), (k,).
+
+        Asked at points so close to each other that no more than 0.65 mm of what the region meets
+        is left out. The ground is flat and needs no more than the vertices.
+        """
+        free = np.ones(len(edges), dtype=bool)
+        if not self._obstacles:
+            return free
+        body, lengths = self._body, surface.lengths(edges)
+        ends = surface.vertices[edges.ravel()]
+        near = np.min([solid.at_least(ends) for solid in self._obstacles], axis=0)
+        # No point of an edge is farther from the nearer end than half its length.
+        doubtful = near.reshape(-1, 2).min(axis=1) <= body.radius + body.length + lengths / 2
+        rows = np.flatnonzero(doubtful)
+        way = lengths[rows] + body.length * surface.turns(edges[rows])
+        step = float(longest_steps(np.array([body.radius]))[0])
+        pieces = np.maximum(np.ceil(way / step).astype(int), 1)
+        row = np.repeat(rows, pieces)
+        number = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+        points, directions = along_edges(surface, edges[row], number / np.repeat(pieces, pieces))
+        free[row[self.blocked(points, directions)]] = False
+        return free

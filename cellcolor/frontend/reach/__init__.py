@@ -1,0 +1,1 @@
+"""Which configurations are valid at each vertex, and which lead into each other."""

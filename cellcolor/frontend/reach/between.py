@@ -1,0 +1,120 @@
+"""Validity on the way: what is linked has to be valid between the vertices as well.
+
+Every link is tested at so many points that no body moves far from one to the next. An edge with an
+end at the border of the branch's domain, where limits, contacts and thresholds are near, is tested
+at points that are close on the surface as well.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.frontend.target.surface import Surface, along_edges
+
+__all__ = ["at_domain_border", "remains_valid", "strides"]
+
+_AT_ONCE = 20_000  # configurations; a matter of memory: some kilobytes each
+_ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump
+
+Test = Callable[[Array, Array, NDArray[np.intp]], tuple[Mask, Array]]
+"""Points (k, 3), unit tool directions (k, 3) and branches (k,): are they valid (k,), and where are
+the ends of the bodies (ends, k, 3)?"""
+
+
+def at_domain_border(edges: Index, valid: Mask) -> Mask:
+    """Which edges have an end with a neighbor that a branch does not reach, (k, branches).
+
+    Args:
+        edges: (k, 2) all mesh edges.
+        valid: (n, branches).
+    """
+    i, j = edges.T
+    beside = np.zeros_like(valid)
+    for here, there in ((i, j), (j, i)):
+        rows, branches = np.nonzero(~valid[there])
+        beside[here[rows], branches] = True
+    border: Mask = beside[i] | beside[j]
+    return border
+
+
+def strides(first: Iterable[Array], second: Iterable[Array], longest: Array) -> Array:
+    """The largest movement (k,) of a body from ends (ends, k, 3) to others, 1 if just allowed.
+
+    No other point of a body's axis moves farther between the two: its displacement is a mean of
+    those of the ends.
+    """
+    squares: Array = np.zeros(1)
+    for here, there, allowed in zip(first, second, longest, strict=True):
+        moved = there - here
+        squares = np.maximum(squares, np.einsum("ij,ij->i", moved, moved) / allowed**2)
+    return np.sqrt(squares)
+
+
+def remains_valid(
+    surface: Surface,
+    edges: Index,
+    branches: NDArray[np.intp],
+    pieces: Index,
+    ends: Array,
+    longest: Array,
+    test: Test,
+) -> Mask:
+    """Whether each branch is valid at points on its mesh edge, (k,).
+
+    Args:
+        edges: (k, 2) vertex indices.
+        branches: (k,) one of each edge.
+        pieces: (k,) at least so many equal parts are made of each edge. A part on which a body
+            moves farther than it may is cut again.
+        ends: (ends, n, branches, 3) of the bodies at the vertices, m.
+        longest: (ends,) how far each may move between two points, m.
+        test: see :data:`Test`.
+    """
+    result = np.ones(len(edges), dtype=bool)
+    i, j = edges.T
+    at_i, at_j = (end[i, branches] for end in ends), (end[j, branches] for end in ends)
+    pieces = np.maximum(pieces, np.ceil(strides(at_i, at_j, longest)).astype(int))
+    for first, last in _batches(np.cumsum(pieces - 1)):
+        # Parts of edges: row, from where to where, what they are cut into, the bodies there.
+        rows = first + np.flatnonzero(pieces[first:last] > 1)
+        low, high, count = np.zeros(len(rows)), np.ones(len(rows)), pieces[rows]
+        near, far = (ends[:, vertex[rows], branches[rows]] for vertex in (i, j))
+        for _ in range(_ROUNDS):
+            if not len(rows):
+                break
+            number, part = _numbered(count + 1)
+            inner = (number > 0) & (number < count[part])
+            row, way = rows[part], low[part] + (high - low)[part] * number / count[part]
+            places = np.empty((len(near), len(row), 3))
+            places[:, number == 0], places[:, number == count[part]] = near, far
+            at = row[inner]
+            points = along_edges(surface, edges[at], way[inner])
+            valid, places[:, inner] = test(*points, branches[at])
+            result[at[~valid]] = False
+            stride = strides(places[:, :-1], places[:, 1:], longest)
+            here = np.flatnonzero((number[1:] > 0) & (stride > 1) & result[row[1:]])
+            rows, low, high = row[here], way[here], way[here + 1]
+            near, far = places[:, here], places[:, here + 1]
+            count = np.ceil(stride[here]).astype(int)
+        result[rows] = False
+    return result
+
+
+def _numbered(counts: Index) -> tuple[Index, Index]:
+    """Items of groups of given sizes, one after the other: number in the group, and group."""
+    group = np.repeat(np.arange(len(counts)), counts)
+    return np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts), group
+
+
+def _batches(total: Index) -> list[tuple[int, int]]:
+    """Ranges of about equal numbers of points, from their running total."""
+    if not len(total):
+        return []
+    cuts = np.searchsorted(total, np.arange(_AT_ONCE, total[-1], _AT_ONCE))
+    bounds = np.unique([0, *cuts.tolist(), len(total)]).tolist()
+    return list(itertools.pairwise(bounds))

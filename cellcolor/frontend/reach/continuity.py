@@ -1,0 +1,177 @@
+"""From valid configurations to colors and cracks (``docs/frontend.md``, "Continuity").
+
+A node is a valid configuration: a vertex and a branch. Two nodes on the ends of a mesh edge are
+linked when a continuous motion of their branch leads from one to the other
+(:mod:`cellcolor.frontend.reach.smooth`) and fits into the joint limits. Colors are the connected
+components of linked nodes; a mesh edge whose ends have a color in common but are not linked in it
+is a crack of that color.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.surface import Crack
+from cellcolor.errors import InputError
+from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
+from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.target.surface import Surface
+
+__all__ = [
+    "Coloring",
+    "color",
+    "find_cracks",
+    "link",
+    "node_links",
+    "stays_in_limits",
+]
+
+_ROUNDING = 1e-9  # rad; an angle on its limit is inside
+
+
+@dataclass(frozen=True)
+class Coloring:
+    """Colors of all nodes.
+
+    Attributes:
+        names: of the colors: the branch, with a number where it has several components.
+        branch: of each color.
+        node_color: (n, branches) the color of each valid configuration, -1 for others.
+    """
+
+    names: tuple[str, ...]
+    branch: tuple[int, ...]
+    node_color: Index
+
+
+def stays_in_limits(
+    lower: Array, upper: Array, start: Array, lowest: Array, highest: Array
+) -> Mask:
+    """Whether motions fit into the joint limits (6,), turned by full circles where need be.
+
+    With limits of -3 and 3 rad there is no way from 2.9 on by 0.48; with limits of -3 and 4 rad
+    there is.
+
+    Args:
+        start: (..., 6) where the motions begin, rad.
+        lowest, highest: (..., 6) how far each joint gets from there, at most and at least 0.
+    """
+    circle = 2 * np.pi
+    turns = np.ceil((lower - start - lowest) / circle - _ROUNDING)
+    return np.asarray((start + highest + circle * turns <= upper + _ROUNDING).all(axis=-1))
+
+
+def link(
+    surface: Surface,
+    edges: Index,
+    candidates: Candidates,
+    measure: Measure,
+    limits: tuple[Array, Array] | None,
+    probe: Probe,
+) -> Mask:
+    """Whether the two configurations of a branch on an edge's ends are continuous, (k, 8).
+
+    False where one of the ends has no valid configuration of that branch. Otherwise the branch
+    is followed along the edge, see :mod:`cellcolor.frontend.reach.smooth`.
+
+    Args:
+        edges: (k, 2) vertex indices.
+        measure: what is a jump.
+        limits: lower and upper (6,) of the joints in rad, which the motion has to keep.
+        probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.
+    """
+    i, j = edges.T
+    linked: Mask = candidates.valid[i] & candidates.valid[j]
+    rows, branches = np.nonzero(linked)
+    start, end = (candidates.configurations[ends[rows], branches] for ends in (i, j))
+    at_start, at_end = (candidates.determinants[ends[rows], branches] for ends in (i, j))
+    motions = follow_edges(
+        surface,
+        edges[rows],
+        branches,
+        (start, end),
+        (at_start, at_end),
+        measure,
+        probe,
+    )
+    smooth = motions.smooth
+    if limits is not None:
+        smooth = smooth & stays_in_limits(*limits, start, motions.lowest, motions.highest)
+    linked[rows, branches] = smooth
+    return linked
+
+
+def color(
+    nodes: Mask, configurations: Array, links: Index, branch_names: tuple[str, ...]
+) -> Coloring:
+    """Connected components of linked nodes.
+
+    Numbering is deterministic: colors follow their branches; within a branch the components
+    with more vertices come first, and of equal ones that with the smallest vertex.
+
+    Args:
+        nodes: (n, branches) which of them there are.
+        configurations: (n, branches, 6) in rad, for errors.
+        links: (l, 2) nodes that a continuous motion joins, numbered vertex * branches + branch.
+
+    Raises:
+        InputError: a color has two configurations on one vertex; names vertex and
+            configurations.
+    """
+    branches = nodes.shape[1]
+    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(nodes.size,) * 2)
+    component = connected_components(graph, directed=False)[1]
+    present = np.flatnonzero(nodes)
+    _, first, inverse, count = np.unique(
+        component[present], return_index=True, return_inverse=True, return_counts=True
+    )
+    branch_of = present[first] % branches
+    order = np.lexsort((first, -count, branch_of))
+    node_color = np.full(nodes.size, -1, dtype=np.int64)
+    node_color[present] = np.argsort(order)[inverse]
+    of_branch = branch_of[order]
+    names = []
+    for branch, size in enumerate(np.bincount(of_branch, minlength=branches)):
+        name = branch_names[branch]
+        names += [name] if size == 1 else [f"{name} {k}" for k in range(1, size + 1)]
+    table = node_color.reshape(nodes.shape)
+    _check_injective(table, configurations, names)
+    return Coloring(tuple(names), tuple(of_branch.tolist()), table)
+
+
+def _check_injective(node_color: Index, configurations: Array, names: list[str]) -> None:
+    ordered = np.sort(node_color, axis=1)
+    twice = (ordered[:, 1:] == ordered[:, :-1]) & (ordered[:, 1:] >= 0)
+    if not twice.any():
+        return
+    vertex = int(np.argmax(twice.any(axis=1)))
+    shared = ordered[vertex, 1:][twice[vertex]][0]
+    joints = configurations[vertex][node_color[vertex] == shared].round(4).tolist()
+    raise InputError(
+        None,
+        f"vertices[{vertex}]",
+        f"color {names[shared]!r} covers it with {len(joints)} configurations: "
+        + " and ".join(map(str, joints)),
+    )
+
+
+def node_links(edges: Index, linked: Mask) -> Index:
+    """The pairs of nodes (l, 2) that :func:`link` found continuous."""
+    rows, branch = np.nonzero(linked)
+    links: Index = edges[rows] * linked.shape[1] + branch[:, None]
+    return links
+
+
+def find_cracks(edges: Index, linked: Mask, coloring: Coloring) -> tuple[Crack, ...]:
+    """The mesh edges whose ends share a color that is not continuous along the edge itself."""
+    start, end = coloring.node_color[edges[:, 0]], coloring.node_color[edges[:, 1]]
+    torn = (start == end) & (start >= 0) & ~linked
+    return tuple(
+        Crack(int(edges[row, 0]), int(edges[row, 1]), tuple(sorted(start[row, torn[row]].tolist())))
+        for row in np.flatnonzero(torn.any(axis=1))
+    )

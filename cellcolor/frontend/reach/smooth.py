@@ -1,0 +1,184 @@
+"""Is the motion of a branch along a mesh edge smooth, or does it jump?
+
+A step of a motion is measured by the whole change of the tool's pose, its way and its turn. One
+that is not clearly smooth is halved, until all its parts are, or a point on the way has no
+configuration to go through, or a part too short to matter still holds a jump
+(``docs/frontend.md``, "Continuity").
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.frontend.scene import Continuity
+from cellcolor.frontend.target.surface import Surface, along_edges
+
+__all__ = ["Measure", "Motions", "Probe", "follow_edges", "joint_step"]
+
+_TRUSTED = 0.5  # rad; a step in which a joint moves farther is always looked into
+_HALVINGS = 10  # of the probe spacing; what is too fast on the last one is a jump
+_AT_ONCE = 20_000  # probes; a matter of memory: some kilobytes each
+
+Probe = Callable[[Array, Array, NDArray[np.intp]], tuple[Array, Array]]
+"""Points (k, 3), unit tool directions (k, 3) and branches (k,) to configurations (k, 6) in rad and
+task determinants (k,) in m^3, both NaN where there is no well-conditioned configuration."""
+
+
+@dataclass(frozen=True)
+class Measure:
+    """By what motions are measured.
+
+    Attributes:
+        policy: the bounds on steps.
+        near_singular: task determinant from which on down steps are always looked into, m^3.
+        lever: by so much a turn of the tool by one rad counts as a way, m.
+    """
+
+    policy: Continuity
+    near_singular: float
+    lever: float
+
+
+@dataclass(frozen=True)
+class Motions:
+    """What became of motions along mesh edges.
+
+    Attributes:
+        smooth: (k,) whether there is a continuous motion.
+        lowest, highest: (k, 6) how far each joint gets from where it starts, in rad, unwound;
+            of smooth motions only.
+    """
+
+    smooth: Mask
+    lowest: Array
+    highest: Array
+
+
+@dataclass(frozen=True)
+class _Steps:
+    """Parts of motions: of which edge, from where to where (0 to 1), joints and determinants."""
+
+    row: Index
+    low: Array
+    high: Array
+    first: Array
+    last: Array
+    first_determinant: Array
+    last_determinant: Array
+
+    def __len__(self) -> int:
+        return len(self.row)
+
+    def take(self, which: Mask | slice) -> _Steps:
+        return _Steps(*(getattr(self, field.name)[which] for field in fields(self)))
+
+    def halves(self, middle: Array, joints: Array, determinants: Array) -> _Steps:
+        """All first halves, then all second ones."""
+        both = np.concatenate
+        return _Steps(
+            row=both([self.row, self.row]),
+            low=both([self.low, middle]),
+            high=both([middle, self.high]),
+            first=both([self.first, joints]),
+            last=both([joints, self.last]),
+            first_determinant=both([self.first_determinant, determinants]),
+            last_determinant=both([determinants, self.last_determinant]),
+        )
+
+
+def joint_step(first: Array, second: Array) -> Array:
+    """The largest movement of a joint between configurations (..., 6), modulo 2 pi, in rad."""
+    return np.asarray(np.abs(_shorter_way(first, second)).max(axis=-1))
+
+
+def follow_edges(
+    surface: Surface,
+    edges: Index,
+    branches: NDArray[np.intp],
+    configurations: tuple[Array, Array],
+    determinants: tuple[Array, Array],
+    measure: Measure,
+    probe: Probe,
+) -> Motions:
+    """Follow a branch along each edge: straight, the normal turning with it.
+
+    Args:
+        edges: (k, 2) vertex indices.
+        branches: (k,) one of each edge.
+        configurations: (k, 6) at the first ends and at the second ones, rad.
+        determinants: (k,) task determinants at both, m^3.
+        measure: what is a jump.
+        probe: see :data:`Probe`; called with points in between.
+    """
+    policy, lengths, turns = measure.policy, surface.lengths(edges), surface.turns(edges)
+    smooth = np.ones(len(edges), dtype=bool)
+    settled: list[_Steps] = []
+
+    def sort(steps: _Steps) -> list[_Steps]:
+        """Keep what is settled, note jumps; what is open comes back in pieces."""
+        row = steps.row
+        angle = _turned(turns[row], steps.high) - _turned(turns[row], steps.low)
+        change = lengths[row] * (steps.high - steps.low) + measure.lever * angle
+        step = joint_step(steps.first, steps.last)
+        bound = policy.base_step_rad + policy.step_per_length_rad_per_m * change
+        nearest = np.fmin(steps.first_determinant, steps.last_determinant)
+        clear = (nearest >= measure.near_singular) & (step <= np.minimum(bound / 2, _TRUSTED))
+        done = clear | ((change <= policy.probe_spacing_m) & (step <= bound))
+        settled.append(steps.take(done))
+        smooth[row[~done & (change <= policy.probe_spacing_m / 2**_HALVINGS)]] = False
+        rest = steps.take(~done)
+        return [rest.take(slice(k, k + _AT_ONCE)) for k in range(0, len(rest), _AT_ONCE)]
+
+    at_ends = np.zeros(len(edges)), np.ones(len(edges))
+    open_ = sort(_Steps(np.arange(len(edges)), *at_ends, *configurations, *determinants))
+    while open_:
+        steps = open_.pop()
+        steps = steps.take(smooth[steps.row])
+        middle = (steps.low + steps.high) / 2
+        points, directions = along_edges(surface, edges[steps.row], middle)
+        joints, at_middle = probe(points, directions, branches[steps.row])
+        smooth[steps.row[np.isnan(at_middle)]] = False
+        found = smooth[steps.row]
+        open_ += sort(steps.take(found).halves(middle[found], joints[found], at_middle[found]))
+    return Motions(smooth, *_excursions(len(edges), settled))
+
+
+def _turned(turns: Array, way: Array) -> Array:
+    """By how much the interpolated normal has turned at parts of the way, rad."""
+    return np.arctan2(way * np.sin(turns), 1 - way + way * np.cos(turns))
+
+
+def _shorter_way(first: Array, second: Array) -> Array:
+    return np.asarray(np.remainder(second - first + np.pi, 2 * np.pi) - np.pi)
+
+
+def _excursions(count: int, settled: list[_Steps]) -> tuple[Array, Array]:
+    """Lowest and highest angles (count, 6) on motions of settled steps, from 0 at the start.
+
+    Args:
+        settled: at first those that are whole motions, then parts of the others.
+    """
+    lowest, highest = np.zeros((count, 6)), np.zeros((count, 6))
+    whole = settled[0]
+    moved = _shorter_way(whole.first, whole.last)
+    lowest[whole.row], highest[whole.row] = np.minimum(moved, 0.0), np.maximum(moved, 0.0)
+    if not any(map(len, settled[1:])):
+        return lowest, highest
+    row, low, first, last = (
+        np.concatenate([getattr(steps, name) for steps in settled[1:]])
+        for name in ("row", "low", "first", "last")
+    )
+    order = np.lexsort((low, row))
+    row, moved = row[order], _shorter_way(first[order], last[order])
+    # Where each motion begins; a running total over all of them, less what was there before.
+    start = np.flatnonzero(np.diff(row, prepend=-1))
+    total = np.cumsum(moved, axis=0)
+    place = total - np.repeat((total - moved)[start], np.diff(start, append=len(row)), axis=0)
+    lowest[row[start]] = np.minimum(np.minimum.reduceat(place, start), 0.0)
+    highest[row[start]] = np.maximum(np.maximum.reduceat(place, start), 0.0)
+    return lowest, highest

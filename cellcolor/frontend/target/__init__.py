@@ -1,0 +1,1 @@
+"""The surface to be covered: simple shapes and mesh files."""

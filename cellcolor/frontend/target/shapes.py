@@ -1,0 +1,154 @@
+"""Surfaces of simple shapes: meshes of the plane, mapped keeping areas."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.scene import CapObject, MeshObject, Object, PipeObject, RectangleObject
+from cellcolor.frontend.sizes import check_vertices
+from cellcolor.frontend.target.mesh_file import load_mesh
+from cellcolor.frontend.target.surface import Faces, Surface
+
+__all__ = ["disc_mesh", "grid_mesh", "make_surface", "pipe", "rectangle", "spherical_cap"]
+
+
+def make_surface(spec: Object, base: Path, deadline: Deadline = NEVER) -> Surface:
+    """The object of a scene in its own frame; mesh files are relative to the folder ``base``.
+
+    Raises:
+        InputError: a mesh file cannot be used.
+        OutOfTime: the deadline came first.
+    """
+    match spec:
+        case MeshObject():
+            units, longest, mend = spec.meters_per_unit, spec.max_edge_m, spec.repair
+            return load_mesh(base / spec.file, units, longest, mend, deadline)
+        case CapObject(radius_m=radius, half_angle_rad=half_angle):
+            disc = disc_mesh(spec.target_vertices, spec.jitter, spec.seed)
+            return spherical_cap(radius, half_angle, *disc)
+        case PipeObject(radius_m=radius, length_m=length):
+            width = radius * spec.arc_rad
+            grid = grid_mesh(width, length, spec.target_vertices, spec.jitter, spec.seed)
+            return pipe(radius, spec.arc_rad, length, *grid)
+        case RectangleObject(size_x_m=x, size_y_m=y):
+            grid = grid_mesh(x, y, spec.target_vertices, spec.jitter, spec.seed)
+            return rectangle(x, y, *grid)
+
+
+def disc_mesh(target: int, jitter: float, seed: int) -> tuple[Array, Faces]:
+    """The unit disc as concentric rings of 6, 12, 18, ... vertices about a center.
+
+    Args:
+        target: wanted number of vertices; the nearest possible one is 1 + 3 k (k + 1).
+        jitter: vertices are moved by at most this part of a ring's width, along the rim and
+            (except on the rim) across it, so that borders do not run along mesh lines.
+        seed: of the jitter.
+
+    Returns:
+        points (n, 2) and faces (m, 3), counter-clockwise.
+    """
+    rings = max(1, round((np.sqrt(1 + 4 * (target - 1) / 3) - 1) / 2))
+    ring = np.repeat(np.arange(1, rings + 1), 6 * np.arange(1, rings + 1))
+    place = np.concatenate([np.arange(6 * k) for k in range(1, rings + 1)])
+    shift = np.random.default_rng(seed).uniform(-jitter, jitter, (len(ring), 2))
+    shift[ring == rings, 0] = 0.0
+    radius = (ring + shift[:, 0]) / rings
+    # A ring's vertices are pi/3 ring widths apart, so this is a part of a ring width as well.
+    angle = (place + shift[:, 1]) * np.pi / (3 * ring)
+    points = np.column_stack([radius * np.cos(angle), radius * np.sin(angle)])
+    return np.vstack([[0.0, 0.0], points]), np.array(_disc_faces(rings), dtype=np.int64)
+
+
+def _disc_faces(rings: int) -> list[tuple[int, int, int]]:
+    def vertex(ring: int, place: int) -> int:
+        return 0 if ring == 0 else 1 + 3 * ring * (ring - 1) + place % (6 * ring)
+
+    faces = []
+    for ring in range(1, rings + 1):
+        for sector in range(6):
+            outer, inner = sector * ring, sector * (ring - 1)
+            for step in range(ring):
+                a, b = vertex(ring, outer + step), vertex(ring, outer + step + 1)
+                faces.append((a, b, vertex(ring - 1, inner + step)))
+                if step + 1 < ring:
+                    inside = vertex(ring - 1, inner + step), vertex(ring - 1, inner + step + 1)
+                    faces.append((inside[0], b, inside[1]))
+    return faces
+
+
+def grid_mesh(
+    width: float, height: float, target: int, jitter: float, seed: int
+) -> tuple[Array, Faces]:
+    """A rectangle from (0, 0) to (width, height) as rows of nearly square meshes.
+
+    Args:
+        target: wanted number of vertices; rows and columns are chosen near it.
+        jitter: vertices are moved by at most this part of a mesh, on the border along it only,
+            at the corners not at all.
+        seed: of the jitter.
+
+    Returns:
+        points (n, 2) and faces (m, 3), counter-clockwise.
+    """
+    columns = max(1, round(np.sqrt(target * width / height)) - 1)
+    rows = max(1, round(target / (columns + 1)) - 1)
+    check_vertices((columns + 1) * (rows + 1), "target_vertices")  # a strip can get far too long
+    x, y = np.meshgrid(np.arange(columns + 1.0), np.arange(rows + 1.0))
+    shift = np.random.default_rng(seed).uniform(-jitter, jitter, (2, *x.shape))
+    shift[0, :, [0, -1]] = 0.0
+    shift[1, [0, -1], :] = 0.0
+    points = np.stack([(x + shift[0]) * width / columns, (y + shift[1]) * height / rows], axis=-1)
+    number = np.arange(x.size).reshape(x.shape)
+    a, b = number[:-1, :-1].ravel(), number[:-1, 1:].ravel()
+    c, d = number[1:, 1:].ravel(), number[1:, :-1].ravel()
+    # Diagonals in turn, so that they favor no direction.
+    even = ((x + y)[:-1, :-1].ravel() % 2 == 0)[:, None]
+    first = np.where(even, np.column_stack([a, b, c]), np.column_stack([a, b, d]))
+    second = np.where(even, np.column_stack([a, c, d]), np.column_stack([b, c, d]))
+    return points.reshape(-1, 2), np.concatenate([first, second]).astype(np.int64)
+
+
+def spherical_cap(radius: float, half_angle: float, disc: Array, faces: Faces) -> Surface:
+    """A cap of a sphere about +z, centered on the origin.
+
+    Args:
+        radius: of the sphere, m.
+        half_angle: between the axis and the rim, rad.
+        disc, faces: mesh of the unit disc, its first vertex in the center.
+    """
+    squared = (disc**2).sum(axis=1)
+    height = 1 - squared * (1 - np.cos(half_angle))  # cosine of the polar angle
+    stretch = np.zeros(len(disc))
+    stretch[1:] = np.sqrt((1 - height[1:] ** 2) / squared[1:])
+    normals = np.column_stack([disc * stretch[:, None], height])
+    return Surface(radius * normals, faces, normals)
+
+
+def pipe(radius: float, arc: float, length: float, grid: Array, faces: Faces) -> Surface:
+    """Part of the outside of a pipe along y, its crown at +z.
+
+    Args:
+        radius: m.
+        arc: angle from edge to edge, rad.
+        length: along the axis, m.
+        grid, faces: mesh of the rectangle from (0, 0) to (radius * arc, length).
+    """
+    angle = grid[:, 0] / radius - arc / 2
+    normals = np.column_stack([np.sin(angle), np.zeros(len(grid)), np.cos(angle)])
+    along = np.column_stack([np.zeros(len(grid)), grid[:, 1] - length / 2, np.zeros(len(grid))])
+    return Surface(radius * normals + along, faces, normals)
+
+
+def rectangle(size_x: float, size_y: float, grid: Array, faces: Faces) -> Surface:
+    """A flat rectangle in z = 0, centered on the origin, its outside at +z.
+
+    Args:
+        size_x, size_y: m.
+        grid, faces: mesh of the rectangle from (0, 0) to (size_x, size_y).
+    """
+    vertices = np.column_stack([grid - [size_x / 2, size_y / 2], np.zeros(len(grid))])
+    return Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(grid), 1)))

@@ -1,0 +1,152 @@
+"""The numbers of a solution: against its division, against the instance, against each other."""
+
+from __future__ import annotations
+
+from math import isclose
+
+from cellcolor.data.bound import greatest
+from cellcolor.data.coverage import Coverage
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Solution
+from cellcolor.judges.cutting_paths import cutting_paths
+from cellcolor.judges.whole_cells import segments_of_whole_cells
+
+__all__ = ["claims", "number_problems"]
+
+
+def number_problems(instance: Instance, solution: Solution, segments: int | None) -> list[str]:
+    """What is wrong with a solution's numbers, each naming its member.
+
+    Args:
+        instance: the topological graph.
+        solution: its division has been found legal, if it has one.
+        segments: of the division; None without one.
+    """
+    problems = _bound_problems(instance, solution, segments)
+    problems += _proof_problems(solution, segments)
+    problems += _scheme_problems(instance, solution)
+    problems += _cutting_problems(instance, solution)
+    if segments is not None:
+        if solution.segments != segments:
+            problems.append(f"segments: says {solution.segments}, the division has {segments}")
+        if solution.lift_offs != max(0, segments - 1):
+            problems.append(f"lift_offs: says {solution.lift_offs}, must be {max(0, segments - 1)}")
+    own, said = instance.coverage, solution.coverage
+    if own is not None and said is not None and not _agree(own, said):
+        problems.append("coverage: is not that of the instance")
+    return problems
+
+
+def claims(instance: Instance, solution: Solution) -> dict[str, object]:
+    """The members of a solution that no checker can verify yet, with what they say.
+
+    That there is one segment where there is a cell needs no proof.
+    """
+    trivial = min(1, len(instance.cells))
+    found: dict[str, object] = {}
+    for name in ("lower_bound", "surface_lower_bound"):
+        value = getattr(solution, name)
+        if value > trivial:
+            found[name] = value
+    # What is proved hangs on the bound that it meets.
+    if solution.status == "optimal" and found:
+        found["status"] = solution.status
+    if solution.proved_for_surface and "surface_lower_bound" in found:
+        found["proved_for_surface"] = True
+    if solution.cutting_paths_lower_bound:
+        found["cutting_paths_lower_bound"] = solution.cutting_paths_lower_bound
+    if solution.schemes is not None:
+        found |= {"schemes": solution.schemes, "complete": solution.complete}
+    if solution.coverage is not None and instance.coverage is None:
+        found["coverage"] = solution.coverage.to_document()
+    return found
+
+
+def _agree(one: Coverage, other: Coverage) -> bool:
+    """Another processor may round the sums of areas in another way."""
+    pairs = zip(one.to_document().values(), other.to_document().values(), strict=True)
+    return all(isclose(a, b, rel_tol=1e-6, abs_tol=1e-9) for a, b in pairs)
+
+
+def _bound_problems(instance: Instance, solution: Solution, segments: int | None) -> list[str]:
+    """Bounds above a division that exists, or that contradict each other."""
+    problems = []
+    if segments is None:
+        most, why = segments_of_whole_cells(instance), "whole cells can be painted in"
+    else:
+        most, why = segments, "found"
+    lower, surface = solution.lower_bound, solution.surface_lower_bound
+    for name, bound in (("lower_bound", lower), ("surface_lower_bound", surface)):
+        if bound > most:
+            problems.append(f"{name}: {bound} cannot be above the {most} segments {why}")
+    if lower < surface:
+        # Whatever the search space, its divisions are divisions of the surface.
+        problems.append(f"lower_bound: {lower} cannot be below surface_lower_bound, {surface}")
+    if solution.bounds is not None:
+        for name, bound, best in (
+            ("surface_lower_bound", surface, greatest(solution.bounds, "surface")),
+            ("lower_bound", lower, greatest(solution.bounds, "strands")),
+        ):
+            if bound != best:
+                problems.append(f"{name}: says {bound}, the greatest of bounds is {best}")
+    return problems
+
+
+def _proof_problems(solution: Solution, segments: int | None) -> list[str]:
+    """Claims of a proof that the bounds do not bear out."""
+    if segments is None:
+        if solution.proved_for_surface:
+            return ["proved_for_surface: must be false, since there is no division"]
+        return []
+    problems = []
+    surface = solution.surface_lower_bound
+    proved = segments == surface
+    if solution.proved_for_surface != proved:
+        problems.append(
+            f"proved_for_surface: must be {str(proved).lower()}, since surface_lower_bound is "
+            f"{surface} and the division has {segments} segments"
+        )
+    bound = solution.lower_bound if solution.search_space == "paper" else surface
+    if solution.status == "optimal" and bound != segments:
+        problems.append(
+            f"status: {segments} segments are not proved optimal by a lower bound of {bound}"
+        )
+    return problems
+
+
+def _scheme_problems(instance: Instance, solution: Solution) -> list[str]:
+    """The number of optimal schemes; that it is right cannot be seen without listing them."""
+    schemes, complete = solution.schemes, solution.complete
+    if schemes is None and complete is None:
+        return []
+    if schemes is None or complete is None:
+        return ["schemes: goes with complete"]
+    problems = []
+    if (schemes or complete) and (solution.search_space != "paper" or solution.strands != 1):
+        problems.append("schemes: are defined in search space 'paper' only")
+    if (schemes or complete) and solution.status != "optimal":
+        problems.append(f"schemes: cannot be known to be optimal in a result {solution.status!r}")
+    if complete and not schemes:
+        problems.append("schemes: cannot be 0 and complete; some optimal division is a scheme")
+    if not instance.cells and schemes > 1:
+        problems.append(f"schemes: says {schemes}, an instance without cells has 1")
+    return problems
+
+
+def _cutting_problems(instance: Instance, solution: Solution) -> list[str]:
+    count, bound = solution.cutting_paths, solution.cutting_paths_lower_bound
+    if solution.cells is None:
+        # Of the fewest segments, that is, and how many these are is not known.
+        wrong = count is not None or bound
+        return ["cutting_paths: cannot be known without a division"] if wrong else []
+    if count is None and bound is None:
+        return []
+    if count is None or bound is None:
+        return ["cutting_paths: goes with cutting_paths_lower_bound"]
+    problems = []
+    own = cutting_paths(instance, solution.cells, solution.seams)
+    if count != own:
+        problems.append(f"cutting_paths: says {count}, the division has {own}")
+    if bound > own:
+        problems.append(f"cutting_paths_lower_bound: {bound} cannot be above the {own} found")
+    return problems

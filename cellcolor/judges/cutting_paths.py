@@ -1,0 +1,84 @@
+"""How many cutting paths a division needs (docs/semantics.md, section 8)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import networkx as nx
+
+from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.solution import CellDivision, Division, Seam
+from cellcolor.judges.dart_lists import Strand, strand_of, twin
+
+
+def cutting_paths(instance: Instance, division: Division, seams: Sequence[Seam] = ()) -> int:
+    """The fewest curves that part the cells into the sub-cells of a legal division.
+
+    A curve is closed or begins and ends on the border of its cell; curves do not cross. It does
+    not matter where seams lie, nor where darts in state 0 do.
+
+    Args:
+        instance: the topological graph.
+        division: a legal division of it.
+        seams: the seams that the division's darts refer to.
+    """
+    virtual = {seam.id for seam in seams}
+    return sum(
+        _of_cell(cell, whole_subcells(divided, virtual))
+        for cell, divided in zip(instance.cells, division, strict=True)
+    )
+
+
+def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, frozenset[Strand]]]:
+    """The sub-cells of a cell as they are on the surface, where no seam parts anything.
+
+    Args:
+        cell: the cell's division, in the cyclic list that seams make of its loops.
+        seams: the seams' ids.
+
+    Returns:
+        The color of each sub-cell and its darts in state 1, without those of seams.
+    """
+    holder = {
+        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
+    }
+    graph: nx.Graph[int] = nx.Graph()
+    graph.add_nodes_from(range(len(cell.subcells)))
+    graph.add_edges_from(
+        (number, holder[twin(strand)])
+        for strand, number in holder.items()
+        if abs(strand[0]) in seams and twin(strand) in holder
+    )
+    return [
+        (
+            cell.subcells[min(parts)].color,
+            frozenset(
+                strand
+                for part in parts
+                for strand in map(strand_of, cell.subcells[part].darts)
+                if abs(strand[0]) not in seams
+            ),
+        )
+        for parts in nx.connected_components(graph)
+    ]
+
+
+def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[Strand]]]) -> int:
+    """Sub-cells less one, and loops less the groups of loops that the curves cannot but connect.
+
+    Loops and sub-cells that meet make a graph; loops on a common circle of it are in one group.
+    """
+    loop_of = {dart: number for number, loop in enumerate(cell.loops) for dart in loop}
+    meetings: nx.Graph[tuple[str, int]] = nx.Graph()
+    meetings.add_edges_from(
+        (("sub-cell", number), ("loop", loop_of[dart]))
+        for number, (_, strands) in enumerate(subcells)
+        for dart, _ in strands
+    )
+    groups: nx.Graph[int] = nx.Graph()
+    groups.add_nodes_from(range(len(cell.loops)))
+    for edges in nx.biconnected_component_edges(meetings):
+        if len(edges) > 1:
+            met = {number for edge in edges for kind, number in edge if kind == "loop"}
+            nx.add_path(groups, sorted(met))
+    return len(subcells) - 1 + len(cell.loops) - nx.number_connected_components(groups)

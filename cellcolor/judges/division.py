@@ -1,0 +1,295 @@
+"""Is a solution what it says: a legal division of the instance, with that many segments?"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import networkx as nx
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import CellDivision, Division, Seam, Solution
+from cellcolor.judges.claimed_numbers import number_problems
+from cellcolor.judges.dart_lists import BadSeams, Strand, TooManyDarts, live_lists, strand_of, twin
+from cellcolor.judges.drawable import can_be_drawn
+from cellcolor.judges.scheme_rules import (
+    Joinable,
+    Painted,
+    crossing,
+    idle_cut,
+    superfluous,
+    unavoidable_join,
+)
+from cellcolor.judges.several_loops import PaintedLoops, on_loops, unavoidable_join_on_loops
+
+
+@dataclass(frozen=True, slots=True)
+class Report:
+    """The verdict on a solution or a scheme.
+
+    Attributes:
+        problems: what is wrong, each naming its element; none when it is valid.
+        not_canonical: why a legal division is not a scheme (semantics, rules 2 and 4).
+        segments: the number of segments counted, None when the division is not legal.
+    """
+
+    problems: tuple[str, ...]
+    not_canonical: tuple[str, ...]
+    segments: int | None
+
+    @property
+    def valid(self) -> bool:
+        """Nothing is wrong; superfluous sub-cells are not wrong."""
+        return not self.problems
+
+    @property
+    def is_scheme(self) -> bool:
+        """A valid division in canonical form."""
+        return not self.problems and not self.not_canonical
+
+
+def check_division(
+    instance: Instance, division: Division, seams: Sequence[Seam] = (), strands: int = 1
+) -> Report:
+    """Hold a division against the instance (docs/semantics.md, sections 2, 3 and 5).
+
+    Args:
+        instance: the topological graph.
+        division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
+        seams: the seams that the darts refer to.
+        strands: strands per live edge.
+    """
+    if [cell.id for cell in division] != [cell.id for cell in instance.cells]:
+        return Report(
+            (f"cells: must be cells 0 to {len(instance.cells) - 1}, each once",), (), None
+        )
+    try:
+        lists = live_lists(instance, seams, strands)
+    except BadSeams as error:
+        return Report((f"seams: {error}",), (), None)
+    except TooManyDarts as error:
+        return Report((f"strands: {error}",), (), None)
+    own_colors = {seam.id: frozenset(instance.cells[seam.cell].colors) for seam in seams}
+
+    def joinable(strand: Strand) -> frozenset[int]:
+        edge = abs(strand[0])
+        return own_colors[edge] if edge in own_colors else frozenset(instance.joinable(edge))
+
+    problems: list[str] = []
+    painted: list[Painted] = []
+    for cell, darts in zip(division, lists, strict=True):
+        found = _cell_problems(instance, cell, darts) or _crossing_problems(cell, darts)
+        problems += found
+        if not found:
+            painted.append(_painted(cell, darts))
+    if problems:
+        return Report(tuple(problems), (), None)
+
+    problems += _edge_problems(division, joinable)
+    if problems:
+        return Report(tuple(problems), (), None)
+    stuck = unavoidable_join(painted, joinable)
+    if stuck is not None and seams:
+        stuck = unavoidable_join_on_loops(on_loops(instance, division, seams, strands), joinable)
+    if stuck is not None:
+        problems.append(f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0")
+    labels, segments = _segments(division)
+    problems += labels
+    return Report(tuple(problems), tuple(_not_canonical(painted)), segments)
+
+
+def check_scheme(instance: Instance, division: Division) -> Report:
+    """Hold a scheme against the instance (docs/semantics.md, section 3).
+
+    Schemes know no seams: in cells with several loops sub-cells have to be such as can be drawn.
+
+    Args:
+        instance: the topological graph.
+        division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
+    """
+    live = [
+        [loop for loop in cell.loops if any(map(instance.joinable, loop))]
+        for cell in instance.cells
+    ]
+    if all(len(loops) < 2 for loops in live):
+        return check_division(instance, division)
+    if [cell.id for cell in division] != [cell.id for cell in instance.cells]:
+        return Report(
+            (f"cells: must be cells 0 to {len(instance.cells) - 1}, each once",), (), None
+        )
+
+    def joinable(strand: Strand) -> frozenset[int]:
+        return frozenset(instance.joinable(strand[0]))
+
+    problems: list[str] = []
+    for cell, loops in zip(division, live, strict=True):
+        darts = [(dart, 1) for loop in loops for dart in loop if instance.joinable(dart)]
+        problems += _cell_problems(instance, cell, darts)
+    if not problems:
+        cells = on_loops(instance, division, (), 1)
+        problems += [
+            f"cells[{cell.id}].subcells: cannot be drawn without crossing each other"
+            for cell in cells
+            if not can_be_drawn([[loop.block_of[d] for d in loop.joined()] for loop in cell.loops])
+        ] or _edge_problems(division, joinable)
+    if problems:
+        return Report(tuple(problems), (), None)
+    stuck = unavoidable_join_on_loops(cells, joinable)
+    if stuck is not None:
+        problems.append(f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0")
+    labels, segments = _segments(division)
+    return Report(tuple(problems + labels), tuple(_not_canonical_on_loops(cells)), segments)
+
+
+def check_solution(instance: Instance, solution: Solution) -> Report:
+    """Hold a solution against its instance: its division, and every number in it.
+
+    The lower bounds themselves are taken on trust
+    (:func:`~cellcolor.judges.claimed_numbers.claims` names what is); that they contradict nothing
+    is not.
+    """
+    problems: list[str] = []
+    reference = solution.instance
+    own = instance.sha256 if reference.of == "graph" else instance.sha256_of_version_1
+    if reference.sha256 != own:
+        problems.append(f"instance.sha256: the solution is not for {instance.name!r} as it is here")
+    if solution.search_space == "paper" and solution.strands != 1:
+        problems.append("strands: must be 1 in search space 'paper'")
+    if solution.cells is None:
+        if solution.seams:
+            problems.append("seams: there are none without a division")
+        problems += number_problems(instance, solution, None)
+        return Report(tuple(problems), (), None)
+    report = check_division(instance, solution.cells, solution.seams, solution.strands)
+    problems += report.problems
+    if report.segments is not None:
+        problems += number_problems(instance, solution, report.segments)
+    return Report(tuple(problems), report.not_canonical, report.segments)
+
+
+def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Strand]) -> list[str]:
+    """What is wrong with one cell's division, taken alone."""
+    problems = []
+    if not cell.subcells:
+        problems.append(f"cells[{cell.id}].subcells: needs one sub-cell at least")
+    own, seen = set(darts), set[Strand]()
+    for number, sub in enumerate(cell.subcells):
+        where = f"cells[{cell.id}].subcells[{number}]"
+        if sub.color not in instance.cells[cell.id].colors:
+            problems.append(f"{where}.color: cell {cell.id} cannot be painted in color {sub.color}")
+        if not sub.darts and len(cell.subcells) > 1:
+            # What it would show to the darts in state 0 could not be told (semantics, section 3).
+            problems.append(f"{where}.darts: empty, though the cell has other sub-cells")
+        for name in sub.darts:
+            dart = strand_of(name)
+            if dart not in own:
+                problems.append(f"{where}.darts: {_text(dart)} is no live dart of cell {cell.id}")
+            if dart in seen:
+                problems.append(f"{where}.darts: {_text(dart)} stands twice")
+            seen.add(dart)
+    return problems
+
+
+def _crossing_problems(cell: CellDivision, darts: Sequence[Strand]) -> list[str]:
+    crossed = crossing(_painted(cell, darts))
+    if crossed is None:
+        return []
+    return [f"cells[{cell.id}].subcells: {crossed[0]} and {crossed[1]} cross"]
+
+
+def _painted(cell: CellDivision, darts: Sequence[Strand]) -> Painted:
+    block_of = {
+        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
+    }
+    return Painted(darts, block_of, [sub.color for sub in cell.subcells])
+
+
+def _edge_problems(division: Division, joinable: Joinable) -> list[str]:
+    """Edges in state 1 need both sides, in one and the same joinable color."""
+    color = {strand_of(name): s.color for c in division for s in c.subcells for name in s.darts}
+    problems = []
+    for dart, own in color.items():
+        if twin(dart) not in color:
+            problems.append(f"edge {_edge(dart)}: in state 1 on one side only")
+        elif color[twin(dart)] != own:
+            problems.append(f"edge {_edge(dart)}: joins two different colors")
+        elif own not in joinable(dart):
+            problems.append(f"edge {_edge(dart)}: color {own} cannot continue across it")
+    return problems
+
+
+def _segments(division: Division) -> tuple[list[str], int]:
+    """Faults of the segment numbers, and how many segments there are."""
+    graph: nx.Graph[tuple[int, int]] = nx.Graph()
+    holder: dict[Strand, tuple[int, int]] = {}
+    label: dict[tuple[int, int], int] = {}
+    for cell in division:
+        for number, sub in enumerate(cell.subcells):
+            node = (cell.id, number)
+            graph.add_node(node)
+            label[node] = sub.segment
+            holder |= dict.fromkeys(map(strand_of, sub.darts), node)
+    graph.add_edges_from((holder[dart], holder[twin(dart)]) for dart in holder)
+    problems = []
+    pieces: dict[int, int] = defaultdict(int)
+    components = list(nx.connected_components(graph))
+    for component in components:
+        labels = {label[node] for node in component}
+        place = min(component)
+        if len(labels) > 1:
+            where = "cells[{}].subcells[{}].segment".format(*place)
+            problems.append(f"{where}: one segment has numbers {sorted(labels)}")
+        for value in labels:
+            pieces[value] += 1
+    problems += [
+        f"segment {value}: stands for {count} separate segments"
+        for value, count in sorted(pieces.items())
+        if count > 1
+    ]
+    if not problems and set(pieces) != set(range(len(components))):
+        problems.append(f"segment numbers must be 0 to {len(components) - 1}")
+    return problems, len(components)
+
+
+def _not_canonical(cells: Sequence[Painted]) -> list[str]:
+    reasons = []
+    for number, cell in enumerate(cells):
+        block = superfluous(cell)
+        if block is not None:
+            reasons.append(f"cells[{number}].subcells[{block}]: fewer than two darts in state 1")
+        cut = idle_cut(cell)
+        if cut is not None:
+            reasons.append(
+                f"cells[{number}]: a cut between {_text(cut[0])} and {_text(cut[1])} "
+                "separates equal colors"
+            )
+    return reasons
+
+
+def _not_canonical_on_loops(cells: Sequence[PaintedLoops]) -> list[str]:
+    reasons = []
+    for cell in cells:
+        block = superfluous(cell.whole)
+        if block is not None:
+            reasons.append(f"cells[{cell.id}].subcells[{block}]: fewer than two darts in state 1")
+        reasons += [
+            f"cells[{cell.id}]: a cut between {_text(cut[0])} and {_text(cut[1])} "
+            "separates equal colors"
+            for cut in filter(None, map(idle_cut, cell.loops))
+        ]
+        pair = cell.unconnected_pair()
+        if pair is not None:
+            reasons.append(
+                f"cells[{cell.id}].subcells: {pair[0]} and {pair[1]} have one color and no chain "
+                "of loops connects them"
+            )
+    return reasons
+
+
+def _text(dart: Strand) -> str:
+    return str(dart[0]) if dart[1] == 1 else f"{dart[0]} strand {dart[1]}"
+
+
+def _edge(dart: Strand) -> str:
+    return _text((abs(dart[0]), dart[1]))

@@ -1,0 +1,113 @@
+"""The rules where cells have several loops, read without seams (docs/semantics.md, section 5)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import networkx as nx
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Seam
+from cellcolor.judges.cutting_paths import whole_subcells
+from cellcolor.judges.dart_lists import Strand, strands_along
+from cellcolor.judges.scheme_rules import Joinable, Painted, unavoidable_join
+
+
+@dataclass(frozen=True, slots=True)
+class PaintedLoops:
+    """A cell's division, loop by loop.
+
+    Attributes:
+        id: the cell.
+        loops: each live loop, with the sub-cells of the whole cell.
+    """
+
+    id: int
+    loops: tuple[Painted, ...]
+
+    @property
+    def whole(self) -> Painted:
+        """All loops as if they were one."""
+        darts = [dart for loop in self.loops for dart in loop.darts]
+        block_of = {dart: block for loop in self.loops for dart, block in loop.block_of.items()}
+        return Painted(darts, block_of, self.loops[0].colors)
+
+    def unconnected_pair(self) -> tuple[int, int] | None:
+        """Two sub-cells of one color that no chain of loops and sub-cells connects."""
+        graph: nx.Graph[int] = nx.Graph()
+        for loop in self.loops:
+            nx.add_path(graph, sorted(set(loop.block_of.values())))
+        group = {b: n for n, part in enumerate(nx.connected_components(graph)) for b in part}
+        colors = self.loops[0].colors
+        return next(
+            (
+                (one, other)
+                for one, other in combinations(sorted(group), 2)
+                if colors[one] == colors[other] and group[one] != group[other]
+            ),
+            None,
+        )
+
+
+def on_loops(
+    instance: Instance, division: Division, seams: Sequence[Seam], strands: int
+) -> list[PaintedLoops]:
+    """A legal division without its seams; cells without live loops are left out."""
+    virtual = {seam.id for seam in seams}
+    found = []
+    for cell, divided in zip(instance.cells, division, strict=True):
+        subcells = whole_subcells(divided, virtual)
+        block_of = {dart: number for number, (_, darts) in enumerate(subcells) for dart in darts}
+        colors = [color for color, _ in subcells]
+        loops = [
+            [
+                strand
+                for dart in loop
+                if instance.joinable(dart)
+                for strand in strands_along(dart, strands)
+            ]
+            for loop in cell.loops
+        ]
+        painted = tuple(
+            Painted(loop, {dart: block_of[dart] for dart in loop if dart in block_of}, colors)
+            for loop in loops
+            if loop
+        )
+        if painted:
+            found.append(PaintedLoops(cell.id, painted))
+    return found
+
+
+def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable) -> Strand | None:
+    """Rule 5 loop by loop: an edge in state 0 that has to show one joinable color on both sides.
+
+    A loop without darts in state 1 lies in one sub-cell of its cell, whichever suits, and all its
+    darts show that color. Such loops are tried one after the other.
+    """
+    settled: list[Painted] = []
+    open_loops: list[tuple[Painted, list[int]]] = []
+    for cell in cells:
+        colors = sorted(set(cell.loops[0].colors))
+        for loop in cell.loops:
+            if loop.block_of:
+                settled.append(loop)
+            else:
+                open_loops.append((loop, colors))
+    open_loops.sort(key=lambda item: len(item[1]))
+
+    def stuck(number: int) -> Strand | None:
+        found = unavoidable_join(settled, joinable)
+        if found is not None or number == len(open_loops):
+            return found
+        loop, colors = open_loops[number]
+        for color in colors:
+            settled.append(Painted(loop.darts, {}, [color]))
+            found = stuck(number + 1)
+            settled.pop()
+            if found is None:
+                return None
+        return found
+
+    return stuck(0)

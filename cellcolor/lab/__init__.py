@@ -1,0 +1,1 @@
+"""The laboratory: random instances, solvers held to each other, races between them."""

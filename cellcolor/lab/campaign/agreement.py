@@ -1,0 +1,175 @@
+"""One instance, every solver: what they agree on, or that they do not."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import islice
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, SchemeKey, SearchSpace, scheme_key
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import CellcolorError, TooLarge
+from cellcolor.lab.campaign.cases import live_loops
+from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
+from cellcolor.solvers.checked import CONTENDERS, SOLVERS, enumerate_schemes, solve
+from cellcolor.solvers.interface import Options
+
+__all__ = ["Disagreement", "Finding", "MeshFinding", "compare", "compare_on_mesh", "complaint"]
+
+MOST_SCHEMES = 3000
+"""Sets of optimal schemes that are larger are not compared."""
+
+MOST_STATES = 6_000
+"""Partial colorings of a mesh that the search over vertices keeps at a time."""
+
+_STRANDS = (2, 4)
+"""Corridors across an edge that are tried before a coloring with fewer segments counts as news."""
+
+
+class Disagreement(CellcolorError):
+    """Two solvers, or a solver and the checker, contradict each other."""
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """What the solvers agree on.
+
+    Attributes:
+        minimum: segments in the search space ``paper``; None when some solver did not prove it.
+        schemes: how many optimal schemes there are; None when their sets were not compared.
+        always_cut: whether every one of them has a cutting path; None like ``schemes``.
+    """
+
+    minimum: int | None
+    schemes: int | None
+    always_cut: bool | None
+
+
+@dataclass(frozen=True, slots=True)
+class MeshFinding:
+    """What a search over the vertices of the mesh says about the search space ``surface``.
+
+    Attributes:
+        by_vertices: the fewest segments over all colorings of the vertices.
+        segments: of the best division of the surface.
+    """
+
+    by_vertices: int
+    segments: int
+
+
+def compare(instance: Instance, time_limit: float) -> Finding:
+    """Every solver's minimum and, where it is defined, set of optimal schemes.
+
+    Args:
+        instance: the topological graph.
+        time_limit: seconds for each solve and for each set of schemes.
+
+    Raises:
+        Disagreement: they do not agree.
+    """
+    solutions = [solve(instance, _options("paper", 1, time_limit), name) for name in CONTENDERS]
+    for one in solutions:
+        for other in solutions:
+            if one.segments is not None and one.segments < other.lower_bound:
+                raise Disagreement(
+                    f"{one.solver} has {one.segments} segments, "
+                    f"{other.solver} a lower bound of {other.lower_bound}"
+                )
+    if any(solution.status != "optimal" for solution in solutions):
+        return Finding(None, None, None)
+    minimum = solutions[0].segments
+    assert minimum is not None
+    if live_loops(instance) > 1:
+        return Finding(minimum, None, None)
+    found: list[dict[SchemeKey, Division]] = []
+    for name in SOLVERS:
+        schemes = _schemes(instance, name, minimum, time_limit)
+        if schemes is None:
+            return Finding(minimum, None, None)
+        found.append(schemes)
+    first, second = found
+    if first.keys() != second.keys():
+        raise Disagreement(
+            f"{SOLVERS[0]} lists {len(first.keys() - second.keys())} optimal schemes that "
+            f"{SOLVERS[1]} does not, {SOLVERS[1]} {len(second.keys() - first.keys())} that "
+            f"{SOLVERS[0]} does not"
+        )
+    cut = all(any(len(cell.subcells) > 1 for cell in division) for division in first.values())
+    return Finding(minimum, len(first), cut)
+
+
+def compare_on_mesh(
+    surface: LabelledSurface, instance: Instance, time_limit: float
+) -> MeshFinding | None:
+    """CP-SAT in the search space ``surface`` against all colorings of the mesh's vertices.
+
+    Args:
+        surface: a small mesh.
+        instance: its topological graph.
+        time_limit: seconds for each solve.
+
+    Returns:
+        Both numbers; None when the mesh is too large for a search over vertices or time ran out.
+
+    Raises:
+        Disagreement: a coloring has fewer segments than a lower bound for the surface, or fewer
+            than any division with 4 corridors across each edge.
+    """
+    by_vertices = fewest_by_vertices(surface, MOST_STATES)
+    if by_vertices is None:
+        return None
+    for strands in _STRANDS:
+        solution = solve(instance, _options("surface", strands, time_limit), "cp-sat")
+        if by_vertices < solution.surface_lower_bound:
+            raise Disagreement(
+                f"a coloring of the vertices has {by_vertices} segments, cp-sat a lower bound "
+                f"of {solution.surface_lower_bound} for any division of the surface"
+            )
+        if solution.segments is None or solution.seconds >= time_limit:
+            return None
+        if solution.segments <= by_vertices:
+            return MeshFinding(by_vertices, solution.segments)
+    raise Disagreement(
+        f"a coloring of the vertices has {by_vertices} segments, "
+        f"cp-sat finds {solution.segments} with {strands} strands"
+    )
+
+
+def complaint(check: Callable[[], object]) -> str | None:
+    """Why a comparison failed, None if it did not.
+
+    A solver that breaks down is as much of a finding as one that is wrong.
+    """
+    try:
+        check()
+    except Disagreement as error:
+        return str(error)
+    except Exception as error:
+        return f"{type(error).__name__}: {error}"
+    return None
+
+
+def _schemes(
+    instance: Instance, solver: str, minimum: int, time_limit: float
+) -> dict[SchemeKey, Division] | None:
+    """The optimal schemes, None when there are too many or time ran out."""
+    options = _options("paper", 1, time_limit)
+    found: dict[SchemeKey, Division] = {}
+    try:
+        schemes = enumerate_schemes(instance, options, solver, minimum)
+        for division in islice(schemes, MOST_SCHEMES + 1):
+            key = scheme_key(division)
+            if key in found:
+                raise Disagreement(f"{solver} lists a scheme twice")
+            found[key] = division
+    except (OutOfTime, TooLarge):
+        return None
+    return found if len(found) <= MOST_SCHEMES else None
+
+
+def _options(space: SearchSpace, strands: int, time_limit: float) -> Options:
+    """One worker, and a time limit that counts from now on."""
+    return Options(space, strands, Deadline.after(time_limit), workers=1)

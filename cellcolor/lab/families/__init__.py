@@ -1,0 +1,33 @@
+"""Random instance families, made on demand: labelled surfaces, and graphs without a surface.
+
+All of them are functions of a seed and a few numbers; the same arguments give the same instance.
+"""
+
+from cellcolor.lab.families.blobs import blobs
+from cellcolor.lab.families.graphs import planar_graph
+from cellcolor.lab.families.hubs import (
+    cover_tree,
+    hub,
+    hub_grid,
+    hub_minimum,
+    hub_with_loops,
+    wide_hub,
+)
+from cellcolor.lab.families.meshes import SHAPES, Shape
+from cellcolor.lab.families.parts import part
+from cellcolor.lab.families.voronoi import voronoi
+
+__all__ = [
+    "SHAPES",
+    "Shape",
+    "blobs",
+    "cover_tree",
+    "hub",
+    "hub_grid",
+    "hub_minimum",
+    "hub_with_loops",
+    "part",
+    "planar_graph",
+    "voronoi",
+    "wide_hub",
+]

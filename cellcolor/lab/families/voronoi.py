@@ -1,0 +1,209 @@
+"""Surfaces of any genus whose colors reach unions of random Voronoi regions."""
+
+from __future__ import annotations
+
+import heapq
+
+import numpy as np
+
+from cellcolor.data.mesh import directed_edges
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.errors import InputError
+from cellcolor.lab.families.cracks import crack_paths
+from cellcolor.lab.families.meshes import Shape, make_mesh
+
+__all__ = ["voronoi"]
+
+Regions = list[int]
+"""The Voronoi region of each vertex."""
+
+
+def voronoi(
+    seed: int,
+    shape: Shape = "disc",
+    size: int = 24,
+    regions: int = 40,
+    colors: int = 6,
+    *,
+    scattered: bool = False,
+    coverage: tuple[float, float] = (0.35, 0.65),
+    cracks: int = 0,
+    islands: int = 0,
+    holes: int = 0,
+) -> LabelledSurface:
+    """Random Voronoi regions on a mesh, each color on some of them.
+
+    Regions are those of random seeds on the mesh's graph with random lengths, so that their
+    borders are ragged. Cells with a handle, which no instance may have, are cut: half of their
+    regions gain or lose a color until none is left; a cell of one region falls into finer ones.
+
+    Args:
+        seed: of everything random.
+        shape: of the surface, see :data:`cellcolor.lab.families.meshes.SHAPES`.
+        size: about the square root of the number of vertices, six or more.
+        regions: how many Voronoi regions, one or more, before islands, holes and cuts.
+        colors: how many, one or more.
+        scattered: colors reach random regions; otherwise each grows from one region to the next.
+        coverage: the least and the largest share of the regions that a color reaches.
+        cracks: random paths over the mesh that the colors common to both sides do not cross.
+        islands: small discs that only one color reaches.
+        holes: small discs that no color reaches.
+
+    Raises:
+        InputError: a size below 6, no regions, more regions than vertices, or no colors.
+    """
+    vertices, faces = make_mesh(shape, size)
+    if not 1 <= regions <= len(vertices) or colors < 1:
+        raise InputError(
+            None, None, f"{len(vertices)} vertices cannot have {regions} regions, {colors} colors"
+        )
+    rng = np.random.default_rng([seed, size, regions, colors])
+    third = directed_edges(faces, len(vertices))
+    neighbors: list[list[int]] = [[] for _ in vertices]
+    for a, b in third:
+        neighbors[a].append(b)
+        if (b, a) not in third:
+            neighbors[b].append(a)
+    region = _nearest(rng, neighbors, rng.choice(len(vertices), regions, replace=False).tolist())
+    sets = _reached(rng, region, neighbors, colors, coverage, scattered)
+    for number in range(islands + holes):
+        center = int(rng.integers(len(vertices)))
+        disc = {center, *neighbors[center]}
+        if rng.random() < 0.5:
+            disc |= {further for vertex in tuple(disc) for further in neighbors[vertex]}
+        for vertex in disc:
+            region[vertex] = len(sets)
+        sets.append({int(rng.integers(colors))} if number < islands else set())
+    # On a disc, an annulus and a sphere every cell is planar.
+    while shape in ("torus", "double torus"):
+        found = _cells_with_handles(third, neighbors, [sets[own] for own in region])
+        if not found:
+            break
+        for cell in found:
+            _cut(rng, cell, region, sets, neighbors, colors)
+    vertex_colors = tuple(tuple(sorted(sets[own])) for own in region)
+    return LabelledSurface(
+        f"voronoi_{shape.replace(' ', '_')}_{seed}",
+        tuple(f"c{color}" for color in range(colors)),
+        vertices,
+        faces,
+        vertex_colors,
+        crack_paths(rng, faces, vertex_colors, cracks, 2 * size),
+        {"family": "voronoi", "seed": seed},
+    )
+
+
+def _nearest(rng: np.random.Generator, neighbors: list[list[int]], seeds: list[int]) -> Regions:
+    """The number of the seed that is nearest to each vertex; edges have random lengths."""
+    nearest = [-1] * len(neighbors)
+    queue = [(0.0, vertex, number) for number, vertex in enumerate(seeds)]
+    heapq.heapify(queue)
+    while queue:
+        distance, vertex, number = heapq.heappop(queue)
+        if nearest[vertex] != -1:
+            continue
+        nearest[vertex] = number
+        for neighbor in neighbors[vertex]:
+            if nearest[neighbor] == -1:
+                heapq.heappush(queue, (distance + rng.uniform(0.5, 1.5), neighbor, number))
+    return nearest
+
+
+def _reached(
+    rng: np.random.Generator,
+    region: Regions,
+    neighbors: list[list[int]],
+    colors: int,
+    coverage: tuple[float, float],
+    scattered: bool,
+) -> list[set[int]]:
+    """The colors of each region."""
+    count = max(region) + 1
+    beside: list[set[int]] = [set() for _ in range(count)]
+    for vertex, others in enumerate(neighbors):
+        beside[region[vertex]].update(region[other] for other in others)
+    sets: list[set[int]] = [set() for _ in range(count)]
+    for color in range(colors):
+        wanted = max(1, round(count * rng.uniform(*coverage)))
+        if scattered:
+            chosen = rng.choice(count, wanted, replace=False).tolist()
+        else:
+            chosen = [int(rng.integers(count))]
+            while len(chosen) < wanted:
+                onward = sorted({b for a in chosen for b in beside[a]} - set(chosen))
+                if not onward:
+                    break
+                chosen.append(onward[int(rng.integers(len(onward)))])
+        for number in chosen:
+            sets[number].add(color)
+    return sets
+
+
+def _cells_with_handles(
+    third: dict[tuple[int, int], int], neighbors: list[list[int]], sets: list[set[int]]
+) -> list[list[int]]:
+    """The vertices of each cell of a closed mesh that is not planar, cracks not counted.
+
+    A cell that cracks divide is part of one without them, and planar if that is.
+    """
+    owner = [-1] * len(neighbors)
+    cells: list[list[int]] = []
+    for first, colors in enumerate(sets):
+        if owner[first] != -1 or not colors:
+            continue
+        owner[first] = len(cells)
+        cell = [first]
+        for vertex in cell:
+            for other in neighbors[vertex]:
+                if owner[other] == -1 and sets[other] == colors:
+                    owner[other] = len(cells)
+                    cell.append(other)
+        cells.append(cell)
+    # Euler's formula, each cell closed with a disc at each of its border loops: 2 for a sphere.
+    euler = [len(cell) for cell in cells]
+    border: list[tuple[int, int]] = []
+    for (a, b), c in third.items():
+        if owner[a] == -1:
+            continue
+        if owner[b] != owner[a]:
+            border.append((a, b))
+        elif a < b:
+            euler[owner[a]] -= 1
+        if a < b and a < c and owner[a] == owner[b] == owner[c]:
+            euler[owner[a]] += 1
+    walked: set[tuple[int, int]] = set()
+    for a, b in border:
+        euler[owner[a]] += (a, b) not in walked
+        while (a, b) not in walked:
+            walked.add((a, b))
+            c = third[a, b]
+            a, b = (c, b) if owner[c] == owner[a] else (a, c)
+    return [cell for cell, number in zip(cells, euler, strict=True) if number != 2]
+
+
+def _cut(
+    rng: np.random.Generator,
+    cell: list[int],
+    region: Regions,
+    sets: list[set[int]],
+    neighbors: list[list[int]],
+    colors: int,
+) -> None:
+    """Make a cell fall apart: half of its regions gain or lose one color."""
+    inside = sorted({region[vertex] for vertex in cell})
+    if len(inside) == 1:
+        place = {vertex: index for index, vertex in enumerate(cell)}
+        within = [
+            [place[other] for other in neighbors[vertex] if other in place] for vertex in cell
+        ]
+        seeds = rng.choice(len(cell), min(8, len(cell)), replace=False).tolist()
+        finer = _nearest(rng, within, seeds)
+        common = sets[inside[0]]
+        inside = [len(sets) + number for number in range(max(finer) + 1)]
+        sets.extend(set(common) for _ in inside)
+        for vertex, number in zip(cell, finer, strict=True):
+            region[vertex] = inside[number]
+    color = int(rng.integers(colors))
+    for number in inside:
+        if rng.random() < 0.5:
+            sets[number] ^= {color}

@@ -1,0 +1,227 @@
+"""The arm at a vertex: collision shapes of arm and tool, object, obstacles and ground."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array
+from cellcolor.frontend import BuildResult
+from cellcolor.frontend.arm.kinematics import Poses, forward
+from cellcolor.frontend.arm.robot import Body, Robot, load_robot
+from cellcolor.frontend.contact.collision import segment_distance
+from cellcolor.frontend.scene import (
+    BoxObstacle,
+    CylinderObstacle,
+    MeshObstacle,
+    Obstacle,
+    SphereObstacle,
+    load_scene,
+    load_setup,
+)
+from cellcolor.frontend.target.mesh_file import load_mesh
+from cellcolor.frontend.target.shapes import make_surface
+from cellcolor.frontend.target.surface import rotation_from_rpy
+from cellcolor.pictures.mesh_picture import vertex_normals
+from cellcolor.pictures.palette import FAINT, LINES, WARNING
+from cellcolor.pictures.picture import Layer, Picture3D, Segments
+
+__all__ = ["arm_at"]
+
+_AROUND = 20
+_ALONG = 10
+_GRID = 13
+_LINKS = (*LINES[:-1], "#888888")  # shading does not show on black
+Triangles = NDArray[np.int64]
+Mesh = tuple[Array, Triangles]
+
+
+def arm_at(scene_path: Path, result: BuildResult, vertex: int, branch: int) -> Picture3D:
+    """The arm with its tool on a vertex.
+
+    Args:
+        scene_path: the scene that ``result`` was built from.
+        result: what the front end found; the branch has a solution on the vertex.
+        vertex: index of a vertex.
+        branch: index of a branch.
+    """
+    scene = load_scene(scene_path)
+    setup_path = scene_path.parent / scene.setup
+    setup = load_setup(setup_path)
+    folder, files = setup_path.parent, setup.robot
+    robot = load_robot(
+        folder / files.arm_urdf, files.flange_link, folder / files.tool_urdf, files.tip_link
+    )
+    configuration = result.configurations[vertex, branch]
+    poses = forward(robot, configuration[None])
+
+    links: dict[str, list[Mesh]] = {}
+    for body in robot.bodies:
+        links.setdefault(body.link, []).append(_placed(body, poses))
+    layers = [
+        _layer(link, _LINKS[number % len(_LINKS)], _joined(meshes))
+        for number, (link, meshes) in enumerate(links.items())
+    ]
+    mesh = (result.surface.vertices, result.surface.faces)
+    layers.append(_layer("object", FAINT, mesh))
+    if scene.collision_object is not None:
+        solid = make_surface(scene.collision_object, scene_path.parent).placed(scene.placement)
+        layers.append(_layer("collision object", "#999933", (solid.vertices, solid.faces)))
+    size = float(np.ptp(result.surface.vertices, axis=0).max())
+    points, triangles = _capsule(np.zeros(3), np.zeros(3), 0.02 * size)
+    target = result.surface.vertices[vertex]
+    layers.append(_layer(f"vertex {vertex}", WARNING, (points + target, triangles)))
+    if scene.obstacle:
+        meshes = [_obstacle(obstacle, scene_path.parent) for obstacle in scene.obstacle]
+        obstacles = _joined(meshes)
+        layers.append(_layer("obstacles", "#882255", obstacles))
+    ground: tuple[Segments, ...] = ()
+    if scene.ground is not None:
+        points = np.concatenate([layer.points for layer in layers])
+        ground = (_ground(scene.ground.height_m, points),)
+    degrees = ", ".join(f"{angle:.1f}" for angle in np.degrees(configuration))
+    place = ", ".join(f"{value:.3f}" for value in target)
+    return Picture3D(
+        f"{scene.name}: vertex {vertex}, {result.branches[branch]}",
+        tuple(layers),
+        ground,
+        (),
+        (
+            "Collision shapes of the URDF files.",
+            f"Joints [°]: {degrees}",
+            f"Vertex [m]: {place}",
+        ),
+        _free_view(robot, poses, vertex_normals(*mesh)[vertex]),
+    )
+
+
+def _layer(name: str, color: str, mesh: Mesh) -> Layer:
+    return Layer(name, color, *mesh, solid=True)
+
+
+def _placed(body: Body, poses: Poses) -> Mesh:
+    mesh = _cylinder if body.flat else _capsule
+    points, triangles = mesh(body.start, body.end, body.radius)
+    turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
+    return turned, triangles
+
+
+def _capsule(start: Array, end: Array, radius: float) -> Mesh:
+    """All points within ``radius`` of a segment, or a ball where its ends coincide."""
+    latitudes = np.linspace(0, np.pi / 2, 6)[1:]
+    back = [(0.0, -np.cos(a) * radius, np.sin(a) * radius) for a in latitudes]
+    front = [(1.0, np.cos(a) * radius, np.sin(a) * radius) for a in latitudes[::-1]]
+    between = [(t, 0.0, radius) for t in np.linspace(0, 1, _ALONG + 1)[1:-1]]
+    rings = back + between + front
+    return _turned(start, end, [(0.0, -radius, 0.0), *rings, (1.0, radius, 0.0)])
+
+
+def _cylinder(start: Array, end: Array, radius: float) -> Mesh:
+    """A flat-ended cylinder."""
+    rings = [(t, 0.0, radius) for t in np.linspace(0, 1, _ALONG + 1)]
+    return _turned(start, end, [(0.0, 0.0, 0.0), *rings, (1.0, 0.0, 0.0)])
+
+
+def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]]) -> Mesh:
+    """A profile turned about the segment's axis; its first and last points lie on the axis.
+
+    Each point of the profile is the share of the way from start to end, an offset along the axis
+    (m), and the distance from it (m).
+    """
+    axis = end - start
+    length = float(np.linalg.norm(axis))
+    z = axis / length if length else np.array([0.0, 0.0, 1.0])
+    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
+    x /= np.linalg.norm(x)
+    angles = np.arange(_AROUND) * 2 * np.pi / _AROUND
+    around = np.cos(angles)[:, None] * x + np.sin(angles)[:, None] * np.cross(z, x)
+    points = np.concatenate(
+        [start + t * axis + offset * z + radius * around for t, offset, radius in profile]
+    )
+    first = np.arange(_AROUND)
+    after = np.roll(first, -1)
+    strips = [
+        np.concatenate(
+            [
+                np.stack([low + first, low + after, low + _AROUND + after], axis=1),
+                np.stack([low + first, low + _AROUND + after, low + _AROUND + first], axis=1),
+            ]
+        )
+        for low in range(0, len(points) - _AROUND, _AROUND)
+    ]
+    triangles = np.concatenate(strips).astype(np.int64)
+    corners = points[triangles]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    # Half of the triangles at the two poles have no area.
+    return points, triangles[np.linalg.norm(doubled, axis=1) > 1e-15]
+
+
+def _obstacle(obstacle: Obstacle, folder: Path) -> Mesh:
+    up = np.array([0.0, 0.0, 1.0])
+    match obstacle:
+        case MeshObstacle():
+            mesh = load_mesh(folder / obstacle.file, obstacle.meters_per_unit)
+            points, triangles = mesh.vertices, mesh.faces
+        case BoxObstacle():
+            points, triangles = _box(np.array(obstacle.size_m))
+        case CylinderObstacle():
+            half = up * obstacle.height_m / 2
+            points, triangles = _cylinder(-half, half, obstacle.radius_m)
+        case SphereObstacle():
+            points, triangles = _capsule(0 * up, 0 * up, obstacle.radius_m)
+    turn = rotation_from_rpy(*obstacle.rpy_rad)
+    return points @ turn.T + np.array(obstacle.position_m), triangles
+
+
+def _box(size: Array) -> Mesh:
+    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
+    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
+    return signs * size / 2, np.array(triangles, dtype=np.int64)
+
+
+def _ground(height: float, points: Array) -> Segments:
+    """The part of the ground below everything else as a grid, in pieces that sort by depth."""
+    low, high = points.min(axis=0) - 0.05, points.max(axis=0) + 0.05
+    x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
+    grid = np.stack([*np.meshgrid(x, y, indexing="ij"), np.full((_GRID, _GRID), height)], axis=2)
+    along_x = np.stack([grid[:-1], grid[1:]], axis=2).reshape(-1, 2, 3)
+    along_y = np.stack([grid[:, :-1], grid[:, 1:]], axis=2).reshape(-1, 2, 3)
+    return Segments("ground", "#AAAAAA", np.concatenate([along_x, along_y]))
+
+
+def _joined(meshes: list[Mesh]) -> Mesh:
+    counts = np.cumsum([0, *[len(points) for points, _ in meshes[:-1]]])
+    return (
+        np.concatenate([points for points, _ in meshes]),
+        np.concatenate([t + first for (_, t), first in zip(meshes, counts, strict=True)]),
+    )
+
+
+def _free_view(robot: Robot, poses: Poses, normal: Array) -> Array:
+    """A direction to look from: from above, before the surface, nothing between eye and tool tip.
+
+    Of 24 directions around the vertical the one whose ray from the tip keeps farthest from the
+    arm's bodies, up to 0.15 m; looking across the arm counts as well.
+    """
+    around = np.radians(np.arange(0, 360, 15))
+    rise = np.radians(25)
+    flat = np.stack([np.cos(around), np.sin(around), np.zeros(len(around))], axis=1)
+    rays = np.cos(rise) * flat + np.array([0.0, 0.0, np.sin(rise)])
+    tip = poses.tip[0]
+    away = tip[:2] / max(float(np.linalg.norm(tip[:2])), 1e-9)
+    score = 0.1 * np.abs(flat[:, 0] * away[1] - flat[:, 1] * away[0])
+    # From the side of the tool, and rather from outside than from inside the object.
+    score -= 0.4 * np.abs(rays @ normal - 0.1)
+    # The ray starts a little off the tip, or the tool that carries it would be in the way.
+    starts = tip + 0.05 * rays
+    clearance = np.full(len(rays), 0.15)
+    for body in robot.bodies:
+        rotation, origin = poses.rotation[0, body.joint], poses.origin[0, body.joint]
+        ends = [np.tile(origin + rotation @ end, (len(rays), 1)) for end in (body.start, body.end)]
+        gap = segment_distance(starts, starts + 3.0 * rays, ends[0], ends[1]) - body.radius
+        clearance = np.minimum(clearance, gap)
+    best: Array = rays[np.argmax(score + clearance)]
+    return best

@@ -1,0 +1,105 @@
+"""A labelled surface by cell and by one color's domain."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.pictures.mesh_picture import Area, Labels, Painting, vertex_areas
+from cellcolor.pictures.palette import AREAS, FAINT, GREY, assign
+
+__all__ = ["bare_areas", "bare_labels", "by_cell", "by_color", "color_key", "neighboring", "shares"]
+
+
+def by_cell(surface: LabelledSurface, instance: Instance, cells: Labels) -> Painting:
+    """Every cell in a color of its own, or at least in another one than its neighbors.
+
+    Args:
+        surface: the surface.
+        instance: its topological graph.
+        cells: (n,) the cell of each vertex, ``OUTSIDE`` where unreachable.
+    """
+    count = len(instance.cells)
+    labels = np.where(cells == OUTSIDE, bare_labels(surface, count), cells)
+    share = shares(surface, labels, count + 2)
+    fills = assign(neighboring(surface, cells, count))
+    areas = [
+        Area(f"cell {cell.id} {_ids(cell.colors)}  {share[cell.id]}", fill, str(cell.id))
+        for cell, fill in zip(instance.cells, fills, strict=True)
+    ]
+    areas += bare_areas(*share[count:])
+    notes = ["Cell: {available colors}, share of the surface."]
+    if count > len(AREAS):
+        notes.append("Fills repeat: the numbers tell cells apart.")
+    cracks = [(crack.i, crack.j) for crack in surface.cracks]
+    title = f"{surface.name}: {count} cells"
+    return Painting(title, labels, areas, cracks=cracks, notes=(*notes, *color_key(surface.colors)))
+
+
+def by_color(surface: LabelledSurface, color: int) -> Painting:
+    """Where one color is available, and where others are."""
+    covered = np.array(
+        [0 if color in own else 1 if own else 2 for own in surface.vertex_colors], dtype=np.int64
+    )
+    labels = np.where(covered == 2, bare_labels(surface, 2), covered)
+    share = shares(surface, labels, 4)
+    name = surface.colors[color]
+    areas = [
+        Area(f"{name}  {share[0]}", AREAS[0]),
+        Area(f"other colors only  {share[1]}", AREAS[2]),
+        *bare_areas(*share[2:]),
+    ]
+    cracks = [(crack.i, crack.j) for crack in surface.cracks if color in crack.colors]
+    note = "Shares of the surface. Cracks are those of this color."
+    return Painting(
+        f"{surface.name}: color {color}, {name}", labels, areas, cracks=cracks, notes=(note,)
+    )
+
+
+def bare_labels(surface: LabelledSurface, first: int) -> Labels:
+    """The classes (n,) of vertices without colors, as if all were: see :func:`bare_areas`.
+
+    Args:
+        surface: the surface.
+        first: the class of what is unreachable; that of what was given up is the one after it.
+    """
+    labels = np.full(len(surface.vertices), first, dtype=np.int64)
+    labels[list(surface.given_up)] = first + 1
+    return labels
+
+
+def bare_areas(unreachable: str, given_up: str) -> list[Area]:
+    """What no segment covers, with their shares as text."""
+    return [
+        Area(f"{UNREACHABLE}  {unreachable}", FAINT),
+        Area(f"{GIVEN_UP}  {given_up}", GREY),
+    ]
+
+
+def color_key(colors: tuple[str, ...]) -> list[str]:
+    """What the numbers of the colors mean, a line each."""
+    return [f"{number}: {name}" for number, name in enumerate(colors)]
+
+
+def shares(surface: LabelledSurface, labels: Labels, count: int) -> list[str]:
+    """Each class's share of the surface, as text."""
+    owned = vertex_areas(surface.vertices, surface.faces)
+    sums = np.bincount(labels, owned, minlength=count)
+    whole = float(owned.sum()) or 1.0
+    return [percent(value / whole, value / whole) for value in sums]
+
+
+def neighboring(surface: LabelledSurface, labels: Labels, count: int) -> dict[int, set[int]]:
+    """The classes next to each class 0 … count - 1 over mesh edges; others are not counted."""
+    found: dict[int, set[int]] = {label: set() for label in range(count)}
+    ends = labels[np.array(list(surface.left_of), dtype=np.int64).reshape(-1, 2)]
+    for a, b in np.unique(np.concatenate([ends, ends[:, ::-1]]), axis=0).tolist():
+        if a != b and a in found and b in found:
+            found[a].add(b)
+    return found
+
+
+def _ids(colors: tuple[int, ...]) -> str:
+    return "{" + ", ".join(map(str, colors)) + "}"

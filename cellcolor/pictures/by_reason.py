@@ -1,0 +1,112 @@
+"""A surface by the reason why points are out of reach."""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.data.shares import GIVEN_UP
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.errors import InputError
+from cellcolor.pictures.by_cell_and_color import shares
+from cellcolor.pictures.mesh_picture import Area, Painting
+from cellcolor.pictures.palette import FAINT, REASONS
+
+__all__ = ["Verdicts", "by_reason", "read_verdicts"]
+
+_VALID = 0
+
+
+@dataclass(frozen=True)
+class Verdicts:
+    """What became of every candidate.
+
+    Attributes:
+        branches: names of the inverse-kinematic branches.
+        reason_names: what the codes mean; 0 is valid, higher ones came farther through the tests.
+        reasons: (n, branches) codes.
+        node_color: (n, branches) the color of each candidate, -1 for none.
+    """
+
+    branches: tuple[str, ...]
+    reason_names: tuple[str, ...]
+    reasons: NDArray[np.uint8]
+    node_color: NDArray[np.int64]
+
+
+def read_verdicts(surface: LabelledSurface, path: Path) -> Verdicts:
+    """The verdicts in the side file that ``build`` writes beside a scene's surface.
+
+    Args:
+        surface: the labelled surface.
+        path: its file, which the side file's name is relative to.
+
+    Raises:
+        InputError: the surface names no side file, or that cannot be used.
+    """
+    name = surface.meta.get("side_file")
+    if not isinstance(name, str):
+        raise InputError(str(path), "meta.side_file", "is missing; give the scene (.toml) instead")
+    side = path.parent / name
+    try:
+        with np.load(side, allow_pickle=False) as archive:
+            verdicts = Verdicts(
+                tuple(map(str, archive["branches"])),
+                tuple(map(str, archive["reason_names"])),
+                archive["reasons"],
+                archive["node_color"].astype(np.int64),
+            )
+            about = str(archive["surface_sha256"]) if "surface_sha256" in archive else None
+    except OSError as error:
+        reason = error.strerror or "cannot be read"
+        raise InputError(str(side), None, f"{reason}; build the scene again or give it") from error
+    except (KeyError, ValueError, EOFError, AttributeError, zipfile.BadZipFile) as error:
+        raise InputError(str(side), None, f"is no side file: {error}") from error
+    if about is not None and about != surface.sha256:
+        message = "is of another surface; build the scene again"
+        raise InputError(str(side), "surface_sha256", message)
+    shape = (len(surface.vertices), len(verdicts.branches))
+    if verdicts.reasons.shape != shape or verdicts.node_color.shape != shape:
+        raise InputError(str(side), "reasons", f"needs shape {shape}: it is of another surface")
+    if verdicts.reasons.size and verdicts.reasons.max() >= len(verdicts.reason_names):
+        raise InputError(str(side), "reasons", f"unknown code {verdicts.reasons.max()}")
+    return verdicts
+
+
+def by_reason(surface: LabelledSurface, verdicts: Verdicts, branch: int | None = None) -> Painting:
+    """Why vertices are not reachable.
+
+    Args:
+        surface: the labelled surface.
+        verdicts: what became of its candidates.
+        branch: look at this branch alone. None: at the branch that came farthest through the
+            tests; a vertex is reachable if it has any color.
+    """
+    rows = slice(None) if branch is None else slice(branch, branch + 1)
+    codes, colors = verdicts.reasons[:, rows], verdicts.node_color[:, rows]
+    valid = (codes == _VALID).any(axis=1)
+    given_up = len(verdicts.reason_names)
+    # Numbered in the order of the tests; a blocked tip is so for all branches that reach there.
+    labels = np.where(valid, _VALID, codes.max(axis=1)).astype(np.int64)
+    # A sliver policy takes colors away from what is valid.
+    labels[valid & (colors < 0).all(axis=1)] = given_up
+    share = shares(surface, labels, given_up + 1)
+    counts = np.bincount(labels, minlength=given_up + 1)
+    names = [*verdicts.reason_names, GIVEN_UP]
+    names[_VALID] = "reachable" if branch is None else "valid"
+    fills = [REASONS[(code - 1) % len(REASONS)] for code in range(given_up + 1)]
+    fills[_VALID] = FAINT
+    areas = [
+        Area(f"{names[code]}  {share[code]}, {counts[code]} vertices", fills[code])
+        for code in range(given_up + 1)
+    ]
+    who = "any branch" if branch is None else verdicts.branches[branch]
+    notes = ["Shares of the surface."]
+    if branch is None:
+        notes.insert(0, "Reason of the branch that came farthest through the tests.")
+    title = f"{surface.name}: reach of {who}"
+    return Painting(title, labels, areas, notes=tuple(notes))

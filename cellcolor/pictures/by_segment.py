@@ -1,0 +1,182 @@
+"""A labelled surface by the segments of a solution.
+
+A solution says which borders the sub-cells of a divided cell own, not where the cutting path
+runs: any path between the right corners will do. So a divided cell's vertices are painted by the
+nearest joined border, which shows the sub-cells' places and not the cut.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import networkx as nx
+import numpy as np
+
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.shares import percent, shares_of
+from cellcolor.data.solution import CellDivision, DartName, Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition.borders import Borders, ClosedMesh, Step
+from cellcolor.decomposition.coverage import coverage_of, vertex_areas
+from cellcolor.pictures.by_cell_and_color import bare_areas, bare_labels, neighboring, shares
+from cellcolor.pictures.mesh_picture import Area, Labels, Painting
+from cellcolor.pictures.palette import AREAS, assign
+
+__all__ = ["by_solution"]
+
+_CUT = "#666666"
+Curves = dict[int, tuple[Step, ...]]
+
+
+def by_solution(
+    surface: LabelledSurface, instance: Instance, cells: Labels, solution: Solution
+) -> Painting:
+    """Every segment in a color of its own.
+
+    Args:
+        surface: the surface.
+        instance: its topological graph.
+        cells: (n,) the cell of each vertex, ``OUTSIDE`` where unreachable.
+        solution: a valid solution of the instance, one that was found.
+    """
+    count = solution.segments or 0
+    labels = bare_labels(surface, count + 1)
+    color: dict[int, int] = {}
+    near: list[int] = []
+    cut: list[int] = []
+    curves = _curves(surface, instance, cells)
+    for cell in solution.cells or ():
+        own = np.flatnonzero(cells == cell.id)
+        color |= {sub.segment: sub.color for sub in cell.subcells}
+        if len({sub.segment for sub in cell.subcells}) == 1:
+            labels[own] = cell.subcells[0].segment
+            continue
+        painted = _nearest(surface, own, cell, solution.strands, curves)
+        labels[own] = count if painted is None else painted
+        (cut if painted is None else near).append(cell.id)
+    share = shares_of(_measured(surface, instance, cells), solution)
+    bare = shares(surface, labels, count + 3)[count + 1 :]
+    fills = assign(neighboring(surface, labels, count))
+    areas = [
+        Area(
+            f"segment {number}: {instance.colors[color[number]]}  "
+            f"{percent(*share.segments[number])}",
+            fills[number],
+            str(number),
+        )
+        for number in range(count)
+    ]
+    areas.append(Area("cut between segments", _CUT))
+    areas += bare_areas(*bare)
+    notes = [f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells."]
+    if not share.certain:
+        notes.append("Ranges: where the cut runs through a divided cell is free.")
+    if count > len(AREAS):
+        notes.append("Fills repeat: the numbers tell segments apart.")
+    if near:
+        notes += [
+            f"Divided: {_listed(near)}. Each vertex there is painted as the",
+            "nearest joined border.",
+        ]
+    if cut:
+        notes.append(f"Divided, not painted: {_listed(cut)}.")
+    lift_offs = solution.lift_offs or 0
+    title = (
+        f"{surface.name}: {count} segment{'' if count == 1 else 's'}, "
+        f"{lift_offs} lift-off{'' if lift_offs == 1 else 's'}"
+    )
+    cracks = [(crack.i, crack.j) for crack in surface.cracks]
+    return Painting(title, labels, areas, borders=cells, cracks=cracks, notes=tuple(notes))
+
+
+def _measured(surface: LabelledSurface, instance: Instance, cells: Labels) -> Instance:
+    """The instance with the areas and the coverage that its surface gives it."""
+    reached = cells != OUTSIDE
+    areas = vertex_areas(surface)[reached]
+    areas = np.bincount(cells[reached], areas, len(instance.cells))
+    own = tuple(
+        replace(cell, area=float(area)) for cell, area in zip(instance.cells, areas, strict=True)
+    )
+    return replace(instance, cells=own, coverage=coverage_of(surface))
+
+
+def _listed(cells: list[int]) -> str:
+    return ("cell " if len(cells) == 1 else "cells ") + ", ".join(map(str, cells))
+
+
+def _curves(surface: LabelledSurface, instance: Instance, cells: Labels) -> Curves | None:
+    """Where each edge lies on the mesh; None if the graph was not made in this package's way.
+
+    Edges are numbered in the order in which the decomposition finds their curves; that each has
+    its sides and joinable colors is checked.
+    """
+    mesh = ClosedMesh(surface)
+    outside = mesh.vertex_count - mesh.real_count
+    area = [*cells.tolist(), *[OUTSIDE] * outside]
+    sets = [*map(frozenset, surface.vertex_colors), *[frozenset[int]()] * outside]
+    cracks = {(crack.i, crack.j): frozenset(crack.colors) for crack in surface.cracks}
+
+    def cracked(a: int, b: int) -> frozenset[int]:
+        return cracks.get((min(a, b), max(a, b)), frozenset())
+
+    def joinable(a: int, b: int) -> frozenset[int]:
+        return (sets[a] & sets[b]) - cracked(a, b)
+
+    curves = Borders(mesh, area, joinable, lambda a, b: bool(cracked(a, b))).curves()
+    found = {number: curve.steps for number, curve in enumerate(curves, start=1)}
+    if len(found) != len(instance.edges):
+        return None
+    for edge in instance.edges:
+        if edge.id not in found:
+            return None
+        left, right = found[edge.id][0]
+        same = (area[left], area[right]) == (edge.left, edge.right)
+        if not same or joinable(left, right) != frozenset(instance.joinable(edge.id)):
+            return None
+    return found
+
+
+def _nearest(
+    surface: LabelledSurface,
+    own: Labels,
+    cell: CellDivision,
+    strands: int,
+    curves: Curves | None,
+) -> Labels | None:
+    """The segment of each vertex of a divided cell, by the nearest joined dart.
+
+    Distances are measured along mesh edges inside the cell. None if a sub-cell has no dart whose
+    place is known (it hangs on a seam only).
+    """
+    if curves is None:
+        return None
+    source: dict[int, int] = {}
+    for sub in cell.subcells:
+        vertices = {v for dart in sub.darts for v in _along(dart, strands, curves)}
+        if not vertices:
+            return None
+        for vertex in sorted(vertices):
+            source.setdefault(vertex, sub.segment)
+    inside = set(own.tolist())
+    cracks = {(crack.i, crack.j) for crack in surface.cracks}
+    graph: nx.Graph[int] = nx.Graph()
+    graph.add_nodes_from(own.tolist())
+    for a, b in surface.left_of:
+        if a in inside and b in inside and (min(a, b), max(a, b)) not in cracks:
+            length = float(np.linalg.norm(surface.vertices[a] - surface.vertices[b]))
+            graph.add_edge(a, b, weight=length)
+    regions = nx.voronoi_cells(graph, set(source), weight="weight")
+    segment = {v: source[center] for center in source for v in regions.get(center, ())}
+    return np.array([segment[vertex] for vertex in own.tolist()], dtype=np.int64)
+
+
+def _along(dart: DartName, strands: int, curves: Curves) -> list[int]:
+    """The vertices on a dart's own side of its edge, or of one of its strands; [] for a seam."""
+    name, strand = (dart, 1) if isinstance(dart, int) else dart
+    steps = curves.get(abs(name), ())
+    count = len(steps)
+    if strands > 1 and count:
+        # Strands share the edge evenly; a short edge's strands share vertices.
+        first = min((strand - 1) * count // strands, count - 1)
+        steps = steps[first : max(strand * count // strands, first + 1)]
+    return [step[0] if name > 0 else step[1] for step in steps]

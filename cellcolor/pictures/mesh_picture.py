@@ -1,0 +1,210 @@
+"""A mesh with a class per vertex as a picture: areas, borders, cracks, numbers.
+
+A class owns the barycentric dual of its vertices, as in the decomposition: a triangle with
+different classes at its corners is cut from its center to the middles of its edges.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.pictures.palette import INK, WARNING
+from cellcolor.pictures.picture import Layer, Picture3D, Segments, Text
+
+__all__ = ["Area", "Painting", "draw", "mesh_picture_parts", "vertex_areas", "vertex_normals"]
+
+Labels = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Area:
+    """A class of vertices: its name for the legend, its color, and a number to write on it."""
+
+    name: str
+    color: str
+    number: str | None = None
+
+
+@dataclass(frozen=True)
+class Painting:
+    """What is to be seen on a surface.
+
+    Attributes:
+        title: one line.
+        labels: (n,) the area of each vertex, an index of ``areas``.
+        areas: those without any vertex are left out of the picture.
+        borders: (n,) vertex classes between which black lines run; None takes ``labels``.
+        cracks: mesh edges to mark, as pairs of vertices.
+        notes: lines under the legend.
+    """
+
+    title: str
+    labels: Labels
+    areas: Sequence[Area]
+    borders: Labels | None = None
+    cracks: Collection[tuple[int, int]] = ()
+    notes: tuple[str, ...] = ()
+
+
+def draw(surface: LabelledSurface, painting: Painting) -> Picture3D:
+    """The painted surface."""
+    vertices, faces = surface.vertices, surface.faces
+    normals = vertex_normals(vertices, faces)
+    points, triangles, owner = mesh_picture_parts(vertices, faces, painting.labels)
+    layers = []
+    for number, area in enumerate(painting.areas):
+        own = triangles[owner == number]
+        if len(own):
+            used, renumbered = np.unique(own, return_inverse=True)
+            layers.append(Layer(area.name, area.color, points[used], renumbered.reshape(own.shape)))
+    classes = painting.labels if painting.borders is None else painting.borders
+    segments = _lines(vertices, faces, normals, classes, set(painting.cracks))
+    return Picture3D(
+        painting.title,
+        tuple(layers),
+        segments,
+        tuple(_numbers(surface, painting, normals)),
+        painting.notes,
+        _towards(normals),
+    )
+
+
+def mesh_picture_parts(
+    vertices: Array, faces: Labels, labels: Labels
+) -> tuple[Array, Labels, Labels]:
+    """Cut a mesh along the borders of its vertex classes.
+
+    Args:
+        vertices: (n, 3).
+        faces: (m, 3).
+        labels: (n,).
+
+    Returns:
+        points (k, 3), the first n the vertices; triangles (t, 3), wound like the faces; the class
+        of each triangle (t,).
+    """
+    corner = labels[faces]
+    whole = (corner == corner[:, :1]).all(axis=1)
+    mixed = faces[~whole]
+    middles = (vertices[mixed] + vertices[np.roll(mixed, -1, axis=1)]) / 2
+    centers = vertices[mixed].mean(axis=1)
+    points = np.concatenate([vertices, middles.reshape(-1, 3), centers])
+    # Middle e of a face lies between its corners e and e + 1.
+    middle = len(vertices) + np.arange(3 * len(mixed)).reshape(-1, 3)
+    center = np.repeat(len(vertices) + 3 * len(mixed) + np.arange(len(mixed)), 3).reshape(-1, 3)
+    after = np.stack([mixed, middle, center], axis=2).reshape(-1, 3)
+    before = np.stack([mixed, center, np.roll(middle, 1, axis=1)], axis=2).reshape(-1, 3)
+    pieces = labels[mixed].ravel()
+    return (
+        points,
+        np.concatenate([faces[whole], after, before]),
+        np.concatenate([corner[whole, 0], pieces, pieces]),
+    )
+
+
+def vertex_areas(vertices: Array, faces: Labels) -> Array:
+    """The area (n,) of each vertex's dual in m²: a third of each of its triangles."""
+    corners = vertices[faces]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    thirds = np.linalg.norm(doubled, axis=1) / 6
+    return np.bincount(faces.ravel(), np.repeat(thirds, 3), len(vertices)).astype(np.float64)
+
+
+def vertex_normals(vertices: Array, faces: Labels) -> Array:
+    """Outward unit normals (n, 3), weighted by the faces' areas."""
+    corners = vertices[faces]
+    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.zeros_like(vertices)
+    np.add.at(normals, faces, doubled[:, None])
+    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+    unit: Array = normals / np.where(lengths > 0, lengths, 1)
+    return unit
+
+
+def _lines(
+    vertices: Array,
+    faces: Labels,
+    normals: Array,
+    classes: Labels,
+    cracks: set[tuple[int, int]],
+) -> tuple[Segments, ...]:
+    """Borders and cracks, lifted off the surface by a little so that they stay visible."""
+    ends: dict[str, list[Array]] = {"border": [], "crack": []}
+    edge = float(np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1).mean())
+    lifted = vertices + 0.03 * edge * normals
+    centers = lifted[faces].mean(axis=1)
+    for start in range(3):
+        a, b = faces[:, start], faces[:, (start + 1) % 3]
+        middles = (lifted[a] + lifted[b]) / 2
+        cracked = np.array(
+            [(i, j) in cracks or (j, i) in cracks for i, j in zip(a, b, strict=True)], dtype=bool
+        )
+        border = (classes[a] != classes[b]) & ~cracked
+        for name, rows in (("border", border), ("crack", cracked)):
+            ends[name].append(np.stack([middles[rows], centers[rows]], axis=1))
+    colors = {"border": INK, "crack": WARNING}
+    return tuple(
+        Segments(name, colors[name], np.concatenate(pieces))
+        for name, pieces in ends.items()
+        if any(map(len, pieces))
+    )
+
+
+def _numbers(surface: LabelledSurface, painting: Painting, normals: Array) -> list[Text]:
+    """Each area's number at the vertex deepest inside of it."""
+    labels = painting.labels
+    depth = _depth(surface, labels)
+    texts = []
+    for label, area in enumerate(painting.areas):
+        own = np.flatnonzero(labels == label)
+        if area.number is None or not len(own):
+            continue
+        deepest = own[depth[own] == depth[own].max()]
+        middle = surface.vertices[own].mean(axis=0)
+        offsets = np.linalg.norm(surface.vertices[deepest] - middle, axis=1)
+        vertex = deepest[np.argmin(offsets)]
+        texts.append(Text(area.number, surface.vertices[vertex], normals[vertex]))
+    return texts
+
+
+def _depth(surface: LabelledSurface, labels: Labels) -> Labels:
+    """Mesh edges from each vertex to the nearest border of its area or of the mesh."""
+    ends = np.array(list(surface.left_of), dtype=np.int64).reshape(-1, 2)
+    first, second = ends[:, 0], ends[:, 1]
+    rim = [a for a, b in surface.left_of if (b, a) not in surface.left_of]
+    rim += [b for a, b in surface.left_of if (b, a) not in surface.left_of]
+    depth = np.full(len(labels), -1, dtype=np.int64)
+    different = labels[first] != labels[second]
+    depth[np.concatenate([first[different], second[different], np.array(rim, dtype=int)])] = 0
+    if not (depth == 0).any():
+        return np.zeros(len(labels), dtype=np.int64)
+    level = 0
+    while (depth < 0).any():
+        for a, b in ((first, second), (second, first)):
+            depth[b[(depth[a] == level) & (depth[b] < 0)]] = level + 1
+        level += 1
+        if not (depth == level).any():  # a part of the surface of one area, without a rim
+            depth[depth < 0] = 0
+    return depth
+
+
+def _towards(normals: Array) -> Array:
+    """Where to look from: before the outside of the surface, and from above rather than flat."""
+    mean = normals.mean(axis=0)
+    flat = np.array([mean[0], mean[1], 0.0])
+    if np.linalg.norm(flat) < 0.2:
+        flat = np.array([0.5, -0.866, 0.0])
+    flat /= np.linalg.norm(flat)
+    upright = float(np.linalg.norm(mean)) > 0.2
+    elevation = np.arcsin(mean[2] / np.linalg.norm(mean)) if upright else np.radians(30)
+    elevation = np.clip(elevation, np.radians(-75), np.radians(75))
+    if abs(elevation) < np.radians(20):
+        elevation = np.radians(20)
+    towards: Array = np.cos(elevation) * flat + np.array([0.0, 0.0, np.sin(elevation)])
+    return towards

@@ -1,0 +1,108 @@
+"""What a picture consists of, before any library draws it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array
+
+__all__ = ["Curve", "Layer", "Picture2D", "Picture3D", "Segments", "Shape", "Text"]
+
+
+@dataclass(frozen=True)
+class Layer:
+    """Triangles of one color, one entry of the legend.
+
+    Attributes:
+        name: what the legend says.
+        color: ``#RRGGBB``.
+        points: (n, 3) in m.
+        triangles: (m, 3) int64 rows of ``points``, counter-clockwise seen from outside.
+        solid: shade it by its direction to the light; flat areas keep the legend's color.
+    """
+
+    name: str
+    color: str
+    points: Array
+    triangles: NDArray[np.int64]
+    solid: bool = False
+
+
+@dataclass(frozen=True)
+class Segments:
+    """Straight pieces of one kind of line in space: (k, 2, 3) in m."""
+
+    name: str
+    color: str
+    ends: Array
+
+
+@dataclass(frozen=True)
+class Text:
+    """A short text on a surface, at a place (3,) with an outward unit normal (3,)."""
+
+    text: str
+    at: Array
+    outward: Array
+
+
+@dataclass(frozen=True)
+class Picture3D:
+    """A scene in space, axes in meters.
+
+    Attributes:
+        title: one line.
+        layers: areas and solids.
+        segments: borders, cracks, the ground.
+        texts: numbers on the surface.
+        notes: lines under the legend.
+        towards: (3,) unit vector from the scene to the eye.
+    """
+
+    title: str
+    layers: tuple[Layer, ...]
+    segments: tuple[Segments, ...]
+    texts: tuple[Text, ...]
+    notes: tuple[str, ...]
+    towards: Array
+
+
+@dataclass(frozen=True)
+class Curve:
+    """A line in the plane: points (k, 2), width in points; ``name`` groups legend entries."""
+
+    name: str
+    color: str
+    points: Array
+    width: float
+    dashed: bool = False
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A filled outline in the plane: points (k, 2)."""
+
+    color: str
+    points: Array
+
+
+@dataclass(frozen=True)
+class Picture2D:
+    """A drawing without units.
+
+    Attributes:
+        title: one line.
+        curves: drawn first; one legend entry for each name, in this order.
+        shapes: drawn over the curves.
+        texts: (text, (2,) place, size in points), drawn last.
+        notes: lines under the legend.
+    """
+
+    title: str
+    curves: tuple[Curve, ...]
+    shapes: tuple[Shape, ...]
+    texts: tuple[tuple[str, Array, float], ...]
+    notes: tuple[str, ...]

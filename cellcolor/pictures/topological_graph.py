@@ -1,0 +1,232 @@
+"""The topological graph in the plane: cells as nodes, darts around them in cyclic order.
+
+The places of the nodes mean nothing. What is exact is the order of the darts around each node,
+counter-clockwise as seen from outside the object.
+"""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.pictures.mesh_picture import Labels, vertex_normals
+from cellcolor.pictures.palette import INK, LINES
+from cellcolor.pictures.picture import Curve, Picture2D, Shape
+
+__all__ = ["draw_graph", "places_on"]
+
+_DEAD = "dead edge"
+_POINTS_WIDE = 480.0
+_SAMPLES = 33
+
+
+def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
+    """The graph as a drawing.
+
+    Args:
+        instance: the graph.
+        places: (cells, 2) where the nodes should be about; None: anywhere.
+    """
+    radii = np.array([0.8 + 0.08 * sum(map(len, cell.loops)) for cell in instance.cells])
+    centers = _layout(instance, places, radii)
+    low, high = (centers - radii[:, None], centers + radii[:, None]) if len(radii) else ([], [])
+    extent = float((np.max(high, axis=0) - np.min(low, axis=0)).max()) if len(radii) else 1.0
+    unit = extent / _POINTS_WIDE  # one point of the printed picture
+    angles: dict[int, float] = {}
+    owner: dict[int, int] = {}
+    for cell in instance.cells:
+        angles |= _ring(instance, cell.id, centers)
+        owner |= {dart: cell.id for loop in cell.loops for dart in loop}
+
+    def port(dart: int) -> tuple[Array, Array]:
+        direction = np.array([np.cos(angles[dart]), np.sin(angles[dart])])
+        return centers[owner[dart]] + radii[owner[dart]] * direction, direction
+
+    curves: list[Curve] = []
+    texts: list[tuple[str, Array, float]] = []
+    for edge in instance.edges:
+        sides = [dart for dart in (edge.id, -edge.id) if dart in owner]
+        path = (
+            _path(*port(sides[0]), *port(sides[1])) if len(sides) == 2 else _stub(*port(sides[0]))
+        )
+        colors = instance.joinable(edge.id)
+        if not colors:
+            curves.append(Curve(_DEAD, "#777777", path, 1.0, dashed=True))
+        for place, color in enumerate(colors):
+            shifted = _beside(path, (place - (len(colors) - 1) / 2) * 2.2 * unit)
+            name = f"{color}: {instance.colors[color]}"
+            curves.append(Curve(name, LINES[color % len(LINES)], shifted, 2.0))
+        if len(instance.colors) > len(LINES) and colors:
+            texts.append((",".join(map(str, colors)), path[len(path) // 2], 6.0))
+
+    shapes: list[Shape] = []
+    for cell in instance.cells:
+        center, radius = centers[cell.id], float(radii[cell.id])
+        bounds = np.linspace(0, 2 * np.pi, len(cell.colors) + 1) + np.pi / 2
+        for color, start, end in zip(cell.colors, bounds[:-1], bounds[1:], strict=True):
+            wedge = _arc(center, radius, start, end, hub=len(cell.colors) > 1)
+            shapes.append(Shape(LINES[color % len(LINES)], wedge))
+        shapes.append(Shape("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
+        if len(cell.loops) > 1:
+            shapes += [
+                Shape(INK, center + radius * np.array([[0.45], [0.86]]) * _direction(at))
+                for at in _gaps(cell.loops, angles)
+            ]
+        texts.append((str(cell.id), center, min(11.0, 0.45 * radius / unit)))
+        count = sum(map(len, cell.loops))
+        size = min(7.0, 2.0 * radius / unit / max(count, 6))
+        for loop in cell.loops:
+            for dart in loop:
+                at = center + 0.7 * radius * _direction(angles[dart])
+                texts.append((f"{dart:+d}", at, round(float(size), 2)))
+    # The legend has the colors in their order, dead edges last.
+    order = [f"{color}: {name}" for color, name in enumerate(instance.colors)] + [_DEAD]
+    curves.sort(key=lambda curve: order.index(curve.name))
+    notes = [
+        "Node: a cell; its rim: the colors available there.",
+        "Small numbers: its darts in cyclic order, counter-clockwise",
+        "as seen from outside; black bars part the loops of a cell with holes.",
+        "Edge: one line for each joinable color. Places mean nothing.",
+    ]
+    if len(instance.colors) > len(LINES):
+        notes.append("Line colors repeat: the numbers on the edges tell colors apart.")
+    count, edges = len(instance.cells), len(instance.edges)
+    title = f"{instance.name}: {count} cells, {edges} edges"
+    return Picture2D(title, tuple(curves), tuple(shapes), tuple(texts), tuple(notes))
+
+
+def places_on(surface: LabelledSurface, cells: Labels, count: int) -> Array:
+    """The middles (count, 2) of the cells, as seen from before the surface.
+
+    Args:
+        surface: the surface.
+        cells: (n,) the cell of each vertex, ``OUTSIDE`` where unreachable.
+        count: number of cells; each has a vertex.
+    """
+    inside = cells != OUTSIDE
+    sums = np.zeros((count, 3))
+    np.add.at(sums, cells[inside], surface.vertices[inside])
+    middles = sums / np.bincount(cells[inside], minlength=count)[:, None]
+    front = vertex_normals(surface.vertices, surface.faces).mean(axis=0)
+    if np.linalg.norm(front) < 0.2:  # closed: no side is the front
+        front = np.array([0.0, 0.0, 1.0])
+    front = front / np.linalg.norm(front)
+    right = np.cross([0.0, 1.0, 0.0] if abs(front[2]) > 0.5 else [0.0, 0.0, 1.0], front)
+    right /= np.linalg.norm(right)
+    return np.asarray(middles @ np.column_stack([right, np.cross(front, right)]))
+
+
+def _layout(instance: Instance, places: Array | None, radii: Array) -> Array:
+    """Centers of the nodes, apart from each other by more than their radii."""
+    if not len(radii):
+        return np.zeros((0, 2))
+    if places is None:
+        places = _planar(instance)
+    size = float(np.ptp(places, axis=0).max()) or 1.0
+    centers = (places - places.mean(axis=0)) / size * 2.2 * float(radii.sum()) ** 0.5
+    # Equal places are moved apart in directions of their own.
+    centers = centers + 1e-3 * np.array([_direction(2.4 * cell) for cell in range(len(radii))])
+    wanted = 1.7 * (radii[:, None] + radii[None, :])
+    for _ in range(400):
+        offsets = centers[:, None] - centers[None, :]
+        distances = np.linalg.norm(offsets, axis=2)
+        np.fill_diagonal(distances, np.inf)
+        overlap = np.maximum(wanted - distances, 0.0)
+        if not overlap.any():
+            break
+        push = (overlap / distances)[:, :, None] * offsets
+        centers = centers + 0.25 * push.sum(axis=1)
+    return np.asarray(centers)
+
+
+def _planar(instance: Instance) -> Array:
+    """Places that keep to the cyclic orders as far as the surface lets itself be laid flat."""
+    embedding: nx.PlanarEmbedding[tuple[str, int]] = nx.PlanarEmbedding()
+    graph: nx.Graph[tuple[str, int]] = nx.Graph()
+    for cell in instance.cells:
+        embedding.add_node(("cell", cell.id))
+        before = None
+        for dart in (dart for loop in cell.loops for dart in loop):
+            embedding.add_half_edge(("cell", cell.id), ("dart", dart), cw=before)
+            before = ("dart", dart)
+            embedding.add_half_edge(before, ("cell", cell.id))
+    for edge in instance.edges:
+        if OUTSIDE not in (edge.left, edge.right):
+            for dart in (edge.id, -edge.id):
+                own = edge.left if dart > 0 else edge.right
+                embedding.add_half_edge(("dart", dart), ("dart", -dart), cw=("cell", own))
+    graph.add_nodes_from(embedding)
+    graph.add_edges_from(embedding.edges)
+    try:
+        embedding.check_structure()
+        laid = nx.combinatorial_embedding_to_pos(embedding)
+        size = max(max(place) for place in laid.values()) or 1
+        start = {node: (x / size, y / size) for node, (x, y) in laid.items()}
+    except nx.NetworkXException:  # a handle, or parts that lie inside one another
+        start = None
+    found = nx.spring_layout(graph, pos=start, seed=0, iterations=100)
+    return np.array([found["cell", cell.id] for cell in instance.cells])
+
+
+def _ring(instance: Instance, cell: int, centers: Array) -> dict[int, float]:
+    """The angle of each of a cell's darts: loop by loop, turned towards where they lead."""
+    loops = instance.cells[cell].loops
+    # A gap as wide as a dart's place between loops.
+    count = sum(map(len, loops)) + (len(loops) if len(loops) > 1 else 0)
+    slots: dict[int, float] = {}
+    slot = 0
+    for loop in loops:
+        for dart in loop:
+            slots[dart] = 2 * np.pi * slot / count
+            slot += 1
+        slot += 1
+    pull = 0j
+    for dart, angle in slots.items():
+        other = instance.across(dart)
+        if other not in (OUTSIDE, cell):
+            x, y = centers[other] - centers[cell]
+            pull += complex(x, y) / abs(complex(x, y)) * np.exp(-1j * angle)
+    turn = float(np.angle(pull)) if abs(pull) > 1e-9 else 0.0
+    return {dart: angle + turn for dart, angle in slots.items()}
+
+
+def _gaps(loops: tuple[tuple[int, ...], ...], angles: dict[int, float]) -> list[float]:
+    """The middle of the gap after each loop."""
+    step = 2 * np.pi / (sum(map(len, loops)) + len(loops))
+    return [angles[loop[-1]] + step for loop in loops]
+
+
+def _direction(angle: float) -> Array:
+    return np.array([np.cos(angle), np.sin(angle)])
+
+
+def _path(start: Array, out: Array, end: Array, into: Array) -> Array:
+    """A cubic Bézier curve that leaves and enters its nodes straight."""
+    reach = max(0.45 * float(np.linalg.norm(end - start)), 0.4)
+    a, b = start + reach * out, end + reach * into
+    t = np.linspace(0, 1, _SAMPLES)[:, None]
+    path: Array = (
+        (1 - t) ** 3 * start + 3 * t * (1 - t) ** 2 * a + 3 * t**2 * (1 - t) * b + t**3 * end
+    )
+    return path
+
+
+def _stub(start: Array, out: Array) -> Array:
+    """The end of an edge to the outside."""
+    return np.array([start, start + 0.3 * out])
+
+
+def _beside(path: Array, offset: float) -> Array:
+    tangents = np.gradient(path, axis=0)
+    tangents /= np.maximum(np.linalg.norm(tangents, axis=1, keepdims=True), 1e-12)
+    beside: Array = path + offset * np.column_stack([-tangents[:, 1], tangents[:, 0]])
+    return beside
+
+
+def _arc(center: Array, radius: float, start: float, end: float, *, hub: bool) -> Array:
+    angles = np.linspace(start, end, 49)
+    rim = center + radius * np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.concatenate([rim, center[None]]) if hub else rim[:-1]

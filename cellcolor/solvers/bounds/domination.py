@@ -1,0 +1,44 @@
+"""What can be left out of an instance without changing the minimum."""
+
+from __future__ import annotations
+
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.solvers.bounds.cover import color_regions
+
+__all__ = ["drop_dominated"]
+
+
+def drop_dominated(instance: Instance, deadline: Deadline = NEVER) -> tuple[frozenset[int], ...]:
+    """The colors of each cell that are enough for a minimum (docs/semantics.md, section 6).
+
+    A color's region may go when some other color is available in each of its cells and joinable
+    across each edge that is joinable for it: whatever is painted in the one can be painted in the
+    other. One region goes at a time, since of two equal ones the last has to stay. This keeps the
+    minimum of both search spaces, not the set of optimal schemes. After the deadline the regions
+    that were not looked at stay.
+    """
+    allowed = [set(cell.colors) for cell in instance.cells]
+    joinable = {edge.id: set(instance.joinable(edge.id)) for edge in instance.edges}
+    for color, cells in sorted(color_regions(instance), key=lambda region: len(region[1])):
+        if deadline.over:
+            break
+        # Edges between cells of one region that are joinable for its color.
+        edges = {
+            abs(dart)
+            for cell in cells
+            for loop in instance.cells[cell].loops
+            for dart in loop
+            if color in joinable[abs(dart)]
+        }
+        others = set.intersection(*(allowed[cell] for cell in cells)) - {color}
+        for edge in edges:
+            if not others:
+                break
+            others &= joinable[edge]
+        if others:
+            for cell in cells:
+                allowed[cell].discard(color)
+            for edge in edges:
+                joinable[edge].discard(color)
+    return tuple(frozenset(colors) for colors in allowed)

@@ -1,0 +1,1 @@
+"""The fewest cutting paths among the divisions with the fewest segments."""

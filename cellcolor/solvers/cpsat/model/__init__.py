@@ -1,0 +1,1 @@
+"""The CP-SAT models, and what they are made of: dart graphs with strands and seams."""

@@ -1,0 +1,94 @@
+"""The dart graph refined: every cell cut into rings of sectors around a center."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.model.painting import Block, Painting
+
+__all__ = ["RefinedGraph", "painting_of_nodes", "refined"]
+
+
+@dataclass(frozen=True, slots=True)
+class RefinedGraph:
+    """Small areas that are painted whole: a planar graph in which paths cannot cross.
+
+    A cell with n darts has a ring of n sectors along its border, one a dart, perhaps more rings
+    within that one, and a center; without rings it is all center. Sub-cells made of sectors and
+    center never cross, and every edge is crossed once at most.
+
+    Attributes:
+        graph: the dart graph.
+        nodes: the nodes of each cell, the center last.
+        cell: the cell of each node.
+        beside: the nodes of the same cell next to each node.
+        across: the nodes across the darts at each node, and the colors joinable there.
+        at: the node at each dart.
+    """
+
+    graph: DartGraph
+    nodes: list[range]
+    cell: list[int]
+    beside: list[list[int]]
+    across: list[list[tuple[int, frozenset[int]]]]
+    at: list[int]
+
+
+def refined(graph: DartGraph, rings: int) -> RefinedGraph:
+    """Cut every cell into so many rings of sectors."""
+    nodes: list[range] = []
+    cell_of: list[int] = []
+    beside: list[list[int]] = []
+    at = [0] * len(graph.darts)
+
+    def link(one: int, other: int) -> None:
+        beside[one].append(other)
+        beside[other].append(one)
+
+    for cell, darts in enumerate(graph.lists):
+        first, count = len(beside), len(darts)
+        nodes.append(range(first, first + count * rings + 1))
+        cell_of += [cell] * len(nodes[-1])
+        beside += [[] for _ in nodes[-1]]
+        center = nodes[-1][-1]
+        for ring in range(rings):
+            for place in range(count):
+                node = first + ring * count + place
+                if count > 2 or (count, place) == (2, 0):
+                    link(node, first + ring * count + (place + 1) % count)
+                link(node, node + count if ring + 1 < rings else center)
+        for place, dart in enumerate(darts):
+            at[dart] = first + place if rings else center
+    across: list[list[tuple[int, frozenset[int]]]] = [[] for _ in cell_of]
+    for node, side in zip(at, graph.darts, strict=True):
+        across[node].append((at[side.twin], side.colors))
+    return RefinedGraph(graph, nodes, cell_of, beside, across, at)
+
+
+def painting_of_nodes(refined: RefinedGraph, colors: Sequence[int]) -> Painting:
+    """The division in which each node has the given color."""
+    graph = refined.graph
+    block_of: dict[int, Block] = {}
+    painting: Painting = []
+    for nodes in refined.nodes:
+        blocks: list[Block] = []
+        for node in nodes:
+            if node in block_of:
+                continue
+            block_of[node] = Block(colors[node], set())
+            blocks.append(block_of[node])
+            reached = [node]
+            for place in reached:
+                for other in refined.beside[place]:
+                    if other not in block_of and colors[other] == colors[node]:
+                        block_of[other] = block_of[node]
+                        reached.append(other)
+        painting.append(blocks)
+    for number, dart in enumerate(graph.darts):
+        node, beyond = refined.at[number], refined.at[dart.twin]
+        color = colors[node]
+        if color == colors[beyond] and color in dart.colors:
+            block_of[node].darts.add(number)
+    return [[block for block in cell if block.darts] or cell[:1] for cell in painting]

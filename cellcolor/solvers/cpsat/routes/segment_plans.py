@@ -1,0 +1,245 @@
+"""Plans: which color regions get how many segments, and which segment touches which cell.
+
+A plan looks at segments two at a time only. It can be made in milliseconds where the full model
+takes seconds; where there is none with so many segments, there is no division of the surface with
+so many either (docs/solver.md, "Plans").
+"""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations, product
+
+from ortools.sat.python import cp_model
+
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import Deadline
+from cellcolor.solvers.bounds.conflicts import Parting, RegionPair, Side
+from cellcolor.solvers.bounds.cover import Region
+from cellcolor.solvers.bounds.merged_cells import merge_cells
+
+__all__ = ["Plan", "PlannedSegment", "Planner", "Undecided"]
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedSegment:
+    """A segment as planned.
+
+    Attributes:
+        region: the color region it lies in.
+        cells: the cells that it is to touch, so that every cell is touched by some segment.
+    """
+
+    region: Region
+    cells: frozenset[int]
+
+
+Plan = tuple[PlannedSegment, ...]
+
+MOST_LITERALS = 100_000
+"""For the areas that segments touch."""
+
+MOST_PARTED = 2_000
+"""Literals of the constraints that keep segments from crossing. Around a cell with many petals
+nearly all is in conflict, which the full model bounds better; where plans help they are few."""
+
+MOST_PARTINGS = 200
+"""Found at a time, before the next plan is made with them."""
+
+MOST_STARTS = 5
+"""Areas of a segment from which curves are drawn to its other ones, if one such area does not show
+that the segment crosses another."""
+
+Solve = Callable[[cp_model.CpModel, int], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
+
+_Touched = dict[tuple[int, int], dict[int, cp_model.IntVar]]
+
+
+class Undecided(Exception):
+    """Within its limits the solver found neither a plan nor that there is none."""
+
+
+class Planner:
+    """Plans for an instance, with the partings found so far (docs/solver.md, "Conflicts").
+
+    Args:
+        instance: the topological graph.
+        regions: its color regions.
+        fewest: so many regions at least are needed to touch every cell.
+        solve: runs a model with a seed, within limits.
+        deadline: when to stop looking for partings.
+    """
+
+    def __init__(
+        self,
+        instance: Instance,
+        regions: Sequence[Region],
+        fewest: int,
+        solve: Solve,
+        deadline: Deadline,
+    ) -> None:
+        self._instance = instance
+        self._regions = regions
+        self._fewest = fewest
+        self._solve = solve
+        self._deadline = deadline
+        self._number = {region: number for number, region in enumerate(regions)}
+        # A segment that touches one cell of an area in which nothing separates its cells can be
+        # grown over all of it, so that areas are all that a plan has to know.
+        own = {cell.id: frozenset(cell.colors) for cell in instance.cells}
+        self._merged = merge_cells(instance, own)
+        self._areas = self._merged.cells()
+        self._areas_of = [
+            sorted({self._merged.part_of[cell] for cell in cells}) for _, cells in regions
+        ]
+        self._pairs: dict[tuple[int, int], RegionPair] = {}
+        self._partings: dict[tuple[int, int], list[Parting]] = {}
+        self._looked_at: set[tuple[tuple[int, int], int, int]] = set()
+
+    def plan(self, segments: int, seed: int) -> Plan | None:
+        """A plan with exactly so many segments that heeds all partings found so far.
+
+        Args:
+            segments: how many, the smallest cover or more.
+            seed: other seeds give other plans, where there are several.
+
+        Returns:
+            A plan, or None if it is proved that there is none.
+
+        Raises:
+            Undecided: the limits of the solver came first, or there are too many partings.
+        """
+        copies = segments - self._fewest + 1
+        parted = [parting for partings in self._partings.values() for parting in partings]
+        if copies**2 * sum(2 + len(parting.groups) for parting in parted) > MOST_PARTED:
+            raise Undecided
+        if copies * sum(map(len, self._areas_of)) > MOST_LITERALS:
+            raise Undecided
+        model = cp_model.CpModel()
+        touched = self._add_segments(model, segments)
+        for one, other in self._partings:
+            self._add_partings(model, touched, one, other)
+        if seed:
+            # Left to themselves, other seeds find the same plan again.
+            chance = random.Random(seed)
+            literals = [literal for own in touched.values() for literal in own.values()]
+            model.minimize(sum(chance.randrange(4) * literal for literal in literals))
+        solver, status = self._solve(model, seed)
+        if status == cp_model.INFEASIBLE:
+            return None
+        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            raise Undecided
+        return self._read(solver, touched)
+
+    def find_partings(self, plan: Plan) -> bool:
+        """Look for segments of a plan that would cross; whether there are any.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        return any(self._find(plan, every) for every in (False, True))
+
+    def _find(self, plan: Plan, every: bool) -> bool:
+        """Look at curves from one area of each segment, or from every one of a few."""
+        found = 0
+        for one, other in combinations(plan, 2):
+            first, second = sorted((one, other), key=lambda s: self._number[s.region])
+            numbers = self._number[first.region], self._number[second.region]
+            if first.region[0] == second.region[0] or first.region[1].isdisjoint(second.region[1]):
+                continue
+            if numbers not in self._pairs:
+                self._deadline.check()
+                self._pairs[numbers] = RegionPair(self._instance, first.region, second.region)
+            pair = self._pairs[numbers]
+            for key, side, own, parted in (
+                (numbers, pair.first, first, second),
+                (numbers[::-1], pair.second, second, first),
+            ):
+                held = {pair.area_of(cell) for cell in own.cells}
+                ends = [area for area in side.areas if area in held]
+                for parting in self._violated(key, side, ends, parted.cells, every):
+                    self._partings.setdefault(key, []).append(parting)
+                    found += 1
+                    if found == MOST_PARTINGS:
+                        return True
+        return found > 0
+
+    def _violated(
+        self,
+        key: tuple[int, int],
+        side: Side,
+        ends: Sequence[int],
+        cells: frozenset[int],
+        every: bool,
+    ) -> Iterator[Parting]:
+        """New partings, by a segment that touches some areas, of the cells of another segment."""
+        starts = range(min(MOST_STARTS, len(ends))) if every else range(1)
+        for near, far in ((ends[n], area) for n in starts for area in ends[n + 1 :]):
+            if (key, near, far) in self._looked_at:
+                continue
+            self._deadline.check()
+            for parting in side.partings(near, far):
+                touched = (
+                    any(not area.isdisjoint(cells) for area in group) for group in parting.groups
+                )
+                if sum(touched) > 1:
+                    self._looked_at.add((key, near, far))
+                    yield parting
+
+    def _add_segments(self, model: cp_model.CpModel, segments: int) -> _Touched:
+        """Literals for the areas that each segment touches, by region and copy."""
+        # The regions in use touch all cells, so there are at least the fewest different ones.
+        copies = segments - self._fewest + 1
+        touched: _Touched = {}
+        used: list[cp_model.IntVar] = []
+        touching: dict[int, list[cp_model.IntVar]] = {area: [] for area in self._areas}
+        for number, areas in enumerate(self._areas_of):
+            for copy in range(copies):
+                in_use = model.new_bool_var("")
+                if copy:
+                    model.add_implication(in_use, used[-1])
+                used.append(in_use)
+                touched[number, copy] = {area: model.new_bool_var("") for area in areas}
+                for area, literal in touched[number, copy].items():
+                    model.add_implication(literal, in_use)
+                    touching[area].append(literal)
+        for literals in touching.values():
+            model.add_bool_or(literals)
+        model.add(sum(used) == segments)
+        return touched
+
+    def _add_partings(
+        self, model: cp_model.CpModel, touched: _Touched, one: int, other: int
+    ) -> None:
+        """No segment of a region touches two groups that a segment of another one parts."""
+        touching: dict[tuple[int, int, frozenset[int]], cp_model.IntVar] = {}
+
+        def touches(region: int, copy: int, cells: frozenset[int]) -> cp_model.IntVar:
+            key = region, copy, cells
+            if key not in touching:
+                touching[key] = model.new_bool_var("")
+                for area in sorted({self._merged.part_of[cell] for cell in cells}):
+                    model.add_implication(touched[region, copy][area], touching[key])
+            return touching[key]
+
+        copies = {copy for _, copy in touched}
+        for parting in self._partings[one, other]:
+            groups = [frozenset[int]().union(*group) for group in parting.groups]
+            for near, far in product(copies, repeat=2):
+                ends = [touches(one, near, area) for area in parting.ends]
+                parted = [touches(other, far, group) for group in groups]
+                model.add(sum(parted) <= 1).only_enforce_if(ends)
+
+    def _read(self, solver: cp_model.CpSolver, touched: _Touched) -> Plan:
+        """The plan in which every cell is touched by one segment only."""
+        left = set(self._areas)
+        plan = []
+        for (number, _), literals in touched.items():
+            areas = {area for area, literal in literals.items() if solver.boolean_value(literal)}
+            if areas:
+                cells = (self._areas[area] for area in areas & left)
+                plan.append(PlannedSegment(self._regions[number], frozenset().union(*cells)))
+                left -= areas
+        return tuple(plan)

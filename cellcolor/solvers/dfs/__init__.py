@@ -1,0 +1,12 @@
+"""The paper's depth-first enumerative solver, to be read beside sections IV and V.
+
+``cells`` enumerates the schemes of one cell (section IV), ``search`` paints the graph cell by cell
+(section V), ``segments`` carries the cost (section V-A), ``zeros`` checks what a complete painting
+shows across its edges in state 0, ``graph`` is the topological graph as all of them see it.
+"""
+
+from cellcolor.solvers.dfs.cell_schemes import code, divisions
+from cellcolor.solvers.dfs.literal_cost import literal_cost
+from cellcolor.solvers.dfs.solver import ReferenceSolver
+
+__all__ = ["ReferenceSolver", "code", "divisions", "literal_cost"]

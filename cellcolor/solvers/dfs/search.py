@@ -1,0 +1,199 @@
+"""The iterative solver of the whole graph (paper, section V).
+
+Depth first, cell by cell: each scheme of a cell that agrees with its solved neighbours is a
+branch. The cost is that of the painting so far, carried along; a branch ends where the segments
+it cannot lose any more exceed what is asked for.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from itertools import chain, islice
+
+from cellcolor.data.solution import DartName
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.solvers.dfs.cell_schemes import CellScheme, Known, cell_schemes
+from cellcolor.solvers.dfs.graph import GraphCell, twin
+from cellcolor.solvers.dfs.segment_counts import Segments
+from cellcolor.solvers.dfs.zero_darts import zeros_fit
+
+__all__ = ["Search"]
+
+_REMEMBERED = 5000
+"""Longer lists of cell schemes are enumerated anew each time, so that memory stays small."""
+
+
+class Search:
+    """The depth-first search of one connected part of the graph.
+
+    Args:
+        cells: the cells, in the order in which they are solved.
+        region: the region of each (cell, color).
+        deadline: when to stop.
+
+    Attributes:
+        budget: the most segments a painting may have; lower it while the search runs to prune.
+        bound: no painting has fewer segments.
+    """
+
+    def __init__(
+        self, cells: Sequence[GraphCell], region: dict[tuple[int, int], int], deadline: Deadline
+    ) -> None:
+        self._cells = cells
+        self._region = region
+        self._deadline = deadline
+        self._segments = Segments()
+        self._memory: list[dict[tuple[Known, ...], list[CellScheme]]] = [{} for _ in cells]
+        self._covers: list[dict[int, int]] = [{} for _ in range(len(cells) + 1)]
+        self._chosen: list[CellScheme] = []
+        self._index_darts()
+        self.budget = 0
+        self.bound = self._first_bound()
+
+    def _first_bound(self) -> int:
+        """The size of a smallest cover; 1 if there is no time to find it."""
+        try:
+            return self._cover(0, 0)
+        except OutOfTime as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            return 1
+
+    def _index_darts(self) -> None:
+        """Number the darts, and note which ones face unsolved cells at each depth."""
+        number: dict[DartName, int] = {}
+        depth_of: list[int] = []
+        for depth, cell in enumerate(self._cells):
+            for dart in cell.darts:
+                number[dart] = len(number)
+                depth_of.append(depth)
+        self._numbers = [[number[dart] for dart in cell.darts] for cell in self._cells]
+        self._twins = [[number[twin(dart)] for dart in cell.darts] for cell in self._cells]
+        self._side: list[Known] = [None] * len(number)
+        """What each dart's other side learns; None as long as its cell is unsolved."""
+        self._holder = [-1] * len(number)
+        """The sub-cell of each dart in state 1 of the solved cells."""
+        self._earlier = [[depth_of[t] < d for t in ts] for d, ts in enumerate(self._twins)]
+        self._frontier: list[list[int]] = [[]]
+        for depth in range(len(self._cells)):
+            own = zip(self._numbers[depth], self._twins[depth], strict=True)
+            kept = [d for d in self._frontier[-1] if d not in set(self._twins[depth])]
+            self._frontier.append(kept + [d for d, t in own if depth_of[t] > depth])
+
+    def paintings(self) -> Iterator[tuple[int, list[CellScheme]]]:
+        """Every valid painting within the budget: its segments and the scheme of each cell.
+
+        Raises:
+            OutOfTime: the deadline has passed.
+        """
+        return self._solve(0)
+
+    def _solve(self, depth: int) -> Iterator[tuple[int, list[CellScheme]]]:
+        self._deadline.check()
+        bound = self._bound(depth)
+        if bound > self.budget:
+            return
+        if depth == len(self._cells):
+            if zeros_fit(self._cells, self._chosen):
+                yield self._segments.cost, list(self._chosen)
+            return
+        mark = self._segments.mark()
+        for scheme in self._branches(depth):
+            self._paint(depth, scheme)
+            self._chosen.append(scheme)
+            yield from self._solve(depth + 1)
+            self._chosen.pop()
+            self._segments.undo(mark)
+            if bound > self.budget:
+                break
+        for number in self._numbers[depth]:
+            self._side[number] = None
+
+    def _branches(self, depth: int) -> Iterable[CellScheme]:
+        """The schemes of a cell under its solved neighbours, the least divided ones first."""
+        known = tuple([self._side[t] for t in self._twins[depth]])
+        remembered = self._memory[depth].get(known)
+        if remembered is None:
+            schemes = cell_schemes(self._cells[depth], known, self._deadline)
+            remembered = list(islice(schemes, _REMEMBERED))
+            if len(remembered) == _REMEMBERED:
+                return chain(remembered, schemes)
+            remembered.sort(key=_preference)
+            self._memory[depth][known] = remembered
+        return remembered
+
+    def _paint(self, depth: int, scheme: CellScheme) -> None:
+        """Solve a cell, and carry the cost along (section V-A).
+
+        The cost rises by one for each sub-cell and falls by one for each distinct *segment* among
+        its neighbours that it joins; the paper's rule counts distinct cells there instead.
+        """
+        cell, segments = self._cells[depth], self._segments
+        numbers, twins, earlier = self._numbers[depth], self._twins[depth], self._earlier[depth]
+        for number, side in zip(numbers, scheme.sides, strict=True):
+            self._side[number] = side
+        for color, darts in scheme.subcells:
+            subcell = segments.add(self._region[cell.id, color])
+            for i in darts:
+                self._holder[numbers[i]] = subcell
+        for _, darts in scheme.subcells:
+            for i in darts:
+                if earlier[i] or cell.partner[i] >= 0:
+                    segments.join(self._holder[numbers[i]], self._holder[twins[i]])
+
+    def _bound(self, depth: int) -> int:
+        """A number of segments that every completion of the current painting has at least.
+
+        Segments with no dart in state 1 towards an unsolved cell are complete. The others, and
+        all to come, lie in regions that hold every segment still growing and touch every unsolved
+        cell; they are at least as many as the fewest such regions.
+        """
+        segments = self._segments
+        growing = set()
+        for dart in self._frontier[depth]:
+            side = self._side[dart]
+            if side is not None and side[0] == 1:
+                growing.add(segments.find(self._holder[dart]))
+        held = 0
+        for subcell in growing:
+            held |= 1 << segments.region[subcell]
+        return segments.cost - len(growing) + self._cover(depth, held)
+
+    def _cover(self, depth: int, held: int) -> int:
+        """The fewest regions that include those held and touch every cell from a depth on."""
+        known = self._covers[depth].get(held)
+        if known is None:
+            needed = []
+            for cell in self._cells[depth:]:
+                regions = 0
+                for color in cell.colors:
+                    regions |= 1 << self._region[cell.id, color]
+                if not regions & held:
+                    needed.append(regions)
+            known = held.bit_count() + _hitting(frozenset(needed), self._deadline)
+            self._covers[depth][held] = known
+        return known
+
+
+def _preference(scheme: CellScheme) -> tuple[int, int]:
+    return len(scheme.subcells), sum(side is not None and side[0] == 0 for side in scheme.sides)
+
+
+def _hitting(sets: frozenset[int], deadline: Deadline) -> int:
+    """The fewest bits that hit each of the given bit sets.
+
+    Raises:
+        OutOfTime: the deadline has passed.
+    """
+    deadline.check()
+    if not sets:
+        return 0
+    sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
+    smallest = min(sets, key=lambda s: (s.bit_count(), s))
+    best = len(sets)
+    bits = smallest
+    while bits:
+        bit = bits & -bits
+        bits ^= bit
+        best = min(best, 1 + _hitting(frozenset(s for s in sets if not s & bit), deadline))
+    return best

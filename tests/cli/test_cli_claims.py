@@ -1,0 +1,158 @@
+"""``check`` and ``show`` on whatever was solved; ``solve`` against what is said to be known."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from commands import json_lines, run
+from library import PAPER
+from pages import small_wok
+
+from cellcolor.data.instance import Instance, Known, KnownResult
+from cellcolor.judges.known_results import contradictions
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+Capture = pytest.CaptureFixture[str]
+
+RING = PAPER / "ring.json"
+SPLIT = PAPER / "split-cell.json"
+ZEROS = PAPER / "crossing-zeros.json"
+CORRIDORS = PAPER / "parallel-corridors.json"
+needs_frontend = pytest.mark.skipif(
+    importlib.util.find_spec("pinocchio") is None, reason="the extra 'frontend' is not installed"
+)
+needs_viz = pytest.mark.skipif(
+    importlib.util.find_spec("plotly") is None, reason="the extra 'viz' is not installed"
+)
+
+
+class TestWhatWasSolved:
+    """A solution goes with the instance, the surface and the scene alike."""
+
+    @needs_viz
+    def test_surface(self, tmp_path: Path, capsys: Capture) -> None:
+        surface, instance = tmp_path / "a.surface.json", tmp_path / "sub" / "a.json"
+        instance.parent.mkdir()
+        surface.write_text((PAPER / "split-cell.surface.json").read_text("utf-8"), "utf-8")
+        assert run("build", surface, "-o", instance) == 0
+        for number, solved in enumerate((surface, instance)):
+            solution = tmp_path / f"{number}.json"
+            assert run("solve", solved, "-o", solution) == 0
+            for subject in (surface, instance):
+                assert run("check", subject, solution) == 0, capsys.readouterr()
+                assert run("show", subject, solution, "-o", tmp_path / "x.html") == 0
+        schemes = tmp_path / "all.jsonl"
+        assert run("solve", surface, "--all", "-o", schemes) == 0
+        assert run("check", surface, schemes) == 0
+        assert "1 schemes" in capsys.readouterr().out
+        assert run("check", PAPER / "ring.surface.json", schemes) == 1
+        assert "instance.sha256" in capsys.readouterr().out
+
+    @needs_frontend
+    @needs_viz
+    def test_scene(self, tmp_path: Path, capsys: Capture) -> None:
+        scene = small_wok(tmp_path)
+        built, solution = tmp_path / "wok.json", tmp_path / "solution.json"
+        assert run("solve", scene, "-o", solution) == 0
+        # Built again, its timings are other ones; the solution still fits.
+        assert run("build", scene, "-o", built) == 0
+        for subject in (scene, built, tmp_path / "wok.surface.json"):
+            assert run("check", subject, solution) == 0, capsys.readouterr()
+            assert run("show", subject, solution, "-o", tmp_path / "x.html") == 0
+        plan = tmp_path / "plan.json"
+        plan.write_text(json.dumps({"format": "cellcolor/plan", "version": 1, "vertex_colors": []}))
+        capsys.readouterr()
+        assert run("check", scene, plan) == 1
+        assert "0 entries" in capsys.readouterr().out
+
+    def test_claims_are_called_claims(self, tmp_path: Path, capsys: Capture) -> None:
+        solution = tmp_path / "solution.json"
+        assert run("solve", RING, "-o", solution) == 0
+        capsys.readouterr()
+        assert run("check", RING, solution) == 0
+        (line,) = [x for x in capsys.readouterr().out.splitlines() if "not verified" in x]
+        assert line.strip() == (
+            'claimed, not verified: lower_bound 2, surface_lower_bound 2, status "optimal", '
+            "proved_for_surface true"
+        )
+        assert run("check", RING, solution, "--json") == 0
+        (document,) = json_lines(capsys.readouterr().out)
+        assert document["claimed"] == {
+            "lower_bound": 2,
+            "surface_lower_bound": 2,
+            "status": "optimal",
+            "proved_for_surface": True,
+        }
+
+
+class TestKnown:
+    @pytest.mark.parametrize(
+        ("path", "known", "options", "expected"),
+        [
+            (SPLIT, {"paper": {"segments": 3}}, [], "the division found has 2"),
+            (SPLIT, {"paper": {"segments": 1}}, [], "the lower bound found is 2"),
+            (SPLIT, {"surface": {"segments": 3}}, [], "the division found has 2"),
+            (SPLIT, {"surface": {"segments": 1}}, [], "the lower bound found is 2"),
+            (
+                SPLIT,
+                {"paper": {"segments": 1}},
+                ["--search-space", "surface"],
+                "the lower bound found is 2",
+            ),
+            (
+                ZEROS,
+                {"paper": {"segments": 2, "schemes": 4}},
+                ["--all"],
+                "4 are said to be all, 3 are found",
+            ),
+            (
+                ZEROS,
+                {"paper": {"segments": 2, "schemes": 1}},
+                ["--all", "--limit", "2"],
+                "1 are said to be all, 2 are found",
+            ),
+        ],
+    )
+    def test_a_contradiction_is_an_error(
+        self,
+        path: Path,
+        known: dict[str, dict[str, int]],
+        options: list[str],
+        expected: str,
+        tmp_path: Path,
+        capsys: Capture,
+    ) -> None:
+        document = json.loads(path.read_text("utf-8")) | {"known": known}
+        wrong, out = tmp_path / "wrong.json", tmp_path / "out.json"
+        wrong.write_text(json.dumps(document), "utf-8")
+        assert run("solve", wrong, *options, "-o", out) == 1
+        (line,) = capsys.readouterr().err.splitlines()
+        assert f"{wrong}: contradiction: known." in line and expected in line
+        # What was found is right by the checker, and kept.
+        assert run("check", path, out) == 0
+        assert run("check", wrong, out) == 1
+        capsys.readouterr()
+        assert run("solve", wrong, RING, *options, "--json") == 1
+        first, second = json_lines(capsys.readouterr().out)
+        assert first["segments"] == 2 and "error" not in second
+        assert first["error"].startswith("known.")
+
+    @pytest.mark.parametrize(
+        ("known", "options"),
+        [
+            # A surface may need fewer than the paper's divisions, and strands may need more.
+            (Known(KnownResult(3), KnownResult(2)), Options("paper")),
+            (Known(KnownResult(3), KnownResult(2)), Options("surface", strands=2)),
+            (Known(KnownResult(3), KnownResult(2)), Options("surface", strands=1)),
+            (Known(KnownResult(3)), Options("surface", strands=2)),
+            (None, Options()),
+        ],
+    )
+    def test_what_is_right_contradicts_nothing(self, known: Known | None, options: Options) -> None:
+        instance = replace(Instance.read(CORRIDORS), known=known)
+        assert contradictions(instance, solve(instance, options)) == []

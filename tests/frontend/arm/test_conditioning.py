@@ -1,0 +1,115 @@
+"""Thresholds as shares of the cube of the reach mean the same for small arms and large ones."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.optimize import minimize
+
+from cellcolor.errors import InputError
+from cellcolor.frontend import Reason
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.ur import UrGeometry
+from cellcolor.frontend.scene import load_setup
+from cellcolor.frontend.stage import prepare
+
+Scene = Callable[..., Path]
+# The manufacturer's reach of UR3, UR5 and UR10, 0.5, 0.85 and 1.3 m, against the UR5's.
+ARMS = {"UR3": 0.5 / 0.85, "UR5": 1.0, "UR10": 1.3 / 0.85}
+SHARES = {
+    "min_manipulability_m3": "min_manipulability = 0.03",
+    "min_task_determinant_m3": "min_task_determinant = 0.0023",
+    "near_singular_determinant_m3": "near_singular_determinant = 0.0029",
+}
+NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
+
+
+def scaled(text: str, size: float) -> str:
+    """A URDF with all lengths multiplied."""
+
+    def times(found: re.Match[str]) -> str:
+        numbers = re.sub(NUMBER, lambda n: repr(size * float(n.group())), found.group(2))
+        return f'{found.group(1)}"{numbers}"'
+
+    # Axes are directions, not lengths.
+    parts = re.split(r"(<axis[^>]*>)", text)
+    return "".join(
+        part
+        if part.startswith("<axis")
+        else re.sub(r'\b(xyz=|radius=|length=)"([^"]*)"', times, part)
+        for part in parts
+    )
+
+
+def reasons(scene: Scene, size: float, shares: bool) -> NDArray[np.uint8]:
+    """Of all candidates: the wok and the shipped arm, all lengths so many times as large.
+
+    The force is left out: masses and torques would have to grow in their own ways.
+    """
+    place = f"[{0.465 * size}, {-0.15 * size}, {-0.04 * size}]"
+    file = scene(
+        arm=lambda text: scaled(text, size),
+        radius_m=0.2 * size,
+        position_m=place,
+        target_vertices=300,
+    )
+    tool = file.parent / "polishing_tool.urdf"
+    tool.write_text(scaled(tool.read_text(), size))
+    setup = file.parent / "ur5_polishing.toml"
+    text = setup.read_text()
+    if shares:
+        for key, line in SHARES.items():
+            text = re.sub(rf"^{key} = .*$", line, text, flags=re.MULTILINE)
+    setup.write_text(text + "\n[constraints]\nforce = false\n")
+    stage = prepare(file)
+    candidates = stage.inverse(stage.surface.vertices, -stage.surface.normals)
+    return stage.judge(candidates.reshape(-1, 6)).reasons
+
+
+def conditioned(found: NDArray[np.uint8]) -> int:
+    return int(((found == Reason.MANIPULABILITY) | (found == Reason.TASK_DETERMINANT)).sum())
+
+
+def test_shares_mean_the_same_for_every_size(scene: Scene) -> None:
+    found = {name: reasons(scene, size, shares=True) for name, size in ARMS.items()}
+    assert conditioned(found["UR5"]) > 50
+    for other in found.values():
+        # Exact but for what lies within rounding of a limit.
+        assert np.mean(other == found["UR5"]) > 0.999
+
+
+def test_cubic_meters_do_not(scene: Scene) -> None:
+    """What is fine for a UR5 fails on a UR3, and a UR10 passes too easily."""
+    small, middle, large = (
+        conditioned(reasons(scene, size, shares=False)) for size in ARMS.values()
+    )
+    assert small > middle + 100 and middle >= large
+
+
+def test_reach_is_what_no_configuration_exceeds(robot: Robot, geometry: UrGeometry) -> None:
+    def distance(angles: np.ndarray) -> np.ndarray:
+        tip = forward(robot, angles.reshape(-1, 6)).tip
+        return np.linalg.norm(tip - geometry.shoulder, axis=1)
+
+    angles = np.random.default_rng(2).uniform(-np.pi, np.pi, (20_000, 6))
+    far = distance(angles)
+    best = minimize(lambda q: -distance(q)[0], angles[np.argmax(far)])
+    assert far.max() <= geometry.arm_reach
+    assert -best.fun == pytest.approx(geometry.arm_reach, abs=1e-6)
+
+
+@pytest.mark.parametrize("key", SHARES)
+def test_each_threshold_once(key: str, scene: Scene) -> None:
+    setup = scene().parent / "ur5_polishing.toml"
+    text = setup.read_text()
+    name = key.removesuffix("_m3")
+    for faulty in (text.replace(key, f"# {key}"), text.replace(key, f"{name} = 0.1\n{key}")):
+        setup.write_text(faulty)
+        with pytest.raises(InputError, match=f"give either {name} or {key}"):
+            load_setup(setup)

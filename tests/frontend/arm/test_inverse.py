@@ -1,0 +1,182 @@
+"""Closed-form inverse kinematics against EAIK and against forward kinematics."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from independent import Eaik, regular, set_distance, wrapped
+from shipped import ROBOTS
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
+
+LOCKED = 0.4
+
+
+@pytest.fixture(scope="module")
+def eaik(robot: Robot) -> Eaik:
+    return Eaik(robot)
+
+
+@pytest.mark.parametrize("reachable", [True, False])
+def test_same_solution_sets_as_eaik(
+    eaik: Eaik, robot: Robot, geometry: UrGeometry, reachable: bool
+) -> None:
+    random = np.random.default_rng(11)
+    if reachable:
+        poses = forward(robot, random.uniform(-np.pi, np.pi, (400, 6)))
+        points, directions = poses.tip, poses.tool_axis
+    else:
+        points = random.uniform(-1.1, 1.1, (400, 3))
+        directions = random.normal(size=(400, 3))
+        directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    found = solve_inverse(geometry, points, directions, LOCKED)
+    counts = []
+    for row in range(len(points)):
+        ours = found[row][~np.isnan(found[row, :, 0])][:, :5]
+        theirs = eaik.solutions(points[row], directions[row], random.uniform(0, 6))
+        counts.append(len(ours))
+        assert set_distance(ours, theirs) < 1e-6
+    # The sample has to hold full, partial and (where it may) empty sets.
+    assert {2, 4, 8} <= set(counts) and (reachable or 0 in counts)
+
+
+@pytest.mark.parametrize("off", [1e-3, 1e-5, 1e-7, 0.0])
+@pytest.mark.parametrize("joint", [2, 4])
+def test_same_regular_solutions_at_straight_elbow_and_aligned_wrist(
+    eaik: Eaik, robot: Robot, geometry: UrGeometry, joint: int, off: float
+) -> None:
+    """Where two solutions meet, rounding says how many there are: only the others compare."""
+    random = np.random.default_rng(29)
+    left_out = compared = 0
+    for _ in range(200):
+        q = random.uniform(-np.pi, np.pi, (1, 6))
+        q[0, joint] = off
+        poses = forward(robot, q)
+        point, direction = poses.tip, poses.tool_axis
+        found = solve_inverse(geometry, point, direction, LOCKED)[0]
+        ours = found[~np.isnan(found[:, 0])][:, :5]
+        theirs = eaik.solutions(point[0], direction[0], random.uniform(0, 6))
+        assert set_distance(regular(robot, ours), regular(robot, theirs)) < 1e-6
+        compared += len(regular(robot, ours))
+        left_out += len(ours) - len(regular(robot, ours))
+    assert compared > 400
+    assert off > 1e-4 or left_out > 200
+
+
+@given(
+    st.lists(st.floats(-3.1, 3.1), min_size=5, max_size=5).filter(
+        lambda q: abs(np.sin(q[4])) > 1e-3 and abs(np.sin(q[2])) > 1e-3
+    )
+)
+@settings(deadline=None)
+def test_every_configuration_is_among_the_solutions_of_its_pose(
+    robot: Robot, geometry: UrGeometry, five: list[float]
+) -> None:
+    q = np.array([*five, LOCKED])
+    poses = forward(robot, q[None])
+    found = solve_inverse(geometry, poses.tip, poses.tool_axis, LOCKED)[0]
+    # At a straight shoulder both branches meet, and half of the digits are lost.
+    assert np.nanmin(np.where(np.isnan(found), np.inf, wrapped(found - q)).max(axis=1)) < 1e-5
+
+
+def test_all_solutions_reach_the_pose(robot: Robot, geometry: UrGeometry) -> None:
+    poses = forward(robot, np.random.default_rng(3).uniform(-np.pi, np.pi, (500, 6)))
+    found = solve_inverse(geometry, poses.tip, poses.tool_axis, LOCKED)
+    rows, branches = np.nonzero(~np.isnan(found[:, :, 0]))
+    assert len(rows) > 3000
+    reached = forward(robot, found[rows, branches])
+    assert np.allclose(reached.tip, poses.tip[rows], atol=1e-9)
+    assert np.allclose(reached.tool_axis, poses.tool_axis[rows], atol=1e-9)
+    assert (found[rows, branches, 5] == LOCKED).all()
+
+
+def test_branch_names_mean_what_they_say(robot: Robot, geometry: UrGeometry) -> None:
+    # Tool down on points in front of the robot, where all eight branches exist.
+    random = np.random.default_rng(8)
+    turn, out = random.uniform(-np.pi, np.pi, 50), random.uniform(0.35, 0.5, 50)
+    points = np.column_stack([out * np.cos(turn), out * np.sin(turn), random.uniform(0, 0.2, 50)])
+    found = solve_inverse(geometry, points, np.tile([0.0, 0.0, -1.0], (50, 1)), LOCKED)
+    assert not np.isnan(found).any()
+    for branch, name in enumerate(BRANCHES):
+        poses = forward(robot, found[:, branch])
+        shoulder, elbow, wrist = (poses.origin[:, frame] for frame in (2, 3, 5))
+        # The upper arm's middle line runs beside the base axis: seen from above, left of the
+        # way out to the wrist or right of it.
+        beside = poses.rotation[:, 2, :, 2] * 0.13585
+        left = wrist[:, 0] * beside[:, 1] - wrist[:, 1] * beside[:, 0] > 0
+        assert (left == ("shoulder-left" in name)).all()
+        # Above the straight line from shoulder to wrist 1, or below it.
+        chord = poses.origin[:, 4] - shoulder
+        share = ((elbow - shoulder) * chord).sum(1) / (chord * chord).sum(1)
+        above = elbow[:, 2] > (shoulder + share[:, None] * chord)[:, 2]
+        assert (above == ("elbow-up" in name)).all()
+        assert ((found[:, branch, 4] < 0) == ("wrist-flipped" in name)).all()
+
+
+def test_out_of_reach_is_nan(geometry: UrGeometry) -> None:
+    down = np.array([[0.0, 0.0, -1.0]])
+    assert np.isnan(solve_inverse(geometry, np.array([[2.0, 0, 0]]), down, LOCKED)).all()
+    # On the base axis the wrist cannot keep its distance from it.
+    assert np.isnan(solve_inverse(geometry, np.array([[0.0, 0, 0.5]]), down, LOCKED)).all()
+
+
+def arm_with_frames(folder: Path, lengths: Array, signs: list[int], turns: list[float]) -> Robot:
+    """A UR-type arm whose joints turn in given senses and count from given zeros."""
+    d1, a2, a3, d4, d5, d6 = lengths
+    half = np.pi / 2
+    origins = [
+        (0, 0, d1, 0),
+        (0, 0, 0, half),
+        (-a2, 0, 0, 0),
+        (-a3, 0, d4, 0),
+        (0, -d5, 0, half),
+        (0, d6, 0, -half),
+    ]
+    joints = [
+        f'<link name="l{i}"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1"'
+        f' iyz="0" izz="1"/></inertial></link><joint name="j{i}" type="revolute">'
+        f'<parent link="l{i - 1}"/><child link="l{i}"/>'
+        f'<origin xyz="{x} {y} {z}" rpy="{roll} 0 {turn}"/><axis xyz="0 0 {sign}"/>'
+        f'<limit lower="-4" upper="4" velocity="1" effort="1"/></joint>'
+        for i, ((x, y, z, roll), sign, turn) in enumerate(
+            zip(origins, signs, [turns[0], 0, turns[1], turns[2], 0, 0], strict=True), 1
+        )
+    ]
+    file = folder / "arm.urdf"
+    file.write_text(f'<robot name="arm"><link name="l0"/>{"".join(joints)}</robot>')
+    return load_robot(file, "l6", ROBOTS / "polishing_tool.urdf", "tool_tip")
+
+
+@given(
+    signs=st.lists(st.sampled_from([1, -1]), min_size=6, max_size=6),
+    turns=st.lists(st.floats(-3, 3), min_size=3, max_size=3),
+    seed=st.integers(0, 2**32 - 1),
+)
+@settings(deadline=None, max_examples=25)
+def test_frames_of_another_urdf_do_not_matter(
+    tmp_path_factory: pytest.TempPathFactory, signs: list[int], turns: list[float], seed: int
+) -> None:
+    random = np.random.default_rng(seed)
+    lengths = random.uniform(0.05, 0.5, 6)
+    folder = tmp_path_factory.mktemp("arm")
+    plain = arm_with_frames(folder, lengths, [1] * 6, [0.0] * 3)
+    arm = arm_with_frames(folder, lengths, signs, turns)
+    q = random.uniform(-np.pi, np.pi, (40, 6))
+    poses = forward(arm, q)
+    found = solve_inverse(ur_geometry(arm), poses.tip, poses.tool_axis, LOCKED)
+    q[:, 5] = LOCKED
+    near = np.where(np.isnan(found), np.inf, wrapped(found - q[:, None])).max(axis=2).min(axis=1)
+    assert near.max() < 1e-4
+    # The same links in the same places under the same branch names, whatever the joints count.
+    expected = solve_inverse(ur_geometry(plain), poses.tip, poses.tool_axis, LOCKED)
+    solved = ~np.isnan(found[:, :, 0])
+    assert (solved == ~np.isnan(expected[:, :, 0])).all()
+    ours, theirs = forward(arm, found[solved]), forward(plain, expected[solved])
+    assert np.allclose(ours.origin[:, 1:], theirs.origin[:, 1:], atol=1e-4)

@@ -1,0 +1,249 @@
+"""The URDF files, their reading, and the faults that other readers swallow."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from shipped import ROBOTS
+from world import NEIGHBORS, PAIRS, World
+
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.ur import UrGeometry, ur_geometry
+from cellcolor.frontend.arm.urdf import load_urdf
+
+ARM, TOOL = "ur5.urdf", "polishing_tool.urdf"
+
+
+def load(folder: Path) -> Robot:
+    return load_robot(folder / ARM, "wrist_3_link", folder / TOOL, "tool_tip")
+
+
+@pytest.fixture
+def written(tmp_path: Path) -> Callable[..., Path]:
+    """Both files copied, one with a pattern replaced."""
+
+    def write(name: str, pattern: str, replacement: str, count: int = 1) -> Path:
+        for file in (ARM, TOOL):
+            text = (ROBOTS / file).read_text()
+            if file == name:
+                text, found = re.subn(pattern, replacement, text, count=count, flags=re.DOTALL)
+                assert found
+            (tmp_path / file).write_text(text)
+        return tmp_path
+
+    return write
+
+
+def test_constants_are_the_published_ones(geometry: UrGeometry) -> None:
+    # Universal Robots, "DH parameters for calculations of kinematics and dynamics", UR5.
+    found = (geometry.a2, geometry.a3, geometry.d4, geometry.d5, geometry.shoulder[2])
+    assert np.allclose(found, (-0.425, -0.39225, 0.10915, 0.09465, 0.089159), atol=1e-12)
+    assert geometry.reach == pytest.approx(0.0823 + 0.10, abs=1e-12)
+
+
+def test_masses_and_limits_are_the_published_ones(robot: Robot) -> None:
+    tool = 0.5
+    published = [3.7, 8.393, 2.33, 1.219, 1.219, 0.1879 + tool]
+    assert np.allclose(robot.mass, published, atol=1e-12)
+    assert robot.effort.tolist() == [150, 150, 150, 28, 28, 28]
+    assert np.allclose(robot.upper, 2 * np.pi) and np.allclose(robot.lower, -2 * np.pi)
+
+
+def test_zero_pose_is_the_denavit_hartenberg_one_turned_by_pi(robot: Robot) -> None:
+    # Product of the six textbook transforms at zero, base turned by pi about z, tool along z6.
+    def transform(d: float, a: float, alpha: float) -> np.ndarray:
+        c, s = np.cos(alpha), np.sin(alpha)
+        return np.array([[1, 0, 0, a], [0, c, -s, 0], [0, s, c, d], [0, 0, 0, 1.0]])
+
+    table = [
+        (0.089159, 0, np.pi / 2),
+        (0, -0.425, 0),
+        (0, -0.39225, 0),
+        (0.10915, 0, np.pi / 2),
+        (0.09465, 0, -np.pi / 2),
+        (0.0823 + 0.1, 0, 0),
+    ]
+    expected = np.diag([-1.0, -1.0, 1.0, 1.0])
+    for row in table:
+        expected = expected @ transform(*row)
+    chain = np.eye(4)
+    for placement in robot.placement:
+        chain = chain @ placement
+    assert np.allclose(chain @ robot.tip, expected, atol=1e-12)
+
+
+def test_every_shape_collides(robot: Robot) -> None:
+    shapes = sum(load_urdf(ROBOTS / file).shapes[link] for file, link in _solid_links())
+    assert robot.geometry.ngeoms == shapes == 7 * 3 + 1 + 1
+    kinds = [(body.link, body.flat) for body in robot.bodies]
+    assert len(kinds) == 9
+    assert [link for link, flat in kinds if flat] == ["wrist_3_link", "tool_body"]
+
+
+def _solid_links() -> list[tuple[str, str]]:
+    return [(file, link) for file in (ARM, TOOL) for link in load_urdf(ROBOTS / file).shapes]
+
+
+def test_a_shape_that_pinocchio_drops_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+    complete = pin.buildGeomFromUrdfString
+
+    def dropping(*arguments: object) -> pin.GeometryModel:
+        geometry = complete(*arguments)
+        geometry.removeGeometryObject("forearm_link_1")
+        return geometry
+
+    monkeypatch.setattr(pin, "buildGeomFromUrdfString", dropping)
+    with pytest.raises(InputError, match="read 2 of 3 shapes") as caught:
+        load(ROBOTS)
+    assert caught.value.field == "link[forearm_link].collision"
+
+
+def test_bodies_touch_one_another_in_a_row(robot: Robot) -> None:
+    # Therefore no part of the arm can be inside a closed mesh that the arm does not cut.
+    world = World(robot, np.eye(3), np.array([[0, 1, 2]]))
+    for q in np.random.default_rng(1).uniform(-np.pi, np.pi, (20, 6)):
+        world.place(q)
+        for pair in NEIGHBORS:
+            assert world.to_itself({frozenset(pair)}) <= 1e-9
+
+
+def test_neighbors_are_not_tested_against_each_other(robot: Robot) -> None:
+    names = {frozenset((robot.bodies[i].link, robot.bodies[j].link)) for i, j in robot.tested_pairs}
+    assert names == PAIRS
+    # The upper arm has two bodies, and five links that are not next to it.
+    assert len(robot.tested_pairs) == 8 * 7 / 2 - 7 + 5
+
+
+@pytest.mark.parametrize(
+    ("file", "pattern", "replacement", "field", "message"),
+    [
+        (ARM, r"<limit [^>]*/>", "", "joint[shoulder_pan_joint].limit", "'lower' is missing"),
+        (ARM, r'lower="[^"]*" ', "", "joint[shoulder_pan_joint].limit", "'lower' is missing"),
+        (ARM, r'effort="150"', 'effort="0"', "joint[shoulder_pan_joint].limit.effort", "positive"),
+        (ARM, r'upper="[^"]*"', 'upper="-7"', "joint[shoulder_pan_joint].limit", "not below"),
+        (ARM, r'upper="[^"]*"', 'upper="nan"', "joint[shoulder_pan_joint].limit.upper", "finite"),
+        (ARM, r"<inertial>.*?</inertial>", "", "link[base_link].inertial", "weigh nothing"),
+        (ARM, r'<mass value="4.0"/>', "", "link[base_link].inertial.mass", "missing"),
+        (ARM, r'<mass value="4.0"/>', '<mass value="-1"/>', "link[base_link].inertial.mass", "pos"),
+        (ARM, r"<cylinder ", "<capsule ", "link[base_link].collision[0]", "<capsule>"),
+        (ARM, r'radius="0.065"', 'radius="0"', "link[base_link].collision[0].radius", "positive"),
+        (ARM, r'radius="0.065"', 'radius="x"', "link[base_link].collision[0].radius", "a number"),
+        (ARM, r'type="revolute"', 'type="continuous"', "joint[shoulder_pan_joint].type", "contin"),
+        (ARM, r'type="revolute"', 'type="prismatic"', "joint[shoulder_pan_joint].type", "prism"),
+        (ARM, r'<axis xyz="0 0 1"', '<axis xyz="0 0 2"', "joint[shoulder_pan_joint].axis", "len"),
+        (ARM, r'<parent link="base_link"', '<parent link="bass"',
+         "joint[shoulder_pan_joint].parent", "'bass'"),
+        (ARM, r'xyz="0 0 0.089159"', 'xyz="0 0"', "joint[shoulder_pan_joint].origin.xyz", "three"),
+        (ARM, r"</robot>", "<link name='base_link'/></robot>", "link[base_link]", "twice"),
+        (ARM, r"</robot>", "<link name='alone'/></robot>", "robot", "one root link"),
+        (ARM, r"</robot>", "", "", "not XML"),
+        (ARM, r'"wrist_3_link"', '"hand"', "link[wrist_3_link]", "flange"),
+        (ARM, r'(name="wrist_3_joint" type=)"revolute"', r'\1"fixed"', "robot", "six|6 revolute"),
+        (TOOL, r'"tool_tip"', '"point"', "link[tool_tip]", "tip link"),
+        (TOOL, r'"tool_body"', '"forearm_link"', "link[forearm_link]", "that name too"),
+    ],
+)  # fmt: skip
+def test_faults_are_named(
+    written: Callable[..., Path],
+    file: str,
+    pattern: str,
+    replacement: str,
+    field: str,
+    message: str,
+) -> None:
+    everywhere = replacement in ('"hand"', '"point"', '"forearm_link"')
+    folder = written(file, pattern, replacement, count=0 if everywhere else 1)
+    with pytest.raises(InputError, match=message) as caught:
+        load(folder)
+    assert caught.value.file == str(folder / file)
+    assert (caught.value.field or "") == field
+    assert "\n" not in str(caught.value)
+
+
+def test_missing_file(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="No such file") as caught:
+        load_urdf(tmp_path / "none.urdf")
+    assert caught.value.file == str(tmp_path / "none.urdf")
+
+
+@pytest.mark.parametrize(
+    ("joint", "pattern", "replacement", "message"),
+    [
+        ("elbow_joint", '"-0.425 0 0" rpy="0 0 0"', '"-0.425 0 0" rpy="0.1 0 0"', "parallel"),
+        ("wrist_2_joint", 'xyz="0 -0.09465 0"', 'xyz="0.01 -0.09465 0"', "meet"),
+        ("wrist_2_joint", '0 -0.09465 0" rpy="1.5', '0 -0.09465 0" rpy="1.4', "right angles"),
+        ("shoulder_lift_joint", 'xyz="0 0 0" rpy="1.5', 'xyz="0.02 0 0" rpy="1.5', "meet"),
+        ("elbow_joint", 'xyz="-0.425 0 0"', 'xyz="0 0 0.1"', "a2 is zero"),
+    ],
+)  # fmt: skip
+def test_other_arms_are_refused(
+    written: Callable[..., Path], joint: str, pattern: str, replacement: str, message: str
+) -> None:
+    folder = written(ARM, re.escape(pattern), replacement)
+    with pytest.raises(InputError, match=message) as caught:
+        ur_geometry(load(folder))
+    assert caught.value.field == f"joint[{joint}]"
+    assert "not a UR-type arm" in caught.value.message
+
+
+def test_tool_off_the_axis_is_refused(written: Callable[..., Path]) -> None:
+    folder = written(TOOL, r'<origin xyz="0 0 0.1"/>', '<origin xyz="0.01 0 0.1"/>')
+    with pytest.raises(InputError, match="must lie on this joint's axis"):
+        ur_geometry(load(folder))
+
+
+def shapeless(text: str, link: str) -> str:
+    """A URDF's text without the collision shapes of links whose names match."""
+
+    def bare(found: re.Match[str]) -> str:
+        return re.sub(r"<collision>.*?</collision>", "", found.group(), flags=re.DOTALL)
+
+    return re.sub(rf'<link name="{link}">.*?</link>', bare, text, flags=re.DOTALL)
+
+
+def test_links_that_cannot_collide_are_named(tmp_path: Path) -> None:
+    assert load(ROBOTS).warnings == ()  # frames such as the tip are no things
+    for file in (ARM, TOOL):
+        (tmp_path / file).write_text((ROBOTS / file).read_text())
+    text = (ROBOTS / ARM).read_text()
+    (tmp_path / ARM).write_text(shapeless(text, "(upper_arm|wrist_2)_link"))
+    (warning,) = load(tmp_path).warnings
+    assert warning.endswith("'upper_arm_link', 'wrist_2_link'")
+    for file in (ARM, TOOL):
+        (tmp_path / file).write_text(shapeless((ROBOTS / file).read_text(), r"[^\"]*"))
+    (warning,) = load(tmp_path).warnings
+    assert "no collision shapes at all" in warning
+
+
+FOLLOWER = (
+    '<joint name="finger" type="{kind}"><parent link="tool_body"/><child link="nail"/>'
+    '<origin xyz="0 0.01 0.05"/><axis xyz="0 1 0"/>'
+    '<limit lower="0" upper="1" effort="1" velocity="1"/>'
+    '<mimic joint="wrist_1_joint"/></joint><link name="nail"/></robot>'
+)
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
+def test_followers_beside_the_chain_stand_still(written: Callable[..., Path], kind: str) -> None:
+    robot = load(written(TOOL, "</robot>", FOLLOWER.format(kind=kind)))
+    (warning,) = robot.warnings
+    assert "mimic" in warning and warning.endswith("'finger'")
+    assert robot.model.nq == 6
+
+
+def test_followers_in_the_chain_are_refused(written: Callable[..., Path]) -> None:
+    # Of the elbow: an arm whose forearm follows the upper arm.
+    joint = r'(<joint name="elbow_joint" type="revolute">)'
+    folder = written(ARM, joint, r'\1<mimic joint="shoulder_lift_joint" multiplier="-1"/>')
+    with pytest.raises(InputError, match="may not follow") as caught:
+        load(folder)
+    assert (caught.value.file, caught.value.field) == (
+        str(folder / ARM),
+        "joint[elbow_joint].mimic",
+    )

@@ -1,0 +1,176 @@
+"""Collision verdicts against coal, distances against brute force."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import coal
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+from world import PAIRS, World
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.contact.collision import (
+    body_ends,
+    hits_ground,
+    hits_itself,
+    segment_distance,
+)
+from cellcolor.frontend.contact.solids import mesh_solid, primitive_solid
+from cellcolor.frontend.scene import (
+    BoxObstacle,
+    CylinderObstacle,
+    Obstacle,
+    Placement,
+    SphereObstacle,
+)
+from cellcolor.frontend.target.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.target.surface import Surface
+
+CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
+EXEMPT = ("base_link", "shoulder_link")
+corner = st.lists(st.sampled_from([-2, -1, 0, 1, 2]), min_size=3, max_size=3)
+
+
+@pytest.fixture(scope="module")
+def wok() -> Surface:
+    place = Placement(position_m=(0.465, -0.15, -0.04))
+    return spherical_cap(0.2, 1.13, *disc_mesh(500, 0.15, 1)).placed(place)
+
+
+@pytest.fixture(scope="module")
+def joints() -> Array:
+    return np.random.default_rng(21).uniform(-np.pi, np.pi, (1500, 6))
+
+
+def placed(robot: Robot, joints: Array) -> Array:
+    return body_ends(robot, forward(robot, joints))
+
+
+def agree(verdicts: Array, distances: Array) -> None:
+    assert 0.05 < np.mean(verdicts) < 0.95  # both answers are asked for
+    clear = np.abs(distances) > CONTACT
+    assert (verdicts[clear] == (distances[clear] < 0)).all()
+    assert np.mean(~clear) < 0.01
+
+
+def test_self_collision_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
+    world = World(robot, wok.vertices, wok.faces)
+    distances = []
+    for q in joints:
+        world.place(q)
+        distances.append(world.to_itself(PAIRS))
+    agree(hits_itself(robot, placed(robot, joints)), np.array(distances))
+
+
+def test_ground_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
+    world = World(robot, wok.vertices, wok.faces)
+    distances = []
+    for q in joints:
+        world.place(q)
+        distances.append(world.to_ground(-0.02, EXEMPT))
+    agree(hits_ground(robot, placed(robot, joints), -0.02, EXEMPT), np.array(distances))
+
+
+def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
+    world = World(robot, wok.vertices, wok.faces)
+    found = mesh_solid(wok.vertices, wok.faces).hits(robot, placed(robot, joints))
+    assert 0.05 < found.mean() < 0.95
+    near = 0
+    for q, verdict in zip(joints, found, strict=True):
+        world.place(q)
+        distance = world.to_object()
+        # A shell has no inside: depths mean nothing, so "touching" is a distance of zero.
+        if verdict != (distance <= 0):
+            assert abs(distance) <= CONTACT
+            near += 1
+    assert near < 0.01 * len(joints)
+
+
+ASIDE = {"position_m": (0.3, -0.1, 0.35), "rpy_rad": (0.4, -0.7, 1.1)}
+OBSTACLES = [
+    (BoxObstacle(kind="box", size_m=(0.1, 0.4, 0.2), **ASIDE), coal.Box(0.1, 0.4, 0.2)),
+    (CylinderObstacle(kind="cylinder", radius_m=0.1, height_m=0.5, **ASIDE),
+     coal.Cylinder(0.1, 0.5)),
+    (SphereObstacle(kind="sphere", radius_m=0.2, **ASIDE), coal.Sphere(0.2)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("obstacle", "shape"), OBSTACLES, ids=["box", "cylinder", "sphere"])
+def test_obstacles_agree_with_coal(
+    robot: Robot, wok: Surface, joints: Array, obstacle: Obstacle, shape: coal.ShapeBase
+) -> None:
+    world = World(robot, wok.vertices, wok.faces)
+    turn = Rotation.from_euler("xyz", obstacle.rpy_rad).as_matrix()
+    pose = coal.Transform3s(turn, np.array(obstacle.position_m))
+    distances = []
+    for q in joints[:600]:
+        world.place(q)
+        distances.append(world.to_solid(shape, pose))
+    found = primitive_solid(obstacle).hits(robot, placed(robot, joints[:600]))
+    agree(found, np.array(distances))
+
+
+def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Path]) -> None:
+    file = scene(target_vertices=500)
+    free = build_surface(file)
+    file.write_text(
+        file.read_text()
+        + '\n[[obstacle]]\nkind = "cylinder"\nradius_m = 0.03\nheight_m = 0.3\n'
+        + "position_m = [0.205, 0.005, 0.15]\n"
+    )
+    blocked = build_surface(file)
+    changed = free.reasons != blocked.reasons
+    assert (blocked.reasons[changed] == Reason.OBSTACLE_COLLISION).all()
+    assert changed.sum() == blocked.report.candidates["obstacle collision"] > 100
+
+
+@given(st.tuples(corner, corner, corner, corner))
+def test_segment_distance_by_brute_force(ends: tuple[list[int], ...]) -> None:
+    p0, p1, q0, q1 = (np.array([end], dtype=float) for end in ends)
+    grid = np.linspace(0, 1, 121)
+    on_p = p0 + grid[:, None] * (p1 - p0)
+    on_q = q0 + grid[:, None] * (q1 - q0)
+    nearest = np.linalg.norm(on_p[:, None] - on_q[None], axis=2).min()
+    found = segment_distance(p0, p1, q0, q1)[0]
+    # The grid is never nearer than the truth, and at most half a step per segment farther.
+    slack = (np.linalg.norm(p1 - p0) + np.linalg.norm(q1 - q0)) / 240
+    assert nearest - slack - 1e-9 <= found <= nearest + 1e-9
+
+
+def tool_down(turn: float) -> Array:
+    q = np.array([[turn, -1.2, 1.4, 0.0, -np.pi / 2, 0.0]])
+    q[0, 3] = -np.pi / 2 - q[0, 1] - q[0, 2]
+    return q
+
+
+def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
+    poses = forward(robot, tool_down(0.0))
+    assert poses.tool_axis[0, 2] == pytest.approx(-1)
+    tip, arm = poses.tip[0, 2], (*EXEMPT, "upper_arm_link")
+    assert not hits_ground(robot, body_ends(robot, poses), tip + 0.0099, arm)[0]
+    assert hits_ground(robot, body_ends(robot, poses), tip + 0.0101, arm)[0]
+
+
+def test_only_the_tip_touches(robot: Robot) -> None:
+    # A plate 9 mm above the tip is free, one at 11 mm cuts the tool's body.
+    poses = forward(robot, tool_down(-0.3))
+    plate = spherical_cap(5.0, 0.01, *disc_mesh(300, 0.0, 0))
+    for height, expected in ((0.009, False), (0.011, True)):
+        vertices = plate.vertices - [0, 0, 5.0] + poses.tip[0] + [0, 0, height]
+        assert mesh_solid(vertices, plate.faces).hits(robot, body_ends(robot, poses))[0] == expected
+
+
+def test_object_in_the_base_is_refused(scene: Callable[..., Path]) -> None:
+    file = scene(position_m="[0.0, 0.0, -0.12]", target_vertices=200)
+    with pytest.raises(InputError, match="'base_link'") as caught:
+        build_surface(file)
+    assert (caught.value.file, caught.value.field) == (str(file), "placement")

@@ -1,0 +1,205 @@
+"""The region at the tool's tip against distances computed independently, on scenes and alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import coal
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from shipped import ROBOTS
+
+from cellcolor.arrays import Array
+from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.contact.solids import primitive_solid
+from cellcolor.frontend.contact.tip import Tip
+from cellcolor.frontend.scene import BoxObstacle, SphereObstacle
+from cellcolor.frontend.target.shapes import disc_mesh
+from cellcolor.frontend.target.surface import Surface, rotation_from_rpy
+
+HEIGHT = 0.1  # m, of the plane
+SHAFT = 0.01  # m, from the tip to the body of the shipped tool
+RADIUS = 0.005  # m, of the shipped setup
+SCENE = f"""
+name = "plane"
+setup = "{(ROBOTS / "ur5_polishing.toml").as_posix()}"
+[object]
+kind = "rectangle"
+size_x_m = 0.3
+size_y_m = 0.3
+target_vertices = 400
+[placement]
+position_m = [0.45, 0.1, {HEIGHT}]
+"""
+BOX = """
+[[obstacle]]
+kind = "box"
+size_m = [0.15, 0.15, {thickness}]
+position_m = [0.45, 0.1, {height}]
+"""
+
+
+def built(folder: Path, more: str) -> BuildResult:
+    file = folder / "scene.toml"
+    file.write_text(SCENE + more)
+    return build_surface(file)
+
+
+def from_shaft_to_box(vertices: Array, bottom: float, top: float) -> Array:
+    """Distances of the tool's axis, upright over each vertex, from the box (by hand)."""
+    across = np.linalg.norm(np.maximum(np.abs(vertices[:, :2] - [0.45, 0.1]) - 0.075, 0.0), axis=1)
+    up = np.maximum(np.maximum(bottom - HEIGHT - SHAFT, HEIGHT - top), 0.0)
+    return np.asarray(np.hypot(across, up))
+
+
+@pytest.mark.parametrize(
+    ("thickness", "height"),
+    [
+        (0.008, 0.104),  # a plate; the plane is its lower side
+        (0.008, 0.100),  # the plane is in the middle of it
+        (0.002, 0.105),  # a sheet 4 mm above the plane, below the tool's body
+        (0.002, 0.108),  # the same 7 mm above, farther from the tip than the contact radius
+        (0.050, 0.073),  # a table 2 mm below the plane
+        (0.050, 0.069),  # the same 6 mm below: there is room
+    ],
+)
+def test_where_an_obstacle_is_no_tip_can_be(
+    tmp_path: Path, thickness: float, height: float
+) -> None:
+    result = built(tmp_path, BOX.format(thickness=thickness, height=height))
+    vertices = np.array(result.surface.vertices)
+    distance = from_shaft_to_box(vertices, height - thickness / 2, height + thickness / 2)
+    blocked = (result.reasons == Reason.TIP_BLOCKED).any(axis=1)
+    assert (blocked == (distance <= RADIUS)).all()
+    # On such a vertex nothing is valid, and nothing has got farther than this test.
+    early = [Reason.NO_SOLUTION, Reason.JOINT_LIMITS, Reason.TIP_BLOCKED]
+    assert np.isin(result.reasons[blocked], early).all()
+    assert not any(result.surface.vertex_colors[k] for k in np.flatnonzero(blocked))
+    assert result.report.unreachable["tip blocked"] == blocked.sum()
+    assert result.report.reachable > 50
+    if height == 0.069:
+        assert not blocked.any()
+    else:
+        assert blocked.sum() > 80
+
+
+@pytest.mark.parametrize(("ground", "all_blocked"), [(0.13, True), (0.096, True), (0.094, False)])
+def test_nothing_below_the_ground_or_nearer_to_it_than_the_radius(
+    tmp_path: Path, ground: float, all_blocked: bool
+) -> None:
+    result = built(tmp_path, f"[ground]\nheight_m = {ground}\n")
+    blocked = (result.reasons == Reason.TIP_BLOCKED).any(axis=1)
+    assert blocked.all() == blocked.any() == all_blocked
+    assert result.report.unreachable["tip blocked"] == blocked.sum()
+    if all_blocked:
+        assert result.report.reachable == 0
+
+
+def test_a_mesh_blocks_like_a_box(tmp_path: Path) -> None:
+    """The plate as a file; a shell, which the tool's axis crosses."""
+    half = np.array([0.075, 0.075, 0.004])
+    corners = [half * (x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]
+    sides = ["2 4 1", "5 2 1", "1 4 3", "3 5 1", "2 8 4", "6 2 5"]
+    sides += ["6 8 2", "4 8 3", "7 5 3", "3 8 7", "7 6 5", "8 6 7"]
+    lines = ["v {} {} {}".format(*p) for p in corners] + [f"f {side}" for side in sides]
+    (tmp_path / "plate.obj").write_text("\n".join(lines) + "\n")
+    place = (
+        'kind = "mesh"\nfile = "plate.obj"\nmeters_per_unit = 1.0\nposition_m = [0.45, 0.1, 0.1]'
+    )
+    as_mesh = built(tmp_path, f"[[obstacle]]\n{place}\n")
+    as_box = built(tmp_path, BOX.format(thickness=0.008, height=0.1))
+    assert (as_mesh.reasons == as_box.reasons).all()
+
+
+coordinates = st.floats(-0.05, 0.05)
+angles = st.floats(-3.1, 3.1)
+
+
+@given(
+    st.tuples(coordinates, coordinates, coordinates),
+    st.tuples(angles, angles, angles),
+    st.tuples(*[st.floats(0.002, 0.06)] * 3),
+    st.floats(0.001, 0.02),
+    st.integers(0, 2**32 - 1),
+)
+def test_against_distances_by_other_code(
+    robot: Robot,
+    position: tuple[float, float, float],
+    rpy: tuple[float, float, float],
+    size: tuple[float, float, float],
+    radius: float,
+    seed: int,
+) -> None:
+    obstacle = BoxObstacle(kind="box", size_m=size, position_m=position, rpy_rad=rpy)
+    tip = Tip(robot, radius, [primitive_solid(obstacle)], None)
+    random = np.random.default_rng(seed)
+    points, directions = random.uniform(-0.05, 0.05, (20, 3)), random.normal(size=(20, 3))
+    directions /= np.linalg.norm(directions, axis=1, keepdims=True)
+    box, at = coal.Box(*size), coal.Transform3s(rotation_from_rpy(*rpy), np.array(position))
+    region = coal.Capsule(radius, SHAFT)
+    for point, along, blocked in zip(
+        points, directions, tip.blocked(points, directions), strict=True
+    ):
+        x = np.cross(along, np.eye(3)[np.argmin(np.abs(along))])
+        x /= np.linalg.norm(x)
+        pose = coal.Transform3s(
+            np.column_stack([x, np.cross(along, x), along]), point - SHAFT / 2 * along
+        )
+        distance = coal.distance(
+            box, at, region, pose, coal.DistanceRequest(), coal.DistanceResult()
+        )
+        assert blocked == (distance <= 0) or abs(distance) < 1e-5
+
+
+def test_the_region_reaches_to_the_body_of_the_tool(robot: Robot) -> None:
+    """Without a body on the last link it is a ball."""
+    above = SphereObstacle(kind="sphere", radius_m=0.001, position_m=(0.0, 0.0, 0.009))
+    point, down = np.zeros((1, 3)), np.array([[0.0, 0.0, -1.0]])
+    bare = replace(robot, bodies=tuple(body for body in robot.bodies if body.joint < 6))
+    for arm, hit in ((robot, True), (bare, False)):
+        assert Tip(arm, 0.002, [primitive_solid(above)], None).blocked(point, down) == hit
+
+
+def test_a_post_between_two_vertices_is_met(robot: Robot) -> None:
+    """Edges are free where points 0.1 mm apart are."""
+    flat, faces = disc_mesh(37, 0.0, 0)
+    vertices = 0.1 * np.column_stack([flat, np.zeros(len(flat))])
+    surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(flat), 1)))
+    edges = surface.edges()
+    posts = [
+        SphereObstacle(kind="sphere", radius_m=0.004, position_m=place)
+        for place in ((0.021, 0.017, 0.0), (-0.05, 0.015, 0.006), (0.0, -0.0405, -0.004))
+    ]
+    tip = Tip(robot, RADIUS, [primitive_solid(post) for post in posts], None)
+    way = np.linspace(0, 1, 400)[:, None]
+
+    def distance(edge: Array) -> float:
+        """From the tool's upright axis on the edge to the nearest center."""
+        points = (1 - way) * vertices[edge[0]] + way * vertices[edge[1]]
+        found = []
+        for post in posts:
+            off = points - np.array(post.position_m)
+            off[:, 2] = np.maximum(np.maximum(off[:, 2], -off[:, 2] - SHAFT), 0.0)
+            found.append(np.linalg.norm(off, axis=1).min() - post.radius_m)
+        return min(found)
+
+    needed = np.array([distance(edge) for edge in edges])
+    free = tip.free_along(surface, edges)
+    assert free[needed > RADIUS].all()
+    assert not free[needed < RADIUS - 0.00065].any()
+    ends_free = ~tip.blocked(vertices, -surface.normals)[edges].any(axis=1)
+    assert (ends_free & ~free).any()
+
+
+def test_left_out_with_the_other_contacts(scene: Callable[..., Path]) -> None:
+    file = scene(target_vertices=200, height_m=0.2)
+    on = build_surface(file)
+    assert on.report.candidates["tip blocked"] > 0 and on.report.reachable == 0
+    setup = file.parent / "ur5_polishing.toml"
+    setup.write_text(setup.read_text() + "\n[constraints]\ncollision = false\n")
+    assert build_surface(file).report.candidates["tip blocked"] == 0

@@ -1,0 +1,215 @@
+"""Validity between vertices: on a plane by hand, the spacing of points, and on scenes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from shipped import SCENES, WOK
+
+from cellcolor.arrays import Array
+from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.reach.between import (
+    at_domain_border,
+    remains_valid,
+    strides,
+)
+from cellcolor.frontend.stage import prepare
+from cellcolor.frontend.target.shapes import disc_mesh
+from cellcolor.frontend.target.surface import Surface, along_edges
+
+
+def plane() -> Surface:
+    flat, faces = disc_mesh(37, 0.0, 0)
+    vertices = np.column_stack([flat, np.zeros(len(flat))])
+    return Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (len(flat), 1)))
+
+
+def checked(
+    surface: Surface, test: Callable[[Array, Array, Array], Array], pieces: int, reach: float = 0.0
+) -> Array:
+    """Which edges remain valid, with one body whose end moves ``reach`` times as far as the tool.
+
+    It may move by 10 mm.
+    """
+    edges = surface.edges()
+    branches = np.zeros(len(edges), dtype=np.intp)
+    ends = reach * surface.vertices[None, :, None]
+
+    def answer(points: Array, directions: Array, branch: Array) -> tuple[Array, Array]:
+        return test(points, directions, branch), reach * points[None]
+
+    cut = np.full(len(edges), pieces)
+    return remains_valid(surface, edges, branches, cut, ends, np.array([0.01]), answer)
+
+
+@pytest.mark.parametrize(("pieces", "reach"), [(40, 0.0), (1, 1.0)])
+def test_a_gap_on_the_edge_is_found_and_nothing_else(pieces: int, reach: float) -> None:
+    """Whether the tool or a body asks for points that are near enough."""
+    surface = plane()
+
+    def test(points: Array, directions: Array, branch: Array) -> Array:
+        assert (directions == [0, 0, -1]).all() and len(branch) == len(points)
+        return np.abs(points[:, 0] - 0.21) > 0.01  # a strip without a vertex
+
+    found = checked(surface, test, pieces, reach)
+    across = (surface.vertices[surface.edges()][:, :, 0] < 0.21).sum(axis=1) == 1
+    assert (found == ~across).all() and across.any()
+    assert checked(surface, test, 1).all()  # nobody asks for a point
+
+
+def test_many_points_are_asked_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
+    surface = plane()
+    asked: list[int] = []
+
+    def test(points: Array, _: Array, __: Array) -> Array:
+        asked.append(len(points))
+        return points[:, 1] > 0
+
+    whole = checked(surface, test, 40)
+    monkeypatch.setattr("cellcolor.frontend.reach.between._AT_ONCE", 100)
+    total = asked.pop()
+    batched = checked(surface, test, 40)
+    assert (batched == whole).all()
+    # A batch ends with a whole edge of 39 points.
+    assert sum(asked) == total and max(asked) <= 140
+
+
+def test_a_jump_is_no_link() -> None:
+    """A body that is in two places on both sides of a point is not followed forever."""
+    surface = plane()
+    edges = surface.edges()
+    branches = np.zeros(len(edges), dtype=np.intp)
+
+    def test(points: Array, _: Array, __: Array) -> tuple[Array, Array]:
+        return np.ones(len(points), dtype=bool), place(points)
+
+    def place(points: Array) -> Array:
+        return np.where(points[None, :, :1] > 0.21, 0.5, 0.0) * np.ones(3)
+
+    ends = place(surface.vertices)[:, :, None]
+    cut = np.ones(len(edges), dtype=int)
+    found = remains_valid(surface, edges, branches, cut, ends, np.array([0.01]), test)
+    across = (surface.vertices[edges][:, :, 0] > 0.21).sum(axis=1) == 1
+    assert (found == ~across).all() and across.any()
+
+
+def test_what_two_balls_leave_out() -> None:
+    """Of what balls on the way meet, the first and the last one miss at most 0.65 mm of depth."""
+    radii = np.array([0.0004, 0.02, 0.0375, 0.043, 0.055])
+    for radius, step in zip(radii, longest_steps(radii), strict=True):
+        across = np.linspace(0, radius, 200_001)
+        missed = np.hypot(across, step / 2) > radius
+        depth = radius - across[missed].min()
+        assert depth == pytest.approx(min(0.00065, radius), abs=1e-6)
+    assert longest_steps(radii)[1:] == pytest.approx([0.0101, 0.0139, 0.0149, 0.0169], abs=1e-4)
+
+
+def test_strides_are_of_the_body_that_moves_too_far() -> None:
+    random = np.random.default_rng(4)
+    first, second = random.normal(size=(2, 6, 50, 3))
+    longest = random.uniform(0.5, 2, 6)
+    expected = (np.linalg.norm(second - first, axis=2) / longest[:, None]).max(axis=0)
+    assert strides(first, second, longest) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("name", ["hemisphere_tilted", "square"])
+def test_no_body_moves_far_between_tested_points(name: str) -> None:
+    """On links of a scene, one at a time; the bodies put in place by Pinocchio."""
+    stage = prepare(SCENES / f"{name}.toml")
+    surface, robot = stage.surface, stage.robot
+    edges, random = surface.edges(), np.random.default_rng(5)
+    solutions = stage.inverse(surface.vertices, -surface.normals)
+    found = stage.judge(solutions.reshape(-1, 6))
+    valid = (found.reasons == Reason.VALID).reshape(-1, 8)
+    ends = found.ends.reshape(-1, *valid.shape, 3)
+    longest = longest_steps(stage.judge.end_radii)
+    data = robot.model.createData()
+    asked: list[Array] = []
+
+    def test(points: Array, directions: Array, branch: Array) -> tuple[Array, Array]:
+        asked.append(np.column_stack([points, directions]))
+        verdicts = stage.judge(stage.follow(points, directions, branch))
+        return verdicts.reasons == Reason.VALID, verdicts.ends
+
+    def axis_points(q: Array, share: Array) -> Array:
+        pin.forwardKinematics(robot.model, data, q)
+        return np.array(
+            [
+                data.oMi[body.joint].act(body.start + t * (body.end - body.start))
+                for body, t in zip(robot.bodies, share, strict=True)
+            ]
+        )
+
+    allowed = longest_steps(np.array([body.radius for body in robot.bodies]))
+    pairs = random.permutation(np.argwhere(valid[edges].all(axis=1)))[:150]
+    tested, largest = 0, 0.0
+    for row, branch in pairs:
+        edge, of = edges[[row]], np.array([branch])
+        asked.clear()
+        one = np.ones(1, dtype=int)
+        if not remains_valid(surface, edge, of, one, ends, longest, test)[0]:
+            continue
+        inner = np.concatenate([np.zeros((0, 6)), *asked])
+        start, goal = (np.append(surface.vertices[v], -surface.normals[v]) for v in edge[0])
+        order = np.argsort(np.linalg.norm(inner[:, :3] - start[:3], axis=1))
+        way = np.array([start, *inner[order], goal])
+        joints = stage.inverse(way[:, :3], way[:, 3:])[:, branch]
+        for share in (np.zeros(len(robot.bodies)), random.uniform(0, 1, len(robot.bodies))):
+            path = np.array([axis_points(q, share) for q in joints])
+            moved = np.linalg.norm(np.diff(path, axis=0), axis=2)
+            assert (moved <= allowed + 1e-9).all()
+            largest = max(largest, float((moved / allowed).max()))
+        tested += len(inner)
+    assert tested > 100 and largest > 0.95
+
+
+def test_points_are_on_the_edge_in_order() -> None:
+    surface = plane()
+    edges = surface.edges()[:1]
+    points, _ = along_edges(surface, np.repeat(edges, 3, axis=0), np.array([0.0, 0.25, 1.0]))
+    start, end = surface.vertices[edges[0]]
+    assert np.allclose(points, [start, start + (end - start) / 4, end])
+
+
+def test_border_of_a_domain() -> None:
+    edges = np.array([[0, 1], [1, 2], [2, 3], [3, 4]])
+    valid = np.array([[False, True], [True, True], [True, True], [True, True], [True, True]])
+    # Vertex 1 is beside the vertex that the first branch does not reach.
+    assert at_domain_border(edges, valid)[:, 0].tolist() == [True, True, False, False]
+    assert not at_domain_border(edges, valid)[:, 1].any()
+
+
+def test_asked_for_in_the_setup(scene: Callable[..., Path]) -> None:
+    """A narrow post cuts links whose two ends it does not touch."""
+    file = scene(target_vertices=200)
+    post = '\n[[obstacle]]\nkind = "cylinder"\nradius_m = 0.004\nheight_m = 0.3\n'
+    file.write_text(file.read_text() + post + "position_m = [0.3, 0.02, 0.15]\n")
+    asked = build_surface(file)
+    setup = file.parent / "ur5_polishing.toml"
+    setup.write_text(setup.read_text().replace("validity_spacing_m = 0.001", ""))
+    trusting = build_surface(file)
+    assert (asked.reasons == trusting.reasons).all()
+
+    def torn(result: BuildResult) -> set[tuple[int, int, str]]:
+        names = result.surface.colors
+        return {(c.i, c.j, names[k]) for c in result.surface.cracks for k in c.colors}
+
+    assert len(torn(asked)) > len(torn(trusting)) or len(asked.surface.colors) > len(
+        trusting.surface.colors
+    )
+
+
+def test_a_branch_followed_alone_is_the_same() -> None:
+    stage = prepare(WOK)
+    points, directions = stage.surface.vertices, -stage.surface.normals
+    branches = np.random.default_rng(2).integers(8, size=len(points))
+    expected = stage.inverse(points, directions)[np.arange(len(points)), branches]
+    found = stage.follow(points, directions, branches)
+    np.testing.assert_array_equal(found, expected)
+    assert np.isfinite(found).all(axis=1).mean() > 0.5
+    assert stage.follow(points[:0], directions[:0], branches[:0]).shape == (0, 6)

@@ -1,0 +1,165 @@
+"""Switches, what stands beside the patch, mesh obstacles, refinement and repair of meshes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from box import BOX, OUTWARD, obj
+
+from cellcolor.errors import InputError
+from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend.target.mesh_file import load_mesh
+from cellcolor.frontend.target.remesh import refine
+from cellcolor.frontend.target.shapes import disc_mesh, spherical_cap
+
+Scene = Callable[..., Path]
+KINEMATIC = {
+    Reason.JOINT_LIMITS,
+    Reason.GROUND,
+    Reason.SELF_COLLISION,
+    Reason.OBSTACLE_COLLISION,
+    Reason.OBJECT_COLLISION,
+    Reason.TIP_BLOCKED,
+}
+CONDITIONING = {Reason.MANIPULABILITY, Reason.TASK_DETERMINANT}
+OF = {"collision": KINEMATIC, "force": {Reason.TORQUE}, "conditioning": CONDITIONING}
+
+
+def weak(text: str) -> str:
+    return text.replace('effort="28"', 'effort="1.5"')
+
+
+def switched(file: Path, **on: bool) -> set[Reason]:
+    """The reasons that occur with some constraints switched off."""
+    setup = file.parent / "ur5_polishing.toml"
+    lines = [f"{name} = {str(value).lower()}" for name, value in on.items()]
+    setup.write_text(setup.read_text() + "\n[constraints]\n" + "\n".join(lines) + "\n")
+    return {Reason(code) for code in np.unique(build_surface(file).reasons)}
+
+
+@pytest.mark.parametrize("alone", OF)
+def test_each_constraint_binds_alone(scene: Scene, alone: str) -> None:
+    """With weak joints and strict thresholds every constraint binds; the switches part them."""
+    file = scene(
+        arm=weak, setup={"min_manipulability_m3": 0.05}, target_vertices=200, height_m=0.05
+    )
+    found = switched(file, **{name: name == alone for name in OF})
+    assert found & OF[alone]
+    assert found <= OF[alone] | {Reason.VALID, Reason.NO_SOLUTION}
+
+
+def test_all_constraints_are_on_by_default(scene: Scene) -> None:
+    file = scene(
+        arm=weak, setup={"min_manipulability_m3": 0.05}, target_vertices=200, height_m=0.05
+    )
+    found = {Reason(code) for code in np.unique(build_surface(file).reasons)}
+    assert all(found & reasons for reasons in OF.values())
+
+
+def test_switched_off_collisions_admit_an_object_in_the_base(scene: Scene) -> None:
+    file = scene(position_m="[0.0, 0.0, -0.12]", target_vertices=50)
+    with pytest.raises(InputError, match="'base_link'"):
+        build_surface(file)
+    switched(file, collision=False)
+
+
+def test_patch_and_collision_object_are_two_things(scene: Scene) -> None:
+    """A plate under a small patch takes away what the ground at its height does."""
+    place = {"target_vertices": 60, "half_angle_rad": 0.3, "position_m": "[0.465, -0.15, -0.14]"}
+    ground = build_surface(scene(height_m=-0.14, **place))
+    file = scene(height_m=-2.0, **place)
+    alone = build_surface(file)
+    file.write_text(
+        file.read_text() + '\n[collision_object]\nkind = "rectangle"\nsize_x_m = 3.0\n'
+        "size_y_m = 3.0\ntarget_vertices = 400\n"
+    )
+    beside = build_surface(file)
+    changed = alone.reasons != beside.reasons
+    assert changed.sum() > 100
+    # The patch is what is covered, and no longer what is hit.
+    freed = changed & (beside.reasons == Reason.VALID)
+    assert (alone.reasons[freed] == Reason.OBJECT_COLLISION).all()
+    assert (beside.reasons[changed & ~freed] == Reason.OBJECT_COLLISION).all()
+    differ = (beside.reasons == Reason.VALID) != (ground.reasons == Reason.VALID)
+    assert (ground.reasons[differ] == Reason.OBJECT_COLLISION).all()
+    assert freed[differ].all()
+    assert len(beside.surface.vertices) == len(alone.surface.vertices)
+
+
+def test_mesh_obstacle_is_like_the_primitive(scene: Scene, tmp_path: Path) -> None:
+    file = scene(target_vertices=300)
+    text = file.read_text()
+    size, center = 0.08, [0.24, 0.0, 0.2]
+    file.write_text(
+        f'{text}\n[[obstacle]]\nkind = "box"\nsize_m = [{size}, {size}, {size}]\n'
+        f"position_m = {center}\n"
+    )
+    primitive = build_surface(file)
+    (tmp_path / "box.obj").write_text(obj((BOX - 0.5) * 1000 * size, OUTWARD))
+    file.write_text(
+        f'{text}\n[[obstacle]]\nkind = "mesh"\nfile = "box.obj"\nmeters_per_unit = 0.001\n'
+        f"position_m = {center}\n"
+    )
+    mesh = build_surface(file)
+    assert (primitive.reasons == Reason.OBSTACLE_COLLISION).sum() > 100
+    assert (primitive.reasons == mesh.reasons).all()
+
+
+@pytest.mark.parametrize("longest", [0.9, 0.31, 0.1])
+def test_refinement(longest: float) -> None:
+    vertices, faces = refine(BOX, np.array(OUTWARD), longest)
+    mesh = trimesh.Trimesh(vertices, faces, process=False)
+    assert mesh.edges_unique_length.max() <= longest
+    assert mesh.is_watertight and mesh.is_winding_consistent
+    assert mesh.volume == pytest.approx(1) and mesh.area == pytest.approx(6)
+    assert np.array_equal(vertices[:8], BOX)
+
+
+def test_one_long_edge_is_halved_for_both_faces() -> None:
+    kite = np.array([[0, 0, 0], [1, -0.3, 0], [2, 0, 0], [1, 0.3, 0]], dtype=float)
+    vertices, faces = refine(kite, np.array([[0, 1, 2], [0, 2, 3]]), 1.5)
+    assert len(vertices) == 5 and len(faces) == 4
+    assert vertices[4].tolist() == [1, 0, 0]
+    assert (np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]],
+                     vertices[faces[:, 2]] - vertices[faces[:, 0]])[:, 2] > 0).all()  # fmt: skip
+
+
+def test_maximum_edge_length_of_a_scene_is_in_meters(tmp_path: Path) -> None:
+    (tmp_path / "box.obj").write_text(obj(100 * BOX, OUTWARD))
+    surface = load_mesh(tmp_path / "box.obj", 0.001, max_edge_m=0.03)
+    edges = surface.edges()
+    assert surface.lengths(edges).max() <= 0.03 and surface.vertices.max() == pytest.approx(0.1)
+
+
+def test_repair_only_on_request(tmp_path: Path) -> None:
+    """A box with a doubled vertex, a flat face, a loose vertex and a face turned over."""
+    vertices = np.vstack([BOX, BOX[:1], [[0.5, 0, 0]], [[9, 9, 9]]])
+    faces = [OUTWARD[0][::-1], *OUTWARD[1:6], *OUTWARD[6:8], [8, 2, 6], *OUTWARD[9:], [0, 4, 4]]
+    file = tmp_path / "bad.obj"
+    file.write_text(obj(vertices, faces))
+    with pytest.raises(InputError):
+        load_mesh(file, 1.0)
+    mended = load_mesh(file, 1.0, mend=True)
+    mesh = trimesh.Trimesh(mended.vertices, mended.faces, process=False)
+    assert len(mended.vertices) == 8 and mesh.is_watertight
+    assert mesh.volume == pytest.approx(1)
+
+
+def test_repair_does_not_hide_what_it_cannot_mend(tmp_path: Path) -> None:
+    file = tmp_path / "bad.obj"
+    file.write_text(obj(BOX, [*OUTWARD, [0, 1, 6]]))
+    with pytest.raises(InputError, match="manifold"):
+        load_mesh(file, 1.0, mend=True)
+
+
+def test_refined_cap_keeps_its_shape(tmp_path: Path) -> None:
+    cap = spherical_cap(0.2, 1.0, *disc_mesh(100, 0.0, 0))
+    file = tmp_path / "cap.ply"
+    trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
+    fine = load_mesh(file, 1.0, max_edge_m=0.02)
+    assert len(fine.vertices) > 2 * len(cap.vertices)
+    assert fine.vertex_areas().sum() == pytest.approx(cap.vertex_areas().sum())

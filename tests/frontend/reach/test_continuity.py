@@ -1,0 +1,284 @@
+"""Colors and cracks: by hand, and by following the surface with Pinocchio's Jacobian."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from continuation import Follower
+from hypothesis import given
+from hypothesis import strategies as st
+from independent import shorter_way
+from shipped import ROBOTS, WOK, edited
+
+from cellcolor.arrays import Array
+from cellcolor.data.surface import Crack
+from cellcolor.errors import InputError
+from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.reach.continuity import (
+    Coloring,
+    color,
+    find_cracks,
+    link,
+    node_links,
+    stays_in_limits,
+)
+from cellcolor.frontend.reach.smooth import Measure, joint_step
+from cellcolor.frontend.reach.validity import Candidates, Reason
+from cellcolor.frontend.scene import Continuity
+from cellcolor.frontend.target.shapes import disc_mesh
+from cellcolor.frontend.target.surface import Surface
+
+NEAR = 0.01  # m^3
+POLICY = Continuity(
+    base_step_rad=0.1,
+    step_per_length_rad_per_m=1.0,
+    near_singular_determinant_m3=NEAR,
+    probe_spacing_m=0.05,
+)
+
+
+def measure(policy: Continuity = POLICY) -> Measure:
+    return Measure(policy, NEAR, lever=0.2)
+
+
+angles = st.lists(st.floats(-20, 20), min_size=6, max_size=6)
+
+
+@given(angles, angles, st.lists(st.integers(-2, 2), min_size=6, max_size=6))
+def test_joint_step_is_modulo_full_circles(
+    first: list[float], second: list[float], circles: list[int]
+) -> None:
+    a, b = np.array(first), np.array(second)
+    step = joint_step(a, b)
+    assert 0 <= step <= np.pi + 1e-9
+    assert joint_step(a, b + 2 * np.pi * np.array(circles)) == pytest.approx(step, abs=1e-9)
+    # On the unit circle the chord tells the same angle.
+    chord = np.abs(np.exp(1j * a) - np.exp(1j * b)).max()
+    assert 2 * np.sin(step / 2) == pytest.approx(chord, abs=1e-6)
+
+
+class Plane:
+    """A flat disc of seven vertices whose configurations are given as functions of the place."""
+
+    def __init__(self, *branches: Callable[[Array], Array], determinant: float = 1.0) -> None:
+        flat, faces = disc_mesh(7, 0.0, 0)
+        vertices = np.column_stack([flat, np.zeros(7)])
+        self.surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
+        self.edges = self.surface.edges()
+        self.branches, self.determinant = branches, determinant
+        every = np.arange(len(branches))
+        configurations = np.stack([self.joints(vertices, np.full(7, b)) for b in every], axis=1)
+        self.candidates = Candidates(
+            configurations,
+            np.where(np.isnan(configurations[:, :, 0]), Reason.NO_SOLUTION, Reason.VALID).astype(
+                np.uint8
+            ),
+            np.full((7, len(branches)), determinant),
+        )
+        self.asked = 0
+
+    def joints(self, points: Array, branch: Array) -> Array:
+        first = np.array([self.branches[b](p) for p, b in zip(points, branch, strict=True)])
+        return np.column_stack([first] + [np.where(np.isnan(first), np.nan, 0.0)] * 5)
+
+    def probe(self, points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
+        self.asked += len(points)
+        q = self.joints(points, branch)
+        return q, np.where(np.isnan(q[:, 0]), np.nan, self.determinant)
+
+    def colored(self, links: Array, names: tuple[str, ...]) -> Coloring:
+        return color(self.candidates.valid, self.candidates.configurations, links, names)
+
+    def linked(self, policy: Continuity = POLICY) -> Array:
+        return link(self.surface, self.edges, self.candidates, measure(policy), None, self.probe)
+
+
+def test_slow_motion_is_linked_without_probing() -> None:
+    plane = Plane(lambda p: 0.3 * p[0])
+    assert plane.linked().all() and plane.asked == 0
+
+
+def test_fast_but_smooth_motion_is_linked_after_probing() -> None:
+    plane = Plane(lambda p: 1.9 * p[0])
+    assert joint_step(*plane.candidates.configurations[[1, 0], 0]) > 1.1  # more than the bound
+    assert plane.linked().all() and plane.asked > 0
+
+
+def test_many_probes_are_taken_in_batches(monkeypatch: pytest.MonkeyPatch) -> None:
+    plane = Plane(lambda p: 1.9 * p[0] if p[1] < 0.5 else np.sign(p[0]))
+    whole = plane.linked()
+    largest = 0
+
+    def probe(points: Array, directions: Array, branch: Array) -> tuple[Array, Array]:
+        nonlocal largest
+        largest = max(largest, len(points))
+        return plane.probe(points, directions, branch)
+
+    monkeypatch.setattr("cellcolor.frontend.reach.smooth._AT_ONCE", 50)
+    batched = link(plane.surface, plane.edges, plane.candidates, measure(), None, probe)
+    assert (batched == whole).all() and 0 < largest <= 50
+
+
+def test_jump_between_the_ends_is_not_linked() -> None:
+    plane = Plane(lambda p: 0.0 if p[0] < 0.3 else 1.5)
+    across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.3).sum(axis=1) == 1
+    assert (plane.linked()[:, 0] == ~across).all() and across.any()
+
+
+def test_missing_configuration_on_the_way_is_seen_near_singularities_only() -> None:
+    def gap(p: Array) -> float:
+        return np.nan if 0.38 < p[0] < 0.46 else 0.0
+
+    assert Plane(gap).linked().all()
+    near = Plane(gap, determinant=0.001)
+    across = (near.surface.vertices[near.edges][:, :, 0] < 0.42).sum(axis=1) == 1
+    assert (near.linked()[:, 0] == ~across).all()
+
+
+def test_ill_conditioned_point_on_the_way_is_not_linked() -> None:
+    plane = Plane(lambda _: 0.0, determinant=0.001)
+
+    def probe(points: Array, _: Array, branch: Array) -> tuple[Array, Array]:
+        good = (points[:, 0] < 0.38) | (points[:, 0] > 0.46)
+        return plane.joints(points, branch), np.where(good, 0.001, np.nan)
+
+    found = link(plane.surface, plane.edges, plane.candidates, measure(), None, probe)
+    across = (plane.surface.vertices[plane.edges][:, :, 0] < 0.42).sum(axis=1) == 1
+    assert (found[:, 0] == ~across).all()
+
+
+def test_no_link_without_two_configurations() -> None:
+    plane = Plane(lambda p: np.nan if p[0] > 0.9 else 0.0)
+    assert plane.linked()[:, 0].tolist() == [1 not in edge for edge in plane.edges.tolist()]
+
+
+def spiral(p: Array) -> float:
+    """Once around the center the joint comes back a quarter of a circle off."""
+    return float(np.arctan2(p[1], p[0])) / 4 if p @ p > 0.01 else np.nan
+
+
+def test_holonomy_makes_a_crack_and_no_second_color() -> None:
+    plane = Plane(spiral)
+    linked = plane.linked()
+    coloring = plane.colored(node_links(plane.edges, linked), ("turning",))
+    assert coloring.names == ("turning",)
+    assert coloring.node_color[:, 0].tolist() == [-1, 0, 0, 0, 0, 0, 0]
+    # arctan2 jumps between the vertices at 180 and at 240 degrees.
+    assert find_cracks(plane.edges, linked, coloring) == (Crack(4, 5, (0,)),)
+
+
+def test_names_and_numbers() -> None:
+    plane = Plane(
+        # Three vertices on the left, two apart from one another on the right.
+        lambda p: np.nan if abs(p[0]) < 0.3 or p[0] > 0.9 else float(p[0] > 0),
+        lambda _: np.nan,
+        lambda p: 0.0 if abs(p[1]) < 0.1 else np.nan,
+    )
+    links = node_links(plane.edges, plane.linked())
+    coloring = plane.colored(links, ("a", "b", "c"))
+    left = np.flatnonzero(plane.surface.vertices[:, 0] < -0.3)
+    assert coloring.names == ("a 1", "a 2", "a 3", "c")
+    assert coloring.branch == (0, 0, 0, 2)
+    assert (coloring.node_color[left, 0] == 0).all()
+    assert coloring.node_color[2, 0] == 1 and coloring.node_color[6, 0] == 2
+    assert (coloring.node_color[:, 1] == -1).all()
+
+
+def test_two_configurations_of_one_color_are_reported() -> None:
+    plane = Plane(lambda p: 0.1 * p[0], lambda p: 0.1 * p[0] + 0.05)
+    links = node_links(plane.edges, plane.linked())
+    # What joint distance alone would do: the branches grow together at vertex 3.
+    merged = np.vstack([links, [[3 * 2, 3 * 2 + 1]]])
+    with pytest.raises(InputError, match=r"2 configurations: \[.*\] and \[") as caught:
+        plane.colored(merged, ("a", "b"))
+    assert caught.value.field == "vertices[0]"
+
+
+@pytest.fixture(scope="module")
+def around_wrist_singularities(tmp_path_factory: pytest.TempPathFactory) -> BuildResult:
+    """A small hemisphere beside the robot, with wrist singularities on it."""
+
+    file = tmp_path_factory.mktemp("tilted") / "scene.toml"
+    text = edited(
+        WOK.read_text(),
+        setup=f'"{ROBOTS / "ur5_polishing.toml"}"',
+        radius_m=0.115,
+        half_angle_rad=np.pi / 2,
+        position_m="[0.411, 0.156, 0.332]",
+        rpy_rad="[0.0, -1.342, -0.458]",
+        height_m=-0.3,
+        target_vertices=500,
+    )
+    file.write_text(text)
+    return build_surface(file)
+
+
+def test_what_is_linked_can_be_followed(
+    robot: Robot, around_wrist_singularities: BuildResult
+) -> None:
+    """Differential kinematics knows no branches: it must end where the color says."""
+    result = around_wrist_singularities
+    surface, q = result.surface, result.configurations
+    center = np.array([0.411, 0.156, 0.332])
+    cracked = {(crack.i, crack.j, c) for crack in surface.cracks for c in crack.colors}
+    pairs = np.sort(np.concatenate([surface.faces[:, [0, 1]], surface.faces[:, [1, 2]]]), axis=1)
+    joined = [
+        (i, j, branch)
+        for i, j in np.unique(pairs, axis=0).tolist()
+        for branch in range(8)
+        if (shared := result.node_color[i, branch]) >= 0
+        and shared == result.node_color[j, branch]
+        and (i, j, shared) not in cracked
+    ]
+    steps = [joint_step(q[i, b], q[j, b]) for i, j, b in joined]
+    # The fastest ones, and some from everywhere.
+    fastest = np.argsort(steps)[-20:].tolist()
+    others = np.random.default_rng(2).choice(len(joined), 30, replace=False).tolist()
+    follower = Follower(robot)
+    for i, j, branch in (joined[row] for row in fastest + others):
+        ends = [i, j]
+        path = follower.along(q[i, branch], surface.vertices[ends], surface.vertices[ends] - center)
+        assert path is not None
+        assert joint_step(path[-1], q[j, branch]) < 1e-6
+
+
+def test_cracks_are_on_shared_colors_and_colors_are_injective(
+    around_wrist_singularities: BuildResult,
+) -> None:
+    surface = around_wrist_singularities.surface
+    assert surface.cracks
+    for crack in surface.cracks:
+        shared = set(surface.vertex_colors[crack.i]) & set(surface.vertex_colors[crack.j])
+        assert set(crack.colors) <= shared
+    per_vertex = np.sort(around_wrist_singularities.node_color, axis=1)
+    assert not ((per_vertex[:, 1:] == per_vertex[:, :-1]) & (per_vertex[:, 1:] >= 0)).any()
+
+
+def test_no_speed_is_too_high() -> None:
+    # However strict the bound, a part is found that is short enough to keep it.
+    plane = Plane(lambda p: 1.9 * p[0])
+    strict = POLICY.model_copy(update={"base_step_rad": 1e-3, "step_per_length_rad_per_m": 0.1})
+    assert plane.linked(strict).all()
+
+
+@pytest.mark.parametrize(
+    ("lower", "upper", "first", "second", "fits"),
+    [
+        (-3.0, 3.0, 2.9, -2.9, False),  # the short way leads through pi
+        (-3.0, 4.0, 2.9, -2.9, True),  # it ends at 3.38
+        (-3.0, 3.0, -0.2, 0.3, True),
+        (-7.0, -5.0, 0.1, 0.4, True),  # both turned back once
+        (-6.3, 6.3, 3.1, -3.1, True),
+        (0.0, 6.2, 0.1, 6.1, False),  # the short way leads through 0
+    ],
+)
+def test_way_between_limits(
+    lower: float, upper: float, first: float, second: float, fits: bool
+) -> None:
+    low, high, still = np.full(6, lower), np.full(6, upper), (lower + upper) / 2
+    a, b = np.full(6, still), np.full(6, still)
+    a[3], b[3] = first, second
+    assert stays_in_limits(low, high, a, *shorter_way(a, b)) == fits

@@ -1,0 +1,215 @@
+"""Sliver policies: on a strip by hand, and what they promise on a scene with many small cells."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import rescanning
+from hypothesis import given
+from hypothesis import strategies as st
+from shipped import ROBOTS, SCENES, edited
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.decomposition import decompose
+from cellcolor.errors import InputError
+from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend.reach.continuity import Coloring, color, node_links
+from cellcolor.frontend.reach.slivers import SliverReport, clean
+from cellcolor.frontend.scene import Slivers, load_setup
+from cellcolor.frontend.target.shapes import grid_mesh, rectangle
+
+
+def row(*sets: str) -> tuple[Array, Array, Coloring]:
+    """Vertices in a row, with the branches a, b, c that reach each; all of it continuous."""
+    nodes = np.array([[letter in text for letter in "abc"] for text in sets])
+    edges = np.array([[k, k + 1] for k in range(len(sets) - 1)])
+    linked = nodes[:-1] & nodes[1:]
+    node_color = np.where(nodes, np.arange(3), -1)
+    return edges, linked, Coloring(("a", "b", "c"), (0, 1, 2), node_color)
+
+
+def cleaned(
+    simplify: float, uncover: float, *sets: str, crack: tuple[int, int] | None = None
+) -> tuple[list[str], SliverReport]:
+    """Thresholds in vertices; ``crack`` is an edge and a branch."""
+    edges, linked, coloring = row(*sets)
+    if crack is not None:
+        linked[crack] = False
+    share = 1 / len(sets)
+    policy = Slivers(
+        simplify_below_share=simplify * share * 0.99, uncover_below_share=uncover * share * 0.99
+    )
+    kept, report = clean(edges, linked, coloring, np.ones(len(sets)), policy)
+    return ["".join(np.array(list("abc"))[r]) for r in kept], report
+
+
+def test_off_changes_nothing() -> None:
+    sets = ["a", "ab", "abc", "", "b"]
+    assert cleaned(0, 0, *sets) == (sets, SliverReport(0, 0.0, 0, 0, 0.0))
+
+
+def test_small_cell_takes_a_part_of_its_own_colors() -> None:
+    found, report = cleaned(2, 0, "a", "a", "ab", "b", "b")
+    assert found == ["a", "a", "a", "b", "b"] or found == ["a", "a", "b", "b", "b"]
+    assert report == SliverReport(1, 1.0, 0, 0, 0.0)
+
+
+def test_neighbor_with_most_colors_is_preferred() -> None:
+    assert cleaned(2, 0, "a", "a", "abc", "bc", "bc")[0] == ["a", "a", "bc", "bc", "bc"]
+
+
+def test_no_colors_are_added_and_none_invented() -> None:
+    # Neither neighbor has a part of "b": the cell stays as it is.
+    sets = ["ac", "ac", "b", "bc", "bc"]
+    assert cleaned(2, 0, *sets)[0] == sets
+
+
+def test_not_across_a_crack_of_the_colors_taken_over() -> None:
+    sets = ["a", "a", "ab", "abc", "abc"]
+    assert cleaned(2, 0, *sets)[0] == ["a", "a", "a", "abc", "abc"]
+    assert cleaned(2, 0, *sets, crack=(1, 0))[0] == sets
+
+
+def test_merged_cells_count_together() -> None:
+    # Simplified, the middle joins both its neighbors: three vertices are not small any more.
+    found, report = cleaned(2, 3, "b", "b", "b", "a", "ac", "a", "b", "b", "b")
+    assert found == ["b", "b", "b", "a", "a", "a", "b", "b", "b"]
+    assert (report.simplified_cells, report.given_up_cells) == (1, 0)
+
+
+def test_small_cells_are_given_up_and_counted() -> None:
+    found, report = cleaned(0, 2, "a", "a", "b", "a", "a", "c")
+    assert found == ["a", "a", "", "a", "a", ""]
+    assert report == SliverReport(0, 0.0, 2, 2, 2.0)
+
+
+@given(
+    st.integers(0, 2**32 - 1), st.sampled_from([30, 120]), st.sampled_from([0.0, 0.02, 0.2]),
+    st.sampled_from([0.02, 0.1, 0.5]), st.booleans(),
+)  # fmt: skip
+def test_like_looking_at_all_cells_again(
+    seed: int, vertices: int, cracked: float, below: float, noisy: bool
+) -> None:
+    """Many small cells, equal areas and cracks between them: the same cells in the same order."""
+    rng = np.random.default_rng(seed)
+    surface = rectangle(1.0, 1.0, *grid_mesh(1.0, 1.0, vertices, 0.2, 0))
+    x, y = surface.vertices[:, :2].T
+    waves = [np.sin(rng.uniform(2, 9) * x + rng.uniform(0, 9) * y + phase) for phase in range(4)]
+    nodes = np.stack(waves, axis=1) + noisy * rng.standard_normal((len(x), 4)) > -0.3
+    edges = surface.edges()
+    linked = nodes[edges[:, 0]] & nodes[edges[:, 1]] & (rng.random((len(edges), 4)) >= cracked)
+    names = ("a", "b", "c", "d")
+    coloring = color(nodes, np.zeros((*nodes.shape, 6)), node_links(edges, linked), names)
+    # Whole numbers: their sums are exact, so that equal areas are equal in whatever order.
+    areas = rng.integers(1, 4, len(x)).astype(float)
+    policy = Slivers(simplify_below_share=below, uncover_below_share=below / 2)
+    kept, report = clean(edges, linked, coloring, areas, policy)
+    expected, simplified, given_up = rescanning.clean(edges, linked, coloring, areas, policy)
+    assert (kept == expected).all()
+    assert (report.simplified_cells, report.simplified_area_m2) == (
+        len(simplified),
+        sum(simplified),
+    )
+    assert report.given_up_cells == given_up
+
+
+def test_out_of_time() -> None:
+    edges, linked, coloring = row("a", "a", "ab", "b", "b")
+    policy = Slivers(simplify_below_share=0.3)
+    with pytest.raises(OutOfTime):
+        clean(edges, linked, coloring, np.ones(5), policy, Deadline.after(0.0))
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, BuildResult]:
+    """The tilted hemisphere without a policy and with the shipped one."""
+    folder = tmp_path_factory.mktemp("slivers")
+    setup = (ROBOTS / "ur5_polishing.toml").read_text()
+    for name in ("ur5.urdf", "polishing_tool.urdf"):
+        setup = setup.replace(f'"{name}"', f'"{(ROBOTS / name).as_posix()}"')
+    built = {}
+    for name, text in (("raw", setup[: setup.index("[slivers]")]), ("policy", setup)):
+        (folder / "setup.toml").write_text(text)
+        scene = (SCENES / "hemisphere_tilted.toml").read_text()
+        file = folder / "scene.toml"
+        file.write_text(edited(scene, setup='"setup.toml"', target_vertices=1000))
+        built[name] = build_surface(file)
+    return built
+
+
+def test_policy_takes_away_and_never_adds(results: dict[str, BuildResult]) -> None:
+    raw, policy = results["raw"], results["policy"]
+    assert (raw.reasons == policy.reasons).all()
+    gone = (raw.node_color >= 0) & (policy.node_color < 0)
+    assert gone.any() and not ((raw.node_color < 0) & (policy.node_color >= 0)).any()
+    # What was torn stays torn: no crack disappears while both its ends keep the color.
+    branch = {name: name.split()[:3] for name in (*raw.surface.colors, *policy.surface.colors)}
+    torn = {
+        (c.i, c.j, *branch[policy.surface.colors[k]]) for c in policy.surface.cracks
+        for k in c.colors
+    }  # fmt: skip
+    for crack in raw.surface.cracks:
+        for number in crack.colors:
+            name = raw.surface.colors[number]
+            index = raw.branches.index(" ".join(branch[name]))
+            ends = policy.node_color[[crack.i, crack.j], index]
+            if ends[0] == ends[1] >= 0:
+                assert (crack.i, crack.j, *branch[name]) in torn
+
+
+def test_fewer_cells_and_none_below_the_minimum_area(results: dict[str, BuildResult]) -> None:
+    cells = {name: decompose(result.surface).cells for name, result in results.items()}
+    least = 0.005 * results["policy"].report.area_m2
+    assert len(cells["policy"]) < len(cells["raw"])
+    assert min(cell.area or 0 for cell in cells["raw"]) < least
+    assert min(cell.area or 0 for cell in cells["policy"]) >= least
+
+
+def test_area_given_up_is_recorded(results: dict[str, BuildResult]) -> None:
+    raw, policy = results["raw"], results["policy"]
+    assert "slivers" not in raw.surface.meta and raw.report.slivers is None
+    record = policy.surface.meta["slivers"]
+    lost = [
+        vertex
+        for vertex, colors in enumerate(policy.surface.vertex_colors)
+        if raw.surface.vertex_colors[vertex] and not colors
+    ]
+    corners = policy.surface.vertices[policy.surface.faces]
+    sides = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    third = np.linalg.norm(sides, axis=1) / 6
+    area = sum(third[(policy.surface.faces == vertex).any(axis=1)].sum() for vertex in lost)
+    assert record["given_up_vertices"] == len(lost) > 0
+    assert record["given_up_area_m2"] == pytest.approx(area)
+    assert "uncovered" in str(policy.report)
+
+
+def test_side_policy_is_in_the_setup(results: dict[str, BuildResult]) -> None:
+    assert results["policy"].surface.meta["setup"]["slivers"] == {
+        "simplify_below_share": 0.01,
+        "uncover_below_share": 0.005,
+    }
+    assert results["raw"].surface.meta["setup"]["slivers"] is None
+
+
+def test_thresholds_are_checked(tmp_path: Path) -> None:
+    text = (ROBOTS / "ur5_polishing.toml").read_text()
+    (tmp_path / "s.toml").write_text(edited(text, simplify_below_share=1.5))
+    with pytest.raises(InputError, match="less than 1") as caught:
+        load_setup(tmp_path / "s.toml")
+    assert caught.value.field == "slivers.simplify_below_share"
+
+
+def test_given_up_vertices_are_told_from_unreachable_ones(results: dict[str, BuildResult]) -> None:
+    raw, policy = results["raw"].surface, results["policy"].surface
+    report = results["policy"].report
+    assert raw.given_up == ()
+    lost = [v for v, own in enumerate(raw.vertex_colors) if own and not policy.vertex_colors[v]]
+    assert list(policy.given_up) == lost and lost
+    coverage = decompose(policy).coverage
+    assert coverage is not None and report.slivers is not None
+    assert coverage.given_up == pytest.approx(report.slivers.given_up_area_m2 / report.area_m2)
+    unreachable = 1 - report.reachable_area_m2 / report.area_m2
+    assert coverage.unreachable == pytest.approx(unreachable, abs=1e-12)

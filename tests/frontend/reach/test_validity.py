@@ -1,0 +1,155 @@
+"""Verdicts and reasons against a loop over Pinocchio and coal, and each constraint alone."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from independent import arm_reason, clearances, possible_reasons
+from world import World
+
+from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.reach.validity import within_limits
+from cellcolor.frontend.scene import Setup
+
+Scene = Callable[..., Path]
+
+
+@pytest.mark.parametrize("weak", [False, True])
+def test_reasons_agree_with_an_independent_loop(
+    setup: Setup, scene: Scene, tmp_path: Path, weak: bool
+) -> None:
+    # Placed so that most reasons occur; once with small torque limits and little room for joint 3.
+    result = build_surface(
+        scene(
+            arm=lambda text: narrow_elbow(lowered_effort(text)) if weak else text,
+            target_vertices=200,
+            radius_m=0.22,
+            half_angle_rad=1.5,
+            position_m="[0.39, 0.03, 0.09]",
+        )
+    )
+    robot = load_robot(
+        tmp_path / "ur5.urdf", "wrist_3_link", tmp_path / "polishing_tool.urdf", "tool_tip"
+    )
+    surface = result.surface
+    world = World(robot, surface.vertices, surface.faces)
+    unclear = 0
+    for q, code in zip(result.configurations.reshape(-1, 6), result.reasons.flat, strict=True):
+        first = arm_reason(robot, setup, q)
+        # Contacts are asked for only where they can matter: NaN cannot be placed.
+        contacts = {} if first is not Reason.VALID else clearances(world, setup, 0.0, q)
+        expected = possible_reasons(first, contacts)
+        assert Reason(code) in expected
+        unclear += len(expected) > 1
+    assert unclear < 0.01 * result.reasons.size
+    counts = result.report.candidates
+    assert sum(counts.values()) == result.reasons.size
+    assert sum(count > 0 for count in counts.values()) >= 6
+
+
+def test_configurations_put_the_tool_on_the_surface(robot: Robot, scene: Scene) -> None:
+    result = build_surface(scene(target_vertices=200, rpy_rad="[0.2, -0.4, 1.0]"))
+    data, tip = robot.model.createData(), robot.model.getFrameId("tool_tip")
+    center = np.array([0.465, -0.15, -0.04])
+    rows, branches = np.nonzero(result.node_color >= 0)
+    assert len(rows) > 300
+    for row, branch in zip(rows, branches, strict=True):
+        pin.framesForwardKinematics(robot.model, data, result.configurations[row, branch])
+        pose, vertex = data.oMf[tip], result.surface.vertices[row]
+        assert np.allclose(pose.translation, vertex, atol=1e-9)
+        assert np.allclose(pose.rotation[:, 2], -(vertex - center) / 0.2, atol=1e-9)
+
+
+def test_locked_joint_stays_where_the_setup_says(scene: Scene) -> None:
+    result = build_surface(scene(setup={"locked_joint_6_rad": 0.7}, target_vertices=200))
+    solved = result.reasons != Reason.NO_SOLUTION
+    assert solved.sum() > 500
+    assert (result.configurations[solved][:, 5] == 0.7).all()
+
+
+def counts(result: BuildResult) -> dict[str, int]:
+    return result.report.candidates
+
+
+def lowered_effort(text: str) -> str:
+    return text.replace('effort="28"', 'effort="1.5"')
+
+
+def narrow_elbow(text: str) -> str:
+    joint = r'(<joint name="elbow_joint".*?<limit )lower="[^"]*" upper="[^"]*"'
+    return re.sub(joint, r'\1lower="-0.5" upper="1.6"', text, flags=re.DOTALL)
+
+
+FREE = {
+    "min_manipulability_m3": 0.0,
+    "min_task_determinant_m3": 0.0,
+}
+
+
+@pytest.mark.parametrize(
+    ("reason", "keys", "setup_keys", "arm"),
+    [
+        (Reason.TORQUE, {}, {}, lowered_effort),
+        (Reason.JOINT_LIMITS, {}, {}, narrow_elbow),
+        (Reason.MANIPULABILITY, {}, {"min_manipulability_m3": 0.05}, None),
+        (Reason.TASK_DETERMINANT, {}, {"min_task_determinant_m3": 0.03}, None),
+        (Reason.GROUND, {"height_m": 0.035}, {}, None),
+    ],
+)
+def test_a_constraint_alone_binds(
+    scene: Scene,
+    reason: Reason,
+    keys: dict[str, object],
+    setup_keys: dict[str, object],
+    arm: Callable[[str], str] | None,
+) -> None:
+    small = {"target_vertices": 200}
+    before = build_surface(scene(setup=FREE, height_m=-2.0, **small))
+    changed = {"height_m": -2.0} | keys
+    after = build_surface(
+        scene(setup=FREE | setup_keys, arm=arm or (lambda text: text), **small, **changed)
+    )
+    assert counts(before)[reason.text] == 0
+    assert counts(after)[reason.text] > 20
+    # What one test takes away is missing in the later ones, and nothing else changes.
+    changed_verdicts = before.reasons != after.reasons
+    assert (after.reasons[changed_verdicts] == reason).all()
+
+
+@pytest.mark.parametrize("gravity", ["[0.0, 0.0, 0.0]", "[0.0, 0.0, -9.81]"])
+def test_force_and_gravity_both_count(scene: Scene, gravity: str) -> None:
+    failed = []
+    for force in (0.0, 30.0, 60.0):
+        task = {"normal_force_n": force, "gravity_m_per_s2": gravity}
+        file = scene(setup=task, arm=lowered_effort, target_vertices=200)
+        failed.append(counts(build_surface(file))["torque"])
+    # Without gravity only the push loads the joints. With it the surface carries some of the
+    # arm's weight, so that pressing helps at first.
+    if gravity == "[0.0, 0.0, 0.0]":
+        assert failed[0] == 0 < failed[1] < failed[2]
+    else:
+        assert failed[0] > failed[1] > 0
+
+
+def test_limits_count_full_circles(robot: Robot) -> None:
+    lower, upper = np.array([1.0, -4.0, -1, -1, -1, -1]), np.array([7.0, 4.0, 1, 1, 1, 1])
+    narrow = replace(robot, lower=lower, upper=upper)
+    asked = np.array(
+        [
+            [-1.0, 3.5, 0.0, 0.0, 0.0, 0.0],  # joint 1 turns once, joint 2 stays
+            [0.5, 0.0, 0.0, 0.0, 0.0, 0.0],  # 0.5 + 2 pi is inside
+            [0.9, 0.0, 0.0, 0.0, 0.0, 0.0],  # 0.9 + 2 pi is not
+            [2.0, 0.0, 3.0, 0.0, 0.0, 0.0],  # joint 3 has no room
+        ]
+    )
+    moved, inside = within_limits(narrow, asked)
+    assert inside.tolist() == [True, True, False, False]
+    assert moved[0].tolist() == pytest.approx([2 * np.pi - 1, 3.5, 0, 0, 0, 0])
+    assert moved[1, 0] == pytest.approx(2 * np.pi + 0.5)

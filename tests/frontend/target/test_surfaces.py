@@ -1,0 +1,238 @@
+"""Generated and read surfaces: shape, orientation, and what is refused."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend import build_surface
+from cellcolor.frontend.scene import Placement
+from cellcolor.frontend.target.mesh_file import load_mesh
+from cellcolor.frontend.target.shapes import (
+    disc_mesh,
+    grid_mesh,
+    pipe,
+    rectangle,
+    spherical_cap,
+)
+from cellcolor.frontend.target.surface import Surface
+
+
+def double_areas(points: Array, faces: Array) -> Array:
+    a, b, c = (points[faces[:, k]] for k in range(3))
+    return (b - a)[:, 0] * (c - a)[:, 1] - (b - a)[:, 1] * (c - a)[:, 0]
+
+
+@given(st.integers(7, 3000), st.floats(0, 0.25), st.integers(0, 10**6))
+@settings(deadline=None, max_examples=50)
+def test_disc_is_a_counter_clockwise_disc(target: int, jitter: float, seed: int) -> None:
+    points, faces = disc_mesh(target, jitter, seed)
+    assert (double_areas(points, faces) > 0).all()
+    ends = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+    edges, uses = np.unique(ends, axis=0, return_counts=True)
+    rim = np.unique(edges[uses == 1])
+    assert len(points) - len(edges) + len(faces) == 1
+    assert np.allclose(np.linalg.norm(points[rim], axis=1), 1)
+    assert len(rim) == (uses == 1).sum()
+    # No other possible size is nearer to the target.
+    k = np.arange(1, 60)
+    assert abs(len(points) - target) == np.abs(1 + 3 * k * (k + 1) - target).min()
+
+
+@given(
+    st.floats(0.1, 10),
+    st.floats(0.1, 10),
+    st.integers(7, 3000),
+    st.floats(0, 0.25),
+    st.integers(0, 10**6),
+)
+@settings(deadline=None, max_examples=50)
+def test_grid_is_a_counter_clockwise_rectangle(
+    width: float, height: float, target: int, jitter: float, seed: int
+) -> None:
+    points, faces = grid_mesh(width, height, target, jitter, seed)
+    areas = double_areas(points, faces)
+    assert (areas > 0).all() and areas.sum() / 2 == pytest.approx(width * height)
+    assert np.unique(faces).tolist() == list(range(len(points)))
+    box = np.vstack([points.min(axis=0), points.max(axis=0)])
+    assert np.allclose(box, [[0, 0], [width, height]])
+    if 0.5 < width / height < 2 and target > 100:
+        assert 0.8 < len(points) / target < 1.25
+
+
+def test_pipe() -> None:
+    grid = grid_mesh(0.083 * np.pi, 0.315, 2000, 0.15, 1)
+    half = pipe(0.083, np.pi, 0.315, *grid)
+    assert np.allclose(np.hypot(half.vertices[:, 0], half.vertices[:, 2]), 0.083)
+    assert half.vertices[:, 2].min() == pytest.approx(0, abs=1e-12)
+    assert abs(half.vertices[:, 1]).max() == pytest.approx(0.315 / 2)
+    assert half.vertices[np.argmax(half.vertices[:, 2]), 2] == pytest.approx(0.083, rel=1e-3)
+    mesh = trimesh.Trimesh(half.vertices, half.faces, process=False)
+    outward = mesh.triangles_center * [1, 0, 1]
+    assert ((mesh.face_normals * outward).sum(axis=1) > 0).all()
+    assert mesh.area == pytest.approx(np.pi * 0.083 * 0.315, rel=0.01)
+    nearest = (mesh.vertex_normals * half.normals).sum(axis=1)
+    assert nearest.min() > 0.98
+
+
+def test_rectangle() -> None:
+    flat = rectangle(0.4, 0.2, *grid_mesh(0.4, 0.2, 500, 0.2, 2))
+    assert np.allclose(flat.vertices.min(axis=0), [-0.2, -0.1, 0])
+    assert np.allclose(flat.vertices.max(axis=0), [0.2, 0.1, 0])
+    mesh = trimesh.Trimesh(flat.vertices, flat.faces, process=False)
+    assert np.allclose(mesh.face_normals, [0, 0, 1]) and np.allclose(flat.normals, [0, 0, 1])
+
+
+@pytest.mark.parametrize("half_angle", [0.3, 1.134, np.pi / 2, 2.5])
+def test_cap(half_angle: float) -> None:
+    cap = spherical_cap(0.2, half_angle, *disc_mesh(2000, 0.15, 3))
+    assert np.allclose(np.linalg.norm(cap.vertices, axis=1), 0.2)
+    assert np.allclose(cap.normals, cap.vertices / 0.2)
+    assert np.arccos(cap.normals[:, 2]).max() == pytest.approx(half_angle)
+    # Seen from outside the faces run counter-clockwise, and the area is the cap's.
+    mesh = trimesh.Trimesh(cap.vertices, cap.faces, process=False)
+    assert ((mesh.face_normals * mesh.triangles_center).sum(axis=1) > 0).all()
+    assert mesh.area == pytest.approx(2 * np.pi * 0.2**2 * (1 - np.cos(half_angle)), rel=0.01)
+    assert cap.vertex_areas().sum() == pytest.approx(mesh.area)
+    assert np.array_equal(cap.edges(), np.unique(np.sort(mesh.edges_unique, axis=1), axis=0))
+
+
+def test_cap_vertices_share_the_area_evenly() -> None:
+    cap = spherical_cap(0.2, np.pi / 2, *disc_mesh(2000, 0.0, 0))
+    inner = cap.vertex_areas()[:1000]
+    assert inner.max() / inner.min() < 1.5
+
+
+def test_jitter_is_seeded() -> None:
+    same = [spherical_cap(0.2, 1.0, *disc_mesh(500, 0.2, seed)).vertices for seed in (4, 4, 5)]
+    assert np.array_equal(same[0], same[1]) and not np.allclose(same[0], same[2])
+
+
+def test_placement_is_extrinsic_xyz() -> None:
+    cap = spherical_cap(0.2, 1.0, *disc_mesh(100, 0.1, 0))
+    place = Placement(position_m=(1.0, 2.0, 3.0), rpy_rad=(0.3, -0.5, 0.8))
+    turn = Rotation.from_euler("xyz", [0.3, -0.5, 0.8])
+    placed = cap.placed(place)
+    assert np.allclose(placed.vertices, turn.apply(cap.vertices) + np.array([1, 2, 3]))
+    assert np.allclose(placed.normals, turn.apply(cap.normals))
+
+
+@pytest.mark.parametrize("suffix", ["stl", "obj", "ply"])
+def test_mesh_files(tmp_path: Path, suffix: str) -> None:
+    cap = spherical_cap(200.0, 1.2, *disc_mesh(500, 0.1, 0))
+    file = tmp_path / f"cap.{suffix}"
+    trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(file)
+    read = load_mesh(file, 0.001)
+    assert (len(read.vertices), len(read.faces)) == (len(cap.vertices), len(cap.faces))
+    assert np.allclose(np.linalg.norm(read.vertices, axis=1), 0.2, atol=1e-6)
+    # Normals from the faces point outward, near the sphere's own.
+    assert ((read.normals * read.vertices).sum(axis=1) / 0.2 > 0.98).all()
+
+
+@pytest.mark.parametrize(
+    ("table", "area"),
+    [
+        ('kind = "pipe"\nradius_m = 0.083\nlength_m = 0.315\narc_rad = 3.0', 0.083 * 3 * 0.315),
+        ('kind = "rectangle"\nsize_x_m = 0.3\nsize_y_m = 0.2', 0.06),
+    ],
+)
+def test_other_objects_in_scenes(
+    scene: Callable[..., Path], tmp_path: Path, table: str, area: float
+) -> None:
+    text = scene(position_m="[0.45, 0.1, 0.1]").read_text()
+    start, end = text.index("[object]"), text.index("[placement]")
+    text = f"{text[:start]}[object]\n{table}\ntarget_vertices = 300\n\n{text[end:]}"
+    (tmp_path / "scene.toml").write_text(text)
+    report = build_surface(tmp_path / "scene.toml").report
+    assert report.area_m2 == pytest.approx(area, rel=0.01)
+    assert 200 < report.vertices < 400 and report.reachable > 100
+
+
+def test_mesh_scene_gives_what_the_generator_gives(
+    scene: Callable[..., Path], tmp_path: Path
+) -> None:
+    generated = build_surface(scene(target_vertices=500))
+    cap = spherical_cap(200.0, 1.1344640137963142, *disc_mesh(500, 0.15, 1))
+    trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(tmp_path / "wok.ply")
+    text = (tmp_path / "scene.toml").read_text()
+    start, end = text.index("[object]"), text.index("[placement]")
+    table = '[object]\nkind = "mesh"\nfile = "wok.ply"\nmeters_per_unit = 0.001\n\n'
+    (tmp_path / "scene.toml").write_text(text[:start] + table + text[end:])
+    read = build_surface(tmp_path / "scene.toml")
+    assert read.surface.colors == generated.surface.colors
+    # Only normals differ, by the mesh's coarseness.
+    assert np.mean(read.reasons == generated.reasons) > 0.98
+
+
+TETRA = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], dtype=float)
+OUTWARD = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]
+
+
+def write_obj(file: Path, vertices: Array, faces: list[list[int]]) -> Path:
+    lines = ["v " + " ".join(map(str, v)) for v in np.asarray(vertices).tolist()]
+    lines += ["f " + " ".join(str(k + 1) for k in face) for face in faces]
+    file.write_text("\n".join(lines) + "\n")
+    return file
+
+
+def test_closed_mesh_is_accepted(tmp_path: Path) -> None:
+    mesh = load_mesh(write_obj(tmp_path / "t.obj", TETRA, OUTWARD), 1.0)
+    assert np.allclose(mesh.normals[0], -np.ones(3) / np.sqrt(3))
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "element", "message"),
+    [
+        (TETRA, [face[::-1] for face in OUTWARD], "faces", "inside out"),
+        (TETRA, [OUTWARD[0], OUTWARD[1][::-1]], r"faces\[", "winds the other way"),
+        (TETRA, [*OUTWARD, [0, 1, 2]], r"faces\[", "not manifold"),
+        (np.vstack([TETRA, [[0, 0, -1]]]), [[0, 1, 2], [0, 3, 4]], "vert", "fan|pinch"),
+        (np.vstack([TETRA, [[5, 5, 5]]]), OUTWARD, r"vertices\[4\]", "belongs to no face"),
+        (np.vstack([TETRA, TETRA[:1]]), [*OUTWARD[1:], [4, 2, 1]], r"vertices\[4\]", "vertex 0"),
+        (np.vstack([TETRA[:3], [[2, 0, 0]]]), [[0, 1, 2], [1, 0, 3]], r"faces\[1\]", "no area"),
+        (TETRA[:3], [[0, 1, 2], [0, 2, 1]], r"vertices\[0\]", "no normal"),
+        (np.where(TETRA == 1, np.nan, TETRA), OUTWARD, "vertices", "finite"),
+        (TETRA[:3], [], "faces", "there are none"),
+    ],
+)  # fmt: skip
+def test_bad_meshes_are_refused(
+    tmp_path: Path, vertices: Array, faces: list[list[int]], element: str, message: str
+) -> None:
+    file = write_obj(tmp_path / "bad.obj", vertices, faces)
+    with pytest.raises(InputError, match=message) as caught:
+        load_mesh(file, 1.0)
+    assert caught.value.file == str(file)
+    assert re.match(element, caught.value.field or "")
+
+
+def test_unreadable_files(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such mesh file"):
+        load_mesh(tmp_path / "none.stl", 1.0)
+    other = tmp_path / "mesh.step"
+    other.write_text("x")
+    with pytest.raises(InputError, match="not a mesh format"):
+        load_mesh(other, 1.0)
+    broken = tmp_path / "broken.ply"
+    broken.write_text("ply\nformat ascii 1.0\nelement vertex 3\n")
+    with pytest.raises(InputError) as caught:
+        load_mesh(broken, 1.0)
+    assert caught.value.file == str(broken)
+
+
+def test_vertex_areas_of_a_square() -> None:
+    flat = Surface(
+        np.array([[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0]], dtype=float),
+        np.array([[0, 1, 2], [0, 2, 3]]),
+        np.tile([0.0, 0.0, 1.0], (4, 1)),
+    )
+    assert flat.vertex_areas().tolist() == pytest.approx([2 / 3, 1 / 3, 2 / 3, 1 / 3])

@@ -1,0 +1,66 @@
+"""The side file: what `build` keeps of every vertex and branch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cellcolor.cli import main
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend.candidates_file import side_file
+from cellcolor.pictures.by_reason import read_verdicts
+
+
+def test_build_writes_it_beside_the_surface(scene: Callable[..., Path], tmp_path: Path) -> None:
+    file = scene(target_vertices=200)
+    assert main(["build", str(file), "-o", str(tmp_path / "wok.json")]) == 0
+    surface = LabelledSurface.read(tmp_path / "wok.surface.json")
+    result = build_surface(file)
+    with np.load(tmp_path / surface.meta["side_file"], allow_pickle=False) as side:
+        assert side["branches"].tolist() == list(result.branches)
+        assert side["reason_names"].tolist() == [reason.text for reason in Reason]
+        assert np.array_equal(side["reasons"], result.reasons)
+        assert np.array_equal(side["configurations"], result.configurations, equal_nan=True)
+        for vertex, colors in enumerate(surface.vertex_colors):
+            row = side["node_color"][vertex]
+            assert sorted(row[row >= 0].tolist()) == list(colors)
+    assert not list(tmp_path.glob(".*"))
+
+
+def test_same_result_same_bytes(scene: Callable[..., Path]) -> None:
+    result = build_surface(scene(target_vertices=50))
+    assert side_file(result) == side_file(result)
+
+
+def test_more_colors_than_sixteen_bits_tell(scene: Callable[..., Path], tmp_path: Path) -> None:
+    """A noisy surface can have a color for each vertex; files with 16 bits stay readable."""
+    result = build_surface(scene(target_vertices=50))
+    surface = replace(result.surface, meta={"side_file": "many.npz"})
+    numbers = np.arange(result.node_color.size).reshape(result.node_color.shape) + 70_000
+    (tmp_path / "many.npz").write_bytes(side_file(replace(result, node_color=numbers)))
+    assert np.array_equal(read_verdicts(surface, tmp_path / "many.json").node_color, numbers)
+    with np.load(tmp_path / "many.npz") as side:
+        old = dict(side) | {"node_color": result.node_color.astype(np.int16)}
+    np.savez_compressed(tmp_path / "many.npz", **old)
+    read = read_verdicts(surface, tmp_path / "many.json").node_color
+    assert np.array_equal(read, result.node_color) and read.min() == -1
+
+
+def test_side_file_of_another_build(
+    scene: Callable[..., Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As a kill between two renames can leave it: as many vertices, other colors."""
+    pytest.importorskip("matplotlib")
+    for name, height in (("low", -0.04), ("high", 0.1)):
+        file = scene(target_vertices=50, position_m=[0.465, -0.15, height])
+        assert main(["build", str(file), "-o", str(tmp_path / f"{name}.json")]) == 0
+    (tmp_path / "low.reasons.npz").replace(tmp_path / "high.reasons.npz")
+    show = ["show", str(tmp_path / "high.json"), "--reason", "-o", str(tmp_path / "x.png")]
+    assert main(show) == 2
+    assert "another surface" in capsys.readouterr().err
+    assert not (tmp_path / "x.png").exists()

@@ -1,0 +1,149 @@
+"""No false number in a solution is accepted: one number at a time is changed in right solutions.
+
+What makes a number false is decided here by brute force, by counting, or by its own text.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+from bruteforce import minimum
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from library import PAPER
+from meshes import surfaces
+
+from cellcolor.data.bound import Bound
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Solution
+from cellcolor.decomposition import decompose
+from cellcolor.judges.division import check_solution
+from cellcolor.judges.whole_cells import segments_of_whole_cells
+from cellcolor.lab.families import blobs
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+UNHURRIED = settings(deadline=None)
+"""The first example solves; how long that takes is no matter here."""
+
+NUMBERS = ("segments", "lift_offs", "lower_bound", "surface_lower_bound", "cutting_paths")
+
+
+FIGURES = ("annulus", "parallel-corridors", "ring", "split-cell", "three-loops")
+
+
+@cache
+def solved(case: int | str, paper: bool) -> tuple[Instance, Solution]:
+    """A random graph by its seed or one of the library by its name, solved."""
+    if isinstance(case, int):
+        instance = decompose(blobs(case, 10, 4, cracks=2))
+    else:
+        instance = Instance.read(PAPER / f"{case}.json")
+    options = Options("paper", fewest_cuts=True) if paper else Options("surface", 2)
+    return instance, solve(instance, replace(options, workers=1))
+
+
+SOLVED = st.builds(solved, st.integers(0, 5) | st.sampled_from(FIGURES), st.booleans())
+OTHER = st.integers(-3, 3).filter(bool)
+
+
+@UNHURRIED
+@given(SOLVED, st.sampled_from(NUMBERS), OTHER)
+def test_a_changed_number_is_refused(case: tuple[Instance, Solution], name: str, step: int) -> None:
+    """Every number stands in two places or can be counted, so none can be changed alone."""
+    instance, solution = case
+    value = (getattr(solution, name) or 0) + step
+    assume(value >= 0)
+    assert check_solution(instance, solution).valid
+    assert not check_solution(instance, replace(solution, **{name: value})).valid
+
+
+@UNHURRIED
+@given(SOLVED, st.integers(0, 9), st.booleans())
+def test_bounds_and_proofs_are_no_better_than_the_division(
+    case: tuple[Instance, Solution], bound: int, general: bool
+) -> None:
+    """Bounds changed together with all that says the same: what contradicts the division goes."""
+    instance, solution = case
+    assert solution.segments is not None
+    extent = "surface" if general else "strands"
+    changed = replace(
+        solution,
+        status="feasible",
+        lower_bound=bound,
+        surface_lower_bound=bound if general else 0,
+        proved_for_surface=general and bound == solution.segments,
+        bounds=(Bound("cover", bound, extent),),
+    )
+    assert check_solution(instance, changed).valid == (bound <= solution.segments)
+    proved = general or solution.search_space == "paper"
+    optimal = check_solution(instance, replace(changed, status="optimal"))
+    assert optimal.valid == (proved and bound == solution.segments)
+
+
+@UNHURRIED
+@given(SOLVED, st.integers(0, 12), st.booleans())
+def test_nothing_found_claims_little(
+    case: tuple[Instance, Solution], bound: int, proved: bool
+) -> None:
+    instance, solution = case
+    nothing = replace(
+        solution,
+        status="unknown",
+        segments=None,
+        lift_offs=None,
+        cells=None,
+        seams=(),
+        cutting_paths=None,
+        cutting_paths_lower_bound=0,
+        lower_bound=bound,
+        surface_lower_bound=bound,
+        bounds=(Bound("cover", bound, "surface"),),
+        proved_for_surface=proved,
+    )
+    report = check_solution(instance, nothing)
+    assert report.valid == (not proved and bound <= segments_of_whole_cells(instance))
+    # A division of whole cells exists, so no bound that is refused was true.
+    assert solution.segments is not None and segments_of_whole_cells(instance) >= solution.segments
+
+
+@UNHURRIED
+@given(surfaces())
+def test_whole_cells_are_a_division(mesh: Any) -> None:
+    """What refutes a bound has to exist: it is never below the minimum, nor above the cells."""
+    instance = decompose(mesh)
+    whole = segments_of_whole_cells(instance)
+    assert whole <= len(instance.cells)
+    loops = [
+        sum(any(map(instance.joinable, loop)) for loop in cell.loops) for cell in instance.cells
+    ]
+    darts = [sum(map(len, cell.loops)) for cell in instance.cells]
+    assume(max(loops, default=0) < 2 and max(darts, default=0) < 7 and len(darts) < 8)
+    assert minimum(instance) <= whole if instance.cells else whole == 0
+
+
+@UNHURRIED
+@given(SOLVED, st.randoms(use_true_random=False))
+def test_the_order_of_sub_cells_means_nothing(case: tuple[Instance, Solution], random: Any) -> None:
+    """Nor that of darts; whether the division is right or has a color exchanged."""
+    instance, solution = case
+    cells = list(solution.cells or ())
+    if random.random() < 0.5:
+        number = random.randrange(len(cells))
+        subcells = list(cells[number].subcells)
+        place = random.randrange(len(subcells))
+        color = random.choice(instance.cells[number].colors)
+        subcells[place] = replace(subcells[place], color=color, darts=())
+        cells[number] = replace(cells[number], subcells=tuple(subcells))
+    mixed = []
+    for cell in cells:
+        subcells = [
+            replace(sub, darts=tuple(random.sample(sub.darts, len(sub.darts))))
+            for sub in cell.subcells
+        ]
+        mixed.append(replace(cell, subcells=tuple(random.sample(subcells, len(subcells)))))
+    one = check_solution(instance, replace(solution, cells=tuple(cells)))
+    other = check_solution(instance, replace(solution, cells=tuple(mixed)))
+    assert (one.valid, one.segments) == (other.valid, other.segments)

@@ -1,0 +1,283 @@
+"""Random families: valid, reproducible, and what they claim to be."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from bruteforce import minimum, noncrossing
+
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.decomposition import decompose
+from cellcolor.errors import InputError
+from cellcolor.lab.families import blobs, hub, hub_grid, hub_minimum, planar_graph
+from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.interface import Options
+
+
+def test_blobs_are_a_function_of_their_seed() -> None:
+    one, again, other = (blobs(seed, 9, 3, cracks=2, islands=1) for seed in (5, 5, 6))
+    assert one.to_json() == again.to_json()
+    assert one.vertex_colors != other.vertex_colors
+
+
+def test_blobs_have_the_size_of_a_robot_scene() -> None:
+    """24 x 24 points and 6 colors: some dozens of cells, most with several colors."""
+    counts = []
+    for seed in range(20):
+        surface = blobs(seed)
+        assert len(surface.vertices) == 24 * 24 and len(surface.faces) == 2 * 23 * 23
+        instance = decompose(surface)
+        counts.append(len(instance.cells))
+        assert {color for cell in instance.cells for color in cell.colors} == set(range(6))
+        assert sum(len(cell.colors) > 1 for cell in instance.cells) > len(instance.cells) / 2
+    assert min(counts) >= 20 and max(counts) <= 60 and 26 <= np.median(counts) <= 48
+
+
+def test_blobs_faces_lie_counter_clockwise() -> None:
+    surface = blobs(0, 4, 1)
+    a, b, c = (surface.vertices[surface.faces[:, corner]] for corner in range(3))
+    assert np.allclose(np.cross(b - a, c - a)[:, 2], 1.0)
+
+
+def test_thin_blobs_have_more_cells() -> None:
+    thick = sum(len(decompose(blobs(seed, thin=False)).cells) for seed in range(5))
+    thin = sum(len(decompose(blobs(seed, thin=True)).cells) for seed in range(5))
+    assert thin > 1.3 * thick
+
+
+def test_full_coverage_leaves_one_cell() -> None:
+    instance = decompose(blobs(3, 10, 4, coverage=(1.0, 1.0)))
+    assert [cell.colors for cell in instance.cells] == [(0, 1, 2, 3)]
+
+
+def test_rim_touches_the_border_and_islands_make_loops() -> None:
+    for seed in range(10):
+        rim = decompose(blobs(seed, 16, 3, coverage=(1.0, 1.0), rim=1))
+        assert sorted(len(cell.colors) for cell in rim.cells) == [1, 3]
+        assert all(len(cell.loops) == 1 for cell in rim.cells)
+    islands = [decompose(blobs(seed, 16, 3, coverage=(1.0, 1.0), islands=1)) for seed in range(10)]
+    assert any(len(cell.loops) == 2 for instance in islands for cell in instance.cells)
+
+
+def test_holes_are_unreachable() -> None:
+    surface = blobs(1, 12, 2, coverage=(1.0, 1.0), holes=1)
+    assert set(surface.vertex_colors) == {(), (0, 1)}
+
+
+def test_cracks_lie_where_colors_are_common() -> None:
+    """The surface refuses cracks in other colors; here they exist, connect, and make edges."""
+    self_edges = 0
+    for seed in range(20):
+        surface = blobs(seed, 10, 2, coverage=(0.8, 1.0), cracks=2)
+        assert surface.cracks
+        self_edges += any(e.left == e.right for e in decompose(surface).edges)
+    assert self_edges > 10
+
+
+def test_hub_is_a_ring_around_one_cell() -> None:
+    instance = hub(4, 9, 3)
+    center, *petals = instance.cells
+    assert center.colors == (0, 1, 2) and len(center.loops) == 1 and len(petals) == 9
+    ring = [instance.cells[instance.across(dart)].colors for dart in center.loops[0]]
+    assert all(len(colors) == 1 for colors in ring)
+    assert all(a != b for a, b in zip(ring, ring[1:] + ring[:1], strict=True))
+    assert _points(instance) == 2 - len(instance.cells) - 1 + len(instance.edges)
+    assert instance.known is not None and instance.known.paper is not None
+    assert instance.known.paper.segments == hub_minimum([color for (color,) in ring])
+    assert hub(4, 9, 3).to_json() == instance.to_json() != hub(5, 9, 3).to_json()
+
+
+@pytest.mark.parametrize(
+    ("ring", "expected"),
+    [
+        ([0, 1], 2),
+        ([0, 1, 0, 1], 3),  # either color's corridor blocks the other's
+        ([0, 1, 2, 0, 1, 2], 5),
+        ([0, 1, 0, 2, 0, 1, 0, 2], 5),  # all four 0 in one sub-cell
+    ],
+)
+def test_hub_minimum_of_small_rings(ring: list[int], expected: int) -> None:
+    assert hub_minimum(ring) == expected
+
+
+def test_hub_minimum_is_that_over_all_partitions() -> None:
+    """A block of k petals of one color saves k - 1 segments."""
+    for seed in range(20):
+        ring = [cell.colors[0] for cell in hub(seed, 8, 3).cells[1:]]
+        best = min(
+            len(blocks)
+            for blocks in noncrossing(8)
+            if all(len({ring[i] for i in block}) == 1 for block in blocks)
+        )
+        assert hub_minimum(ring) == best
+
+
+@pytest.mark.parametrize(("rows", "columns", "side"), [(1, 1, 2), (1, 3, 1), (2, 2, 3), (3, 2, 1)])
+def test_hub_grid_is_a_grid_of_hubs_that_share_petals(rows: int, columns: int, side: int) -> None:
+    instance = hub_grid(4, rows, columns, 3, side)
+    hubs = [cell for cell in instance.cells if len(cell.colors) == 3]
+    petals = [cell for cell in instance.cells if len(cell.colors) == 1]
+    strips = rows * (columns + 1) + columns * (rows + 1)
+    assert len(hubs) == rows * columns and len(petals) == strips * side
+    assert len(hubs) + len(petals) == len(instance.cells)
+    live = {c.id: [d for d in c.loops[0] if instance.joinable(d)] for c in instance.cells}
+    assert all(len(cell.loops) == 1 for cell in instance.cells)
+    assert all(len(live[hub.id]) == 4 * side for hub in hubs)
+    shared = [petal for petal in petals if len(live[petal.id]) == 2]
+    assert len(shared) == (rows * (columns - 1) + columns * (rows - 1)) * side
+    neighbors = {frozenset(instance.across(dart) for dart in live[petal.id]) for petal in shared}
+    assert neighbors == {
+        frozenset({one.id, other.id})
+        for one in hubs
+        for other in hubs
+        if other.id - one.id == columns
+        or (other.id - one.id == 1 and one.id % columns < columns - 1)
+    }
+    # Successive petals of a side touch, across an edge that no color can cross.
+    for edge in instance.edges:
+        if {edge.left, edge.right} <= {petal.id for petal in petals}:
+            assert not instance.joinable(edge.id)
+    assert hub_grid(4, rows, columns, 3, side).to_json() == instance.to_json()
+    assert hub_grid(5, rows, columns, 3, side).cells != instance.cells
+
+
+@pytest.mark.parametrize(("rows", "columns", "side"), [(1, 1, 2), (1, 3, 1), (2, 2, 3), (3, 2, 1)])
+def test_hub_grid_is_planar(rows: int, columns: int, side: int) -> None:
+    """Unreachable are the areas between four hubs each, and the one all around."""
+    instance = hub_grid(0, rows, columns, 3, side)
+    points, outer_loops = _points_and_outer_loops(instance)
+    assert outer_loops == 1 + (rows - 1) * (columns - 1)
+    assert points - len(instance.edges) + len(instance.cells) + outer_loops == 2
+
+
+def test_one_hub_has_the_minimum_of_the_recursion() -> None:
+    for seed in range(5):
+        instance = hub_grid(seed, 1, 1, 3, 2)
+        ring = [
+            instance.cells[instance.across(dart)].colors[0]
+            for dart in instance.cells[0].loops[0]
+            if instance.joinable(dart)
+        ]
+        assert minimum(instance) == hub_minimum(ring)
+
+
+@pytest.mark.parametrize(
+    ("rows", "columns", "colors", "side"), [(1, 2, 2, 2), (1, 3, 3, 1), (2, 2, 2, 1), (2, 2, 3, 1)]
+)
+def test_hub_grid_against_brute_force(rows: int, columns: int, colors: int, side: int) -> None:
+    for seed in range(3):
+        instance = hub_grid(seed, rows, columns, colors, side)
+        answer = CpSatSolver().minimize(instance, Options(workers=1))
+        assert answer.lower_bound == minimum(instance)
+
+
+@pytest.mark.parametrize("self_edges", [False, True])
+def test_planar_graphs_are_planar_and_connected(self_edges: bool) -> None:
+    kinds: Counter[str] = Counter()
+    for seed in range(40):
+        instance = planar_graph(seed, 5, 9, 3, self_edges=self_edges)
+        assert len(instance.edges) == 9 and all(len(cell.loops) == 1 for cell in instance.cells)
+        assert _points(instance) == 2 - 5 + 9
+        for edge in instance.edges:
+            shared = set(instance.cells[edge.left].colors) & set(instance.cells[edge.right].colors)
+            kinds["self-edge"] += edge.left == edge.right
+            kinds["dead"] += not instance.joinable(edge.id)
+            kinds["partly dead"] += 0 < len(instance.joinable(edge.id)) < len(shared)
+    assert (kinds["self-edge"] > 0) == self_edges
+    assert kinds["dead"] > 0 and kinds["partly dead"] > 0
+
+
+def test_planar_graph_of_one_cell() -> None:
+    alone = planar_graph(0, 1, 0, 2)
+    assert alone.edges == () and alone.cells[0].loops == ()
+    looped = planar_graph(0, 1, 3, 2, self_edges=True)
+    assert len(looped.edges) == 3 and _points(looped) == 2 - 1 + 3
+
+
+def _points(instance: Instance) -> int:
+    """The points where areas meet. On a sphere, with the outside as one more area of as many loops
+    as it takes, Euler's formula fixes how many there are."""
+    place = {
+        d: (loop, i) for cell in instance.cells for loop in cell.loops for i, d in enumerate(loop)
+    }
+    outer = [edge.id for edge in instance.edges if edge.right == OUTSIDE]
+    assert all(edge.left != OUTSIDE for edge in instance.edges)
+    if outer:  # the outside's one loop, walked the other way round than its cells are
+        around = tuple(-edge for edge in reversed(outer))
+        place |= {dart: (around, i) for i, dart in enumerate(around)}
+    points, seen = 0, set[int]()
+    for first in place:
+        points += first not in seen
+        dart = first
+        while dart not in seen:
+            seen.add(dart)
+            loop, i = place[-dart]
+            dart = loop[i - 1]
+    return points
+
+
+def _points_and_outer_loops(instance: Instance) -> tuple[int, int]:
+    """The points where areas meet, and the border loops of what is unreachable.
+
+    A walk round a point that the outside touches goes from one edge of the outside to the one that
+    follows it on the outside's border, since the outside touches each point at most once here.
+    """
+    place = {
+        d: (loop, i) for cell in instance.cells for loop in cell.loops for i, d in enumerate(loop)
+    }
+    outer = [
+        dart
+        for edge in instance.edges
+        for dart, side in ((edge.id, edge.left), (-edge.id, edge.right))
+        if side == OUTSIDE
+    ]
+    follows: dict[int, int] = {}
+    walked: set[int] = set()
+    for dart in outer:
+        here = -dart  # starts where the outside's dart ends
+        while True:
+            walked.add(here)
+            loop, i = place[here]
+            before = loop[i - 1]
+            if -before not in place:
+                follows[dart] = -before
+                break
+            here = -before
+    assert sorted(follows.values()) == sorted(outer)
+    points = len(outer)
+    for first in place:
+        points += first not in walked
+        dart = first
+        while dart not in walked:
+            walked.add(dart)
+            loop, i = place[dart]
+            dart = -loop[i - 1]
+    loops, seen = 0, set[int]()
+    for dart in outer:
+        loops += dart not in seen
+        while dart not in seen:
+            seen.add(dart)
+            dart = follows[dart]
+    return points, loops
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: blobs(0, 1, 2),
+        lambda: blobs(0, 5, 0),
+        lambda: hub(0, 1, 3),
+        lambda: hub(0, 5, 2),
+        lambda: hub_grid(0, 0, 2, 3),
+        lambda: hub_grid(0, 2, 2, 1),
+        lambda: hub_grid(0, 1, 1, 2, 0),
+        lambda: planar_graph(0, 0, 3, 2),
+        lambda: planar_graph(0, 4, 2, 2),
+        lambda: planar_graph(0, 2, 2, 0),
+    ],
+)
+def test_impossible_families_are_refused(make: object) -> None:
+    with pytest.raises(InputError):
+        make()  # type: ignore[operator]

@@ -1,6 +1,0 @@
-"""Where the instance library is."""
-
-from pathlib import Path
-
-INSTANCES = Path(__file__).parents[1] / "instances"
-PAPER = INSTANCES / "paper"

@@ -1,0 +1,189 @@
+"""Bounds and reductions beside the model: set cover, strangers, dominated colors, crossings."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from dataclasses import replace
+
+from bruteforce import minimum, vertex_minimum
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from library import PAPER
+
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.solvers.bounds.cover import color_regions, set_cover, strangers
+from cellcolor.solvers.bounds.crossings import enough_crossings
+from cellcolor.solvers.bounds.domination import drop_dominated
+from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+RED, BLUE = 0, 1
+SEEDS = st.integers(0, 10**6)
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
+def test_set_cover_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    cover = set_cover(instance).regions
+    assert set().union(*(touched for _, touched in cover)) == set(range(len(instance.cells)))
+    assert len(cover) <= minimum(instance)
+
+
+def test_set_cover_splits_colors_into_regions() -> None:
+    # Two red cells that do not touch need a segment each.
+    apart = Instance("apart", ("red",), (Cell(0, (RED,), ()), Cell(1, (RED,), ())), ())
+    assert set_cover(apart).bound == 2
+
+
+@settings(max_examples=30, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 4))
+def test_dropping_dominated_colors_keeps_the_minimum(seed: int, cells: int, colors: int) -> None:
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    reduced = drop_dominated(instance)
+    assert all(own <= set(cell.colors) for own, cell in zip(reduced, instance.cells, strict=True))
+    assert minimum(with_colors(instance, reduced)) == minimum(instance)
+
+
+def with_colors(instance: Instance, colors: tuple[frozenset[int], ...]) -> Instance:
+    """The instance with fewer colors a cell."""
+    cells = tuple(
+        replace(cell, colors=tuple(sorted(own)))
+        for cell, own in zip(instance.cells, colors, strict=True)
+    )
+    edges = []
+    for edge in instance.edges:
+        left = instance.joinable(edge.id)
+        if left:
+            left = tuple(c for c in left if c in colors[edge.left] & colors[edge.right])
+        edges.append(replace(edge, colors=left))
+    return replace(instance, cells=cells, edges=tuple(edges))
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
+def test_strangers_share_no_region(seed: int, cells: int, colors: int) -> None:
+    """Against trying all sets of cells."""
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    regions = [touched for _, touched in color_regions(instance)]
+
+    def apart(chosen: tuple[int, ...]) -> bool:
+        return all(len(touched.intersection(chosen)) < 2 for touched in regions)
+
+    found = strangers(instance)
+    assert apart(tuple(found)) and len(found) <= set_cover(instance).bound
+    more = itertools.combinations(range(len(instance.cells)), len(found) + 1)
+    assert not any(map(apart, more))
+
+
+def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:
+    """Cells 0 and 1 have red and blue, but blue goes from one to the other through cell 2 only.
+
+    There a green corridor from 3 to 4 would be in its way: red is needed for 2 segments.
+    """
+    green = 2
+    instance = Instance(
+        "way round",
+        ("red", "blue", "green"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2),)),
+            Cell(1, (RED, BLUE), ((-1, 3),)),
+            Cell(2, (BLUE, green), ((-2, 4, -3, 5),)),
+            Cell(3, (green,), ((-4,),)),
+            Cell(4, (green,), ((-5,),)),
+        ),
+        (
+            Edge(1, 0, 1, (RED,)),
+            Edge(2, 0, 2),
+            Edge(3, 1, 2),
+            Edge(4, 2, 3),
+            Edge(5, 2, 4),
+        ),
+    )
+    assert minimum(instance) == 2
+    assert solve(instance, Options()).segments == 2
+
+
+def test_a_crack_keeps_a_color_from_being_dominated() -> None:
+    # Blue is everywhere where red is, but only red passes the one edge.
+    instance = Instance.read(PAPER / "dominated-by-crack.json")
+    assert drop_dominated(instance) == (frozenset({RED}), frozenset({RED}))
+    assert solve(instance, Options()).segments == 1
+
+
+def test_crossings_that_are_enough() -> None:
+    """X and Y of the corridors share red and blue, and each touches two cells of one color more."""
+    instance = Instance.read(PAPER / "parallel-corridors.json")
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    enough = enough_crossings(instance, colors)
+    assert enough == {edge: 2 if edge == 2 else 1 for edge in (1, 2, 3, 5, 7)}
+
+
+def test_a_ring_of_cells_that_share_two_colors_bounds_no_crossings() -> None:
+    cells = tuple(Cell(i, (RED, BLUE), ((i + 1, -((i - 1) % 3 + 1)),)) for i in range(3))
+    edges = tuple(Edge(i + 1, i, (i + 1) % 3) for i in range(3))
+    instance = Instance("ring of three", ("red", "blue"), cells, edges)
+    both = [frozenset({RED, BLUE})] * 3
+    assert set(enough_crossings(instance, both).values()) == {math.inf}
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
+def test_more_crossings_than_enough_gain_nothing(seed: int, cells: int, colors: int) -> None:
+    """Against the reference solver, which knows nothing of this, with one strand more."""
+    instance = planar_graph(seed, cells, cells + 2, colors)
+    enough = max(enough_crossings(instance, drop_dominated(instance)).values(), default=1)
+    assume(enough <= 2)
+    strands = int(enough)
+    found = solve(instance, Options(search_space="surface", strands=strands))
+    assert found.proved_for_surface
+    wider = Options(search_space="surface", strands=strands + 1)
+    assert solve(instance, wider, "dfs").segments == found.segments
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=SEEDS, colors=st.integers(2, 3), cracks=st.integers(0, 2))
+def test_the_surface_bound_holds_for_vertex_colorings(seed: int, colors: int, cracks: int) -> None:
+    """No painting of the mesh's vertices, found without the graph, has fewer segments."""
+    surface = blobs(seed, size=5, colors=colors, waves=0.5, cracks=cracks)
+    instance = decompose(surface)
+    assume(1 < len(instance.cells) < 9)
+    found = solve(instance, Options())
+    assert found.surface_lower_bound <= vertex_minimum(surface)
+
+
+def test_two_cells_that_nothing_separates_become_one() -> None:
+    """A row of three cells of red and blue; the crack on the last edge lets only red through."""
+    cells = tuple(
+        Cell(i, (RED, BLUE), loops) for i, loops in enumerate((((1,),), ((-1, 2),), ((-2,),)))
+    )
+    instance = Instance("row", ("red", "blue"), cells, (Edge(1, 0, 1), Edge(2, 1, 2, (RED,))))
+    found = merge_cells(instance, dict.fromkeys(range(3), frozenset({RED, BLUE})))
+    both = found.part_of[0]
+    assert found.part_of == {0: both, 1: both, 2: 2}
+    assert found.loops == {both: [[2]], 2: [[-2]]}
+    assert found.sides == {2: (both, 2)}
+    assert found.joinable == {2: frozenset({RED})}
+
+
+def test_merging_around_a_cell_leaves_a_hole() -> None:
+    """Two half rings of red and blue between a cell inside and one outside."""
+    instance = Instance(
+        "ring",
+        ("red", "blue", "green"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2, 3, 5),)),
+            Cell(1, (RED, BLUE), ((-1, 6, -3, 4),)),
+            Cell(2, (2, RED), ((-2, -4),)),
+            Cell(3, (RED,), ((-5, -6),)),
+        ),
+        (Edge(1, 0, 1), Edge(2, 0, 2), Edge(3, 0, 1), Edge(4, 1, 2), Edge(5, 0, 3), Edge(6, 1, 3)),
+    )
+    found = merge_cells(instance, {cell.id: frozenset(cell.colors) for cell in instance.cells})
+    ring = found.part_of[0]
+    assert found.part_of == {0: ring, 1: ring, 2: 2, 3: 3}
+    assert {frozenset(loop) for loop in found.loops[ring]} == {frozenset({2, 4}), frozenset({5, 6})}

@@ -1,0 +1,76 @@
+"""The minimum does not depend on names, starting darts, the order of loops, seams or mirrors."""
+
+from __future__ import annotations
+
+import random
+
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from library import PAPER
+from relabelled import mirrored, renamed, turned
+
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.decomposition import decompose
+from cellcolor.judges.division import check_division
+from cellcolor.lab.families import blobs
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+SEEDS = st.integers(0, 10**6)
+HOLED = [Instance.read(PAPER / f"{name}.json") for name in ("annulus", "three-loops")]
+
+
+def minimum_of(instance: Instance, strands: int) -> int:
+    """The minimum with so many strands an edge, its division seen by the checker."""
+    space = "paper" if strands == 1 else "surface"
+    found = solve(instance, Options(search_space=space, strands=strands))
+    assert found.cells is not None
+    assert check_division(instance, found.cells, found.seams, strands).valid
+    assert found.lower_bound == found.segments or strands > 1
+    return len({sub.segment for cell in found.cells for sub in cell.subcells})
+
+
+def same_minimum(instance: Instance, seed: int, strands: int = 1) -> None:
+    rng = random.Random(seed)
+    expected = minimum_of(instance, strands)
+    assert minimum_of(turned(instance, rng), strands) == expected
+    assert minimum_of(renamed(instance, rng), strands) == expected
+    assert minimum_of(mirrored(instance), strands) == expected
+
+
+@settings(max_examples=15, deadline=None)
+@given(seed=SEEDS, instance=st.sampled_from(HOLED))
+def test_cells_with_several_loops(seed: int, instance: Instance) -> None:
+    same_minimum(instance, seed)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=SEEDS, islands=st.integers(0, 2), cracks=st.integers(0, 2), strands=st.integers(1, 2))
+def test_random_surfaces(seed: int, islands: int, cracks: int, strands: int) -> None:
+    """Islands make cells with several loops, cracks cells that touch themselves."""
+    surface = blobs(
+        seed, size=8, colors=2, coverage=(0.8, 1.0), rim=3, islands=islands, cracks=cracks
+    )
+    instance = decompose(surface)
+    assume(1 < len(instance.cells) < 12)
+    same_minimum(instance, seed, strands)
+
+
+@settings(max_examples=20, deadline=None)
+@given(seed=SEEDS)
+def test_a_closed_surface_with_several_loops(seed: int) -> None:
+    """A sphere: one cell of two colors around patches, each patch a loop of its own."""
+    rng = random.Random(seed)
+    patches = [rng.randrange(2) for _ in range(rng.randint(1, 4))]
+    instance = Instance(
+        "sphere",
+        ("red", "blue"),
+        (
+            Cell(0, (0, 1), tuple((edge,) for edge in range(1, len(patches) + 1))),
+            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(patches, start=1)),
+        ),
+        tuple(Edge(i, 0, i) for i in range(1, len(patches) + 1)),
+    )
+    # Discs in a sphere do not hinder each other: every color's patches can be joined.
+    assert minimum_of(instance, 1) == len(set(patches))
+    same_minimum(instance, seed)

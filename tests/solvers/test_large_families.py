@@ -1,0 +1,269 @@
+"""Random surfaces of any genus, parts, hubs with loops, cover trees: legal, seeded, as large."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.mesh import directed_edges
+from cellcolor.decomposition import decompose
+from cellcolor.errors import InputError
+from cellcolor.lab.families import (
+    SHAPES,
+    Shape,
+    cover_tree,
+    hub_with_loops,
+    part,
+    voronoi,
+    wide_hub,
+)
+from cellcolor.lab.families.meshes import make_mesh
+
+EULER = {"disc": 1, "annulus": 0, "sphere": 2, "torus": 0, "double torus": -2}
+BORDERS = {"disc": 1, "annulus": 2, "sphere": 0, "torus": 0, "double torus": 0}
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("size", [6, 7, 20])
+def test_meshes_have_the_genus_of_their_shape(shape: Shape, size: int) -> None:
+    """Euler's formula, and how many loops the border has; the mesh itself refuses non-manifolds."""
+    vertices, faces = make_mesh(shape, size)
+    assert 0.7 <= len(vertices) / size**2 <= 1.4
+    third = directed_edges(faces, len(vertices))
+    edges = {(min(a, b), max(a, b)) for a, b in third}
+    assert len(vertices) - len(edges) + len(faces) == EULER[shape]
+    following = {b: a for a, b in third if (b, a) not in third}
+    loops = 0
+    while following:
+        loops += 1
+        vertex = next(iter(following))
+        while vertex in following:
+            vertex = following.pop(vertex)
+    assert loops == BORDERS[shape]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_meshes_face_outward(shape: Shape) -> None:
+    """A closed mesh has a positive volume, a flat one positive areas."""
+    vertices, faces = make_mesh(shape, 12)
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    normals = np.cross(b - a, c - a)
+    if BORDERS[shape]:
+        assert (normals[:, 2] > 0).all()
+    else:
+        assert (a * normals).sum() > 0
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    seed=st.integers(0, 10**6),
+    shape=st.sampled_from(SHAPES),
+    size=st.integers(6, 16),
+    share=st.floats(0, 1),
+    colors=st.integers(1, 7),
+    scattered=st.booleans(),
+    cracks=st.integers(0, 4),
+    islands=st.integers(0, 3),
+    holes=st.integers(0, 2),
+)
+def test_voronoi_surfaces_are_legal(
+    seed: int,
+    shape: Shape,
+    size: int,
+    share: float,
+    colors: int,
+    scattered: bool,
+    cracks: int,
+    islands: int,
+    holes: int,
+) -> None:
+    """Surface and instance check themselves; the decomposition refuses cells with a handle."""
+    regions = 1 + int(share * 0.7 * size**2)
+    surface = voronoi(
+        seed,
+        shape,
+        size,
+        regions,
+        colors,
+        scattered=scattered,
+        cracks=cracks,
+        islands=islands,
+        holes=holes,
+    )
+    decompose(surface)
+
+
+@pytest.mark.parametrize("shape", ["torus", "double torus"])
+def test_one_region_with_a_handle_is_cut(shape: Shape) -> None:
+    """A single region that every color reaches is the whole surface, which is not planar."""
+    for seed in range(5):
+        instance = decompose(voronoi(seed, shape, 10, 1, 2, coverage=(1.0, 1.0)))
+        assert len(instance.cells) > 1
+
+
+def test_voronoi_surfaces_are_seeded_and_as_large_as_asked() -> None:
+    one, again, other = (
+        voronoi(s, "annulus", 20, 60, 6, cracks=3, islands=2, holes=2) for s in (3, 3, 4)
+    )
+    assert one.to_json() == again.to_json() != other.to_json()
+    assert one.cracks and () in one.vertex_colors
+    # Neighbors with equal sets are rare among 2^6: nearly every region is a cell.
+    assert 50 <= len(decompose(voronoi(1, "sphere", 30, 60, 6, scattered=True)).cells) <= 60
+
+
+def test_grown_colors_are_connected_and_scattered_ones_are_not() -> None:
+    def components(scattered: bool) -> int:
+        surface = voronoi(2, "sphere", 24, 80, 4, scattered=scattered, coverage=(0.3, 0.4))
+        third = directed_edges(surface.faces, len(surface.vertices))
+        count = 0
+        for color in range(4):
+            left = {v for v, own in enumerate(surface.vertex_colors) if color in own}
+            while left:
+                count += 1
+                stack = [left.pop()]
+                while stack:
+                    vertex = stack.pop()
+                    found = {b for a, b in third if a == vertex and b in left}
+                    left -= found
+                    stack += found
+        return count
+
+    assert components(False) == 4
+    assert components(True) > 8
+
+
+@pytest.mark.parametrize(("cells", "colors"), [(150, 60), (300, 100), (500, 200)])
+def test_parts_have_so_many_cells_and_colors(cells: int, colors: int) -> None:
+    surface = part(1, cells, colors)
+    instance = decompose(surface)
+    assert (len(instance.cells), len(instance.colors)) == (cells, colors)
+    sizes = sorted(Counter(c for cell in instance.cells for c in cell.colors).values())
+    assert len(sizes) == colors
+    # Like raw real parts: most colors are local, some reach over much of the part.
+    assert sizes[colors // 2] <= 2 and sizes[-4] > cells / 8
+    assert max(len(cell.colors) for cell in instance.cells) <= 8
+    assert max(sum(map(len, cell.loops)) for cell in instance.cells) >= 20
+    assert max(len(cell.loops) for cell in instance.cells) >= 5
+    assert any(edge.colors is not None for edge in instance.edges)
+
+
+def test_the_colors_of_a_part_are_connected_components() -> None:
+    """As a front end makes them: walked over mesh edges without a crack, each is one piece."""
+    surface = part(2, 150, 60)
+    cracks = {(crack.i, crack.j): crack.colors for crack in surface.cracks}
+    beside: dict[int, set[int]] = {}
+    for a, b in directed_edges(surface.faces, len(surface.vertices)):
+        beside.setdefault(a, set()).add(b)
+    for color in range(60):
+        left = {v for v, own in enumerate(surface.vertex_colors) if color in own}
+        stack = [left.pop()]
+        while stack:
+            a = stack.pop()
+            for b in beside[a] & left:
+                if color not in cracks.get((min(a, b), max(a, b)), ()):
+                    left.remove(b)
+                    stack.append(b)
+        assert not left, color
+
+
+def test_parts_are_seeded() -> None:
+    one, again, other = (part(seed, 100, 30).to_json() for seed in (7, 7, 8))
+    assert one == again != other
+
+
+def test_hub_with_loops_has_a_ring_round_each() -> None:
+    instance = hub_with_loops(3, 5, 4, 4)
+    assert len(instance.cells) == 21
+    assert [len(loop) for loop in instance.cells[0].loops] == [4] * 5
+    for loop in instance.cells[0].loops:
+        ring = [instance.cells[instance.across(dart)].colors[0] for dart in loop]
+        assert all(a != b for a, b in zip(ring, ring[1:] + ring[:1], strict=True))
+    assert hub_with_loops(3, 5, 4, 4).to_json() == instance.to_json()
+    assert hub_with_loops(4, 5, 4, 4).to_json() != instance.to_json()
+    assert _characteristic(instance) == 2
+
+
+def test_wide_hub_has_petals_of_many_colors() -> None:
+    instance = wide_hub(1, 200, 100, 20)
+    assert len(instance.cells) == 201 and len(instance.cells[0].loops[0]) == 200
+    assert {len(cell.colors) for cell in instance.cells[1:]} == {20}
+    assert wide_hub(1, 200, 100, 20).to_json() == instance.to_json()
+    assert wide_hub(2, 200, 100, 20).to_json() != instance.to_json()
+    assert _characteristic(instance) == 2
+
+
+def test_cover_tree_is_a_tree() -> None:
+    instance = cover_tree(1, 50, 6, 50)
+    assert len(instance.cells) == 350 and len(instance.edges) == 349
+    assert Counter(len(cell.colors) for cell in instance.cells) == {3: 300, 50: 50}
+    assert cover_tree(1, 50, 6, 50).to_json() == instance.to_json()
+    assert cover_tree(2, 50, 6, 50).to_json() != instance.to_json()
+    reached, stack = {0}, [0]
+    while stack:
+        for loop in instance.cells[stack.pop()].loops:
+            for cell in map(instance.across, loop):
+                if cell not in reached:
+                    reached.add(cell)
+                    stack.append(cell)
+    assert len(reached) == 350
+
+
+def _characteristic(instance: Instance) -> int:
+    """2 on a sphere: each loop of each cell, and of what is unreachable, is glued to a disc.
+
+    Walking from a dart to the one that ends where it begins gives the points where areas meet.
+    """
+    after: dict[int, int] = {}
+    for cell in instance.cells:
+        for loop in cell.loops:
+            after |= dict(zip(loop, loop[1:] + loop[:1], strict=True))
+    outer = [
+        dart
+        for edge in instance.edges
+        for dart, side in ((edge.id, edge.left), (-edge.id, edge.right))
+        if side == OUTSIDE
+    ]
+    # The ring of outer edges runs against the petals.
+    by_petal = {instance.edge(dart).left: dart for dart in outer}
+    first = 1
+    for loop in instance.cells[0].loops:
+        petals = list(range(first, first + len(loop)))
+        for here, following in zip(petals, petals[1:] + petals[:1], strict=True):
+            after[by_petal[following]] = by_petal[here]
+        first += len(loop)
+    points, seen = 0, set[int]()
+    for dart in after:
+        points += dart not in seen
+        while dart not in seen:
+            seen.add(dart)
+            dart = after[-dart]
+    holes = len(instance.cells[0].loops)
+    # The hub is a sphere with so many holes, petals and what is unreachable are discs.
+    return points - len(instance.edges) + (2 - holes) + (len(instance.cells) - 1) + holes
+
+
+@pytest.mark.parametrize(
+    "make",
+    [
+        lambda: voronoi(0, "torus", 5),
+        lambda: voronoi(0, "disc", 8, 0),
+        lambda: voronoi(0, "disc", 8, 65),
+        lambda: voronoi(0, "disc", 8, 5, 0),
+        lambda: part(0, 10, 3),
+        lambda: part(0, 100, 60),
+        lambda: hub_with_loops(0, 0, 4, 4),
+        lambda: hub_with_loops(0, 2, 3, 2),
+        lambda: wide_hub(0, 5, 3, 4),
+        lambda: wide_hub(0, 1, 3, 1),
+        lambda: cover_tree(0, 0, 3, 4),
+        lambda: cover_tree(0, 3, 3, 2),
+    ],
+)
+def test_impossible_families_are_refused(make: object) -> None:
+    with pytest.raises(InputError):
+        make()  # type: ignore[operator]

@@ -1,0 +1,123 @@
+"""Options of a search: what cannot be asked for is refused where it is asked, with a sentence."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from library import PAPER
+from meshes import drawn
+from ortools.sat.python import cp_model
+
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import Deadline
+from cellcolor.errors import CellcolorError, InputError
+from cellcolor.oracle import proven_range
+from cellcolor.solvers.checked import ContradictionError, enumerate_schemes, make_solver, solve
+from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.interface import STRANDS, Options
+
+RING = Instance.read(PAPER / "ring.json")
+CORRIDORS = Instance.read(PAPER / "parallel-corridors.json")
+
+
+@pytest.mark.parametrize(
+    ("options", "field", "message"),
+    [
+        ({"search_space": "foo"}, "search_space", "'paper' or 'surface'"),
+        ({"search_space": None}, "search_space", "'paper' or 'surface'"),
+        ({"strands": 2}, "strands", "must be 1 in search space 'paper', is 2"),
+        ({"strands": 0}, "strands", "greater than or equal to 1"),
+        ({"search_space": "surface", "strands": 0}, "strands", "greater than or equal to 1"),
+        ({"search_space": "surface", "strands": 2.0}, "strands", "valid integer"),
+        ({"search_space": "surface", "strands": True}, "strands", "valid integer"),
+        ({"workers": -3}, "workers", "greater than or equal to 1"),
+        ({"workers": 0}, "workers", "greater than or equal to 1"),
+        ({"workers": 10**14}, "workers", "less than or equal to 1000"),
+        ({"workers": math.nan}, "workers", "valid integer"),
+        ({"seed": -1}, "seed", "greater than or equal to 0"),
+        ({"seed": 2**31}, "seed", "less than or equal to 2147483647"),
+        ({"seed": None}, "seed", "valid integer"),
+        ({"deadline": 10.0}, "deadline", "Deadline"),
+        ({"fewest_cuts": 1}, "fewest_cuts", "valid boolean"),
+        ({"start": "solution.json"}, "start", "Start"),
+    ],
+)
+def test_refused(options: dict[str, Any], field: str, message: str) -> None:
+    with pytest.raises(InputError) as refusal:
+        Options(**options)
+    assert refusal.value.field == field
+    assert message in refusal.value.message
+
+
+def test_time_that_is_no_number() -> None:
+    for make in (lambda: Deadline.after(math.nan), lambda: Deadline(math.nan)):
+        with pytest.raises(InputError, match="time_limit: is not a number of seconds"):
+            make()
+
+
+def test_one_default_for_strands() -> None:
+    """Alone and in a solution; the command line and the oracle take the same."""
+    for space, strands in STRANDS.items():
+        assert Options(space).strands == strands
+        assert solve(RING, Options(space)).strands == strands
+    assert Options("surface", np.int64(3)).strands == 3
+    # What was asked for stays when something else is replaced.
+    assert replace(Options("surface", 3), seed=1).strands == 3
+    with pytest.raises(InputError, match="strands"):
+        replace(Options("surface"), search_space="paper")
+
+
+@pytest.mark.parametrize("options", [{"strands": 0}, {"workers": 0}, {"seed": -1}])
+def test_the_oracle_refuses_before_it_searches(options: dict[str, int]) -> None:
+    # One cell: its range is known before the search space `surface` is come to.
+    with pytest.raises(InputError) as refusal:
+        proven_range(drawn("aa aa", {"a": [0]}), **options)
+    assert refusal.value.field == next(iter(options))
+
+
+@pytest.mark.parametrize("options", [Options(fewest_cuts=True), Options("surface", 2)])
+def test_what_a_solver_cannot_do_is_not_done_silently(options: Options) -> None:
+    if options.fewest_cuts:
+        with pytest.raises(InputError, match="fewest_cuts: goes with the solver cp-sat"):
+            solve(RING, options, "dfs")
+    else:
+        for solver in ("cp-sat", "dfs"):
+            with pytest.raises(InputError, match="search_space"):
+                list(make_solver(solver).optimal_schemes(CORRIDORS, options, 2))
+
+
+class TestStatusesOfTheSchemes:
+    """What ends an enumeration, other than that all schemes have been found."""
+
+    def end_with(self, monkeypatch: pytest.MonkeyPatch, outcome: Any) -> None:
+        def end(*_: object) -> cp_model.CpSolverStatus:
+            if isinstance(outcome, Exception):
+                raise outcome
+            return outcome
+
+        monkeypatch.setattr(cp_model.CpSolver, "solve", end)
+
+    def test_a_model_that_is_none(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.end_with(monkeypatch, cp_model.MODEL_INVALID)
+        with pytest.raises(CellcolorError, match="not valid"):
+            list(CpSatSolver().optimal_schemes(RING, Options(), 2))
+
+    def test_a_search_that_breaks_down(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.end_with(monkeypatch, MemoryError("no memory"))
+        with pytest.raises(MemoryError):
+            list(CpSatSolver().optimal_schemes(RING, Options(), 2))
+
+    def test_none_at_all_contradicts_the_minimum(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.end_with(monkeypatch, cp_model.INFEASIBLE)
+        with pytest.raises(ContradictionError, match="no scheme with 2 segments"):
+            list(enumerate_schemes(RING, Options(), "cp-sat", 2))
+
+
+@pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
+def test_more_strands_than_fit_into_memory_are_refused(solver: str) -> None:
+    with pytest.raises(InputError, match=r"strands: .* are too many"):
+        solve(CORRIDORS, Options("surface", 10**20), solver)

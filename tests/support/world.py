@@ -1,0 +1,86 @@
+"""Collisions once more, by coal on Pinocchio's own shapes: one configuration at a time."""
+
+from __future__ import annotations
+
+import coal
+import numpy as np
+import pinocchio as pin
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.robot import Robot
+
+
+class World:
+    """Signed distances (m, negative inside) between the arm and what is around it."""
+
+    def __init__(self, robot: Robot, vertices: Array, faces: Array) -> None:
+        self.model, self.geometry = robot.model, robot.geometry
+        self.data = self.model.createData()
+        self.geometry_data = self.geometry.createData()
+        self.object = coal.BVHModelOBBRSS()
+        self.object.beginModel(len(faces), len(vertices))
+        self.object.addVertices(vertices)
+        self.object.addTriangles(faces.astype(np.int32))
+        self.object.endModel()
+        shapes = self.geometry.geometryObjects
+        self.link = [self.model.frames[shape.parentFrame].name for shape in shapes]
+
+    def place(self, q: Array) -> None:
+        """Put the arm into a configuration."""
+        pin.updateGeometryPlacements(self.model, self.data, self.geometry, self.geometry_data, q)
+
+    def to_itself(self, pairs: set[frozenset[str]]) -> float:
+        """Smallest distance between shapes of the given pairs of links."""
+        return min(
+            self._between(i, j)
+            for i in range(len(self.link))
+            for j in range(i)
+            if frozenset((self.link[i], self.link[j])) in pairs
+        )
+
+    def to_object(self) -> float:
+        """Smallest distance of a moving shape to the mesh; 0 when it touches."""
+        return self.to_solid(self.object, coal.Transform3s())
+
+    def to_solid(self, solid: coal.CollisionGeometry, pose: coal.Transform3s) -> float:
+        """Smallest distance of a moving shape to something that stands still."""
+        return min(
+            self._distance(solid, pose, i)
+            for i in range(len(self.link))
+            if self.link[i] != "base_link"
+        )
+
+    def to_ground(self, height: float, exempt: tuple[str, ...]) -> float:
+        """Smallest distance of a shape to the half space below a height."""
+        ground = coal.Halfspace(np.array([0.0, 0.0, 1.0]), height)
+        return min(
+            self._distance(ground, coal.Transform3s(), i)
+            for i in range(len(self.link))
+            if self.link[i] not in exempt
+        )
+
+    def _pose(self, shape: int) -> coal.Transform3s:
+        placement = self.geometry_data.oMg[shape]
+        return coal.Transform3s(placement.rotation, placement.translation)
+
+    def _between(self, i: int, j: int) -> float:
+        return self._distance(self.geometry.geometryObjects[i].geometry, self._pose(i), j)
+
+    def _distance(self, other: coal.CollisionGeometry, pose: coal.Transform3s, i: int) -> float:
+        shape = self.geometry.geometryObjects[i].geometry
+        request, result = coal.DistanceRequest(), coal.DistanceResult()
+        return float(coal.distance(other, pose, shape, self._pose(i), request, result))
+
+
+# The pairs that share a joint, or are fixed to each other, written out by hand.
+NEIGHBORS = [
+    {"base_link", "shoulder_link"},
+    {"shoulder_link", "upper_arm_link"},
+    {"upper_arm_link", "forearm_link"},
+    {"forearm_link", "wrist_1_link"},
+    {"wrist_1_link", "wrist_2_link"},
+    {"wrist_2_link", "wrist_3_link"},
+    {"wrist_3_link", "tool_body"},
+]
+LINKS = sorted(set().union(*NEIGHBORS))
+PAIRS = {frozenset((a, b)) for a in LINKS for b in LINKS if a < b and {a, b} not in NEIGHBORS}
