@@ -20,12 +20,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import CellcolorError
-from cellcolor.judges.vertex_plan import check_plan
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options
 

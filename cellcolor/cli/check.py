@@ -6,6 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from cellcolor.checker.claimed_numbers import claims
+from cellcolor.checker.division import check_scheme, check_solution
+from cellcolor.checker.known_results import contradictions
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import instance_of, read_subject
 from cellcolor.cli.terminal import print_json, say
@@ -16,9 +19,6 @@ from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_ke
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
-from cellcolor.judges.claimed_numbers import claims
-from cellcolor.judges.division import check_scheme, check_solution
-from cellcolor.judges.known_results import contradictions
 
 
 def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) -> Exit:

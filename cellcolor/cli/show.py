@@ -187,8 +187,8 @@ def _graph(subject: _Subject) -> Picture2D:
 
 
 def _solution(subject: _Subject, claim: Path) -> Picture3D:
+    from cellcolor.checker.division import check_solution
     from cellcolor.data.solution import Solution
-    from cellcolor.judges.division import check_solution
     from cellcolor.pictures.by_segment import by_solution
     from cellcolor.pictures.mesh_picture import draw
 

@@ -15,6 +15,8 @@ from typing import IO
 
 import click
 
+from cellcolor.checker.division import check_solution
+from cellcolor.checker.known_results import contradictions
 from cellcolor.cli.exits import Exit, worst
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.interrupts import INTERRUPTS
@@ -36,8 +38,6 @@ from cellcolor.files.writing import (
     kind_of_format,
     write,
 )
-from cellcolor.judges.division import check_solution
-from cellcolor.judges.known_results import contradictions
 from cellcolor.solvers.interface import PORTFOLIO, Options, Start
 
 _SOLUTION = kind_of_format(solution_file.FORMAT)

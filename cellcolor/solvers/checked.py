@@ -5,13 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Iterator
 
+from cellcolor.checker.cutting_paths import cutting_paths
+from cellcolor.checker.dart_lists import MOST_DARTS
+from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.judges.cutting_paths import cutting_paths
-from cellcolor.judges.dart_lists import MOST_DARTS
-from cellcolor.judges.division import Report, check_scheme, check_solution
 from cellcolor.solvers.interface import Answer, Options, Progress, Solver
 
 __all__ = [

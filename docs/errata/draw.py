@@ -14,11 +14,11 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
+from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
-from cellcolor.judges.vertex_plan import check_plan
 
 HERE = Path(__file__).resolve().parent
 PAPER = HERE.parents[1] / "instances" / "paper"

@@ -12,8 +12,8 @@ from commands import json_lines, run
 from library import PAPER
 from pages import small_wok
 
+from cellcolor.checker.known_results import contradictions
 from cellcolor.data.instance import Instance, Known, KnownResult
-from cellcolor.judges.known_results import contradictions
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 

@@ -17,13 +17,13 @@ from hypothesis import strategies as st
 from library import INSTANCES
 from meshes import surfaces
 
+from cellcolor.checker.division import check_solution
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance, Known, KnownResult, SurfaceReference
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.judges.division import check_solution
 
 VERSION_1 = Path(__file__).parent / "version_1"
 """Files that the program wrote, or read, when there was only version 1."""

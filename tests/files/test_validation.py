@@ -17,6 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
 
+from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Cell, Edge, Instance, Known, KnownResult, SurfaceReference
@@ -31,7 +32,6 @@ from cellcolor.data.solution import (
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.judges.vertex_plan import check_plan
 from cellcolor.oracle import judge
 
 Disguise = Callable[[Any], Any]

@@ -60,7 +60,7 @@ def boast(
 
 def believe_bounds(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the checker believe bounds that a painting of whole cells would refute at once."""
-    monkeypatch.setattr("cellcolor.judges.claimed_numbers.segments_of_whole_cells", lambda _: 1000)
+    monkeypatch.setattr("cellcolor.checker.claimed_numbers.segments_of_whole_cells", lambda _: 1000)
 
 
 right_minimize = CpSatSolver.minimize

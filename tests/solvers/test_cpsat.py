@@ -13,13 +13,13 @@ from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from ortools.sat.python import cp_model
 
+from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import TooLarge
-from cellcolor.judges.division import check_division
 from cellcolor.lab.families import blobs, hub, hub_minimum, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, strangers
 from cellcolor.solvers.checked import solve

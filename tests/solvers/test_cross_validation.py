@@ -11,11 +11,11 @@ import pytest
 from bruteforce import literal_minimum, live_darts, minimum, optimal_schemes, vertex_minimum
 from library import PAPER
 
+from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SchemeKey, scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
-from cellcolor.judges.division import check_division
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver

@@ -15,12 +15,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 
+from cellcolor.checker.division import check_division
 from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import CellDivision, SubCell, scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.judges.division import check_division
 from cellcolor.lab.families import hub, planar_graph
 from cellcolor.solvers.dfs import ReferenceSolver, code, divisions, literal_cost, solver
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes

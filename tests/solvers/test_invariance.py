@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from library import PAPER
 from relabelled import mirrored, renamed, turned
 
+from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.decomposition import decompose
-from cellcolor.judges.division import check_division
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options

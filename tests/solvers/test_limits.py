@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 from library import INSTANCES
 from ortools.sat.python import cp_model
 
+from cellcolor.checker.division import check_division, check_solution
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import count_segments
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
-from cellcolor.judges.division import check_division, check_solution
 from cellcolor.lab.families import blobs, hub, planar_graph
 from cellcolor.lab.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds.conflicts import conflicts

@@ -14,11 +14,11 @@ from hypothesis import strategies as st
 from library import PAPER
 from relabelled import turned
 
+from cellcolor.checker.division import check_scheme
+from cellcolor.checker.drawable import can_be_drawn
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
 from cellcolor.decomposition import decompose
-from cellcolor.judges.division import check_scheme
-from cellcolor.judges.drawable import can_be_drawn
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options

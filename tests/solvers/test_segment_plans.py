@@ -15,11 +15,11 @@ from library import INSTANCES, PAPER
 from meshes import grid_faces, grid_points, surface
 from ortools.sat.python import cp_model
 
+from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
-from cellcolor.judges.division import check_division
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.conflicts import Area, conflicts
 from cellcolor.solvers.bounds.cover import color_regions, set_cover

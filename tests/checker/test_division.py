@@ -8,6 +8,9 @@ from dataclasses import replace
 import pytest
 from library import PAPER
 
+from cellcolor.checker.claimed_numbers import claims
+from cellcolor.checker.division import check_division, check_solution
+from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Cell, Edge, Instance
@@ -22,9 +25,6 @@ from cellcolor.data.solution import (
     SubCell,
 )
 from cellcolor.data.surface import Crack, LabelledSurface
-from cellcolor.judges.claimed_numbers import claims
-from cellcolor.judges.division import check_division, check_solution
-from cellcolor.judges.vertex_plan import check_plan
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from math import isclose
 
+from cellcolor.checker.cutting_paths import cutting_paths
+from cellcolor.checker.whole_cells import segments_of_whole_cells
 from cellcolor.data.bound import greatest
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
-from cellcolor.judges.cutting_paths import cutting_paths
-from cellcolor.judges.whole_cells import segments_of_whole_cells
 
 __all__ = ["claims", "number_problems"]
 

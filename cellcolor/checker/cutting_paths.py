@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import networkx as nx
 
+from cellcolor.checker.dart_lists import Strand, strand_of, twin
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import CellDivision, Division, Seam
-from cellcolor.judges.dart_lists import Strand, strand_of, twin
 
 
 def cutting_paths(instance: Instance, division: Division, seams: Sequence[Seam] = ()) -> int:

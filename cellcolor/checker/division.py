@@ -8,12 +8,10 @@ from dataclasses import dataclass
 
 import networkx as nx
 
-from cellcolor.data.instance import Instance
-from cellcolor.data.solution import CellDivision, Division, Seam, Solution
-from cellcolor.judges.claimed_numbers import number_problems
-from cellcolor.judges.dart_lists import BadSeams, Strand, TooManyDarts, live_lists, strand_of, twin
-from cellcolor.judges.drawable import can_be_drawn
-from cellcolor.judges.scheme_rules import (
+from cellcolor.checker.claimed_numbers import number_problems
+from cellcolor.checker.dart_lists import BadSeams, Strand, TooManyDarts, live_lists, strand_of, twin
+from cellcolor.checker.drawable import can_be_drawn
+from cellcolor.checker.scheme_rules import (
     Joinable,
     Painted,
     crossing,
@@ -21,7 +19,9 @@ from cellcolor.judges.scheme_rules import (
     superfluous,
     unavoidable_join,
 )
-from cellcolor.judges.several_loops import PaintedLoops, on_loops, unavoidable_join_on_loops
+from cellcolor.checker.several_loops import PaintedLoops, on_loops, unavoidable_join_on_loops
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import CellDivision, Division, Seam, Solution
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +146,7 @@ def check_solution(instance: Instance, solution: Solution) -> Report:
     """Hold a solution against its instance: its division, and every number in it.
 
     The lower bounds themselves are taken on trust
-    (:func:`~cellcolor.judges.claimed_numbers.claims` names what is); that they contradict nothing
+    (:func:`~cellcolor.checker.claimed_numbers.claims` names what is); that they contradict nothing
     is not.
     """
     problems: list[str] = []

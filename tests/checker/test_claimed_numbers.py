@@ -15,12 +15,12 @@ from hypothesis import strategies as st
 from library import PAPER
 from meshes import surfaces
 
+from cellcolor.checker.division import check_solution
+from cellcolor.checker.whole_cells import segments_of_whole_cells
 from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.decomposition import decompose
-from cellcolor.judges.division import check_solution
-from cellcolor.judges.whole_cells import segments_of_whole_cells
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options

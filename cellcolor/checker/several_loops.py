@@ -8,11 +8,11 @@ from itertools import combinations
 
 import networkx as nx
 
+from cellcolor.checker.cutting_paths import whole_subcells
+from cellcolor.checker.dart_lists import Strand, strands_along
+from cellcolor.checker.scheme_rules import Joinable, Painted, unavoidable_join
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
-from cellcolor.judges.cutting_paths import whole_subcells
-from cellcolor.judges.dart_lists import Strand, strands_along
-from cellcolor.judges.scheme_rules import Joinable, Painted, unavoidable_join
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,11 +13,11 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from relabelled import mirrored, renamed, turned
 
+from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import Division, SearchSpace, number_segments
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
-from cellcolor.judges.cutting_paths import cutting_paths
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
