@@ -18,7 +18,7 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.domination import drop_dominated
 from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.full import build
+from cellcolor.solvers.cpsat.model.full import full_model
 
 
 def variants() -> dict[str, tuple[Group, ...]]:
@@ -40,7 +40,7 @@ def main(file: Path, variant: str, seconds: float) -> str:
     strands = {edge.id: 1 for edge in instance.edges}
     graph = dart_graph(instance, colors, strands, seams_of(instance, colors, strands, None))
     groups = DEFINING + variants()[variant]
-    built = build(graph, color_regions(instance, colors), groups)
+    built = full_model(graph, color_regions(instance, colors), groups)
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 8
     solver.parameters.max_time_in_seconds = seconds

@@ -2,7 +2,15 @@
 
 from __future__ import annotations
 
-__all__ = ["CellcolorError", "InputError", "TooLarge"]
+__all__ = [
+    "BeatenBound",
+    "CellcolorError",
+    "ContradictionError",
+    "Disagreement",
+    "InputError",
+    "RefusedResult",
+    "TooLarge",
+]
 
 
 class CellcolorError(Exception):
@@ -31,3 +39,35 @@ class InputError(CellcolorError):
 
 class TooLarge(CellcolorError):
     """What was asked for would take more memory than anybody means to spend; it was not begun."""
+
+
+class ContradictionError(CellcolorError):
+    """Two things that cellcolor itself found contradict each other: cellcolor is wrong.
+
+    Nothing that is handed in can be the reason, so each of these is worth a report.
+    """
+
+
+class RefusedResult(ContradictionError):
+    """The checker refuses what a solver returned: one of the two is wrong."""
+
+
+class Disagreement(ContradictionError):
+    """Two solvers, or a solver and a search of another kind, contradict each other."""
+
+
+class BeatenBound(ContradictionError):
+    """A valid plan has fewer segments than the proven lower bound of its surface.
+
+    Attributes:
+        segments: of the plan.
+        lower: the bound that it beats.
+    """
+
+    def __init__(self, name: str, segments: int, lower: int) -> None:
+        self.segments = segments
+        self.lower = lower
+        super().__init__(
+            f"internal contradiction: a valid plan on {name!r} has {segments} segments, fewer "
+            f"than the proven lower bound of {lower}; please report this surface and plan"
+        )

@@ -25,28 +25,11 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
-from cellcolor.errors import CellcolorError
+from cellcolor.errors import BeatenBound
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options
 
-__all__ = ["Contradiction", "ProvenRange", "Verdict", "judge", "proven_range"]
-
-
-class Contradiction(CellcolorError):
-    """A valid plan has fewer segments than the proven lower bound: cellcolor itself is wrong.
-
-    Attributes:
-        segments: of the plan.
-        lower: the bound it beats.
-    """
-
-    def __init__(self, name: str, segments: int, lower: int) -> None:
-        self.segments = segments
-        self.lower = lower
-        super().__init__(
-            f"internal contradiction: a valid plan on {name!r} has {segments} segments, fewer "
-            f"than the proven lower bound of {lower}; please report this surface and plan"
-        )
+__all__ = ["ProvenRange", "Verdict", "judge", "proven_range"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,7 +164,7 @@ def judge(
         time_limit: seconds for finding the range otherwise.
 
     Raises:
-        Contradiction: the plan is valid and beats the lower bound.
+        BeatenBound: the plan is valid and beats the lower bound.
         InputError: a cell of the surface is not planar.
     """
     report = check_plan(surface, plan)
@@ -190,5 +173,5 @@ def judge(
     if bounds is None:
         bounds = proven_range(surface, time_limit=time_limit)
     if report.segments < bounds.lower:
-        raise Contradiction(surface.name, report.segments, bounds.lower)
+        raise BeatenBound(surface.name, report.segments, bounds.lower)
     return Verdict((), report.segments, bounds)

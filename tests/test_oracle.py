@@ -16,7 +16,8 @@ from cellcolor.cli import main
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.oracle import Contradiction, ProvenRange, Verdict, judge, proven_range
+from cellcolor.errors import BeatenBound
+from cellcolor.oracle import ProvenRange, Verdict, judge, proven_range
 
 CORRIDORS = PAPER / "parallel-corridors.surface.json"
 RED, BLUE, GREEN = 0, 1, 2
@@ -151,7 +152,7 @@ def test_invalid_plans() -> None:
 
 def test_contradiction_is_an_error() -> None:
     surface = drawn("AA AA", {"A": [RED]})
-    with pytest.raises(Contradiction) as found:
+    with pytest.raises(BeatenBound) as found:
         judge(surface, Plan((RED,) * 4), bounds=ProvenRange(2, 5))
     assert (found.value.segments, found.value.lower) == (1, 2)
 

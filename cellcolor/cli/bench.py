@@ -14,7 +14,7 @@ from cellcolor.cli.progress import progress_of
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain, shown
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.lab.races import SOLVERS, Run, compare, max_live_darts
+from cellcolor.lab.races import SOLVERS, Run, max_live_darts, race
 
 
 def bench_files(files: Sequence[Path], time_limit: float) -> Exit:
@@ -28,7 +28,7 @@ def bench_files(files: Sequence[Path], time_limit: float) -> Exit:
         try:
             instance = read_instance(file)
             with progress_of(file):
-                runs = compare(instance, time_limit)
+                runs = race(instance, time_limit)
         except CellcolorError as error:
             named = isinstance(error, InputError) and error.file
             complain(error if named else f"{file}: {error}")

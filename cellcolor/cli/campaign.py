@@ -21,7 +21,7 @@ from cellcolor.errors import InputError
 from cellcolor.files.temporary import remove_strays
 from cellcolor.files.writing import Output, is_folder_or_nothing, kind_of_format, write
 from cellcolor.lab.campaign.pool import Outcome, campaign
-from cellcolor.lab.campaign.summary import Kind, Summary
+from cellcolor.lab.campaign.summary import Summary, Tally
 
 
 def run_campaign(count: int, seed: int, time_limit: float, jobs: int, output: Path) -> Exit:
@@ -108,7 +108,7 @@ def _print(summary: Summary, seed: int, seconds: float) -> None:
     out.print(f"seed {seed}, {summary.total.instances} instances in {seconds:.0f} s")
 
 
-def _row(kind: Kind) -> list[str]:
+def _row(kind: Tally) -> list[str]:
     counts = (
         kind.instances,
         kind.proved,

@@ -22,7 +22,7 @@ from cellcolor.files.documents import read_document
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class BuiltScene:
     """A robot scene, built.
 
     Attributes:
@@ -43,7 +43,7 @@ def is_scene(path: Path) -> bool:
     return path.suffix == ".toml"
 
 
-def build_scene(path: Path, deadline: Deadline = NEVER) -> Scene:
+def build_scene(path: Path, deadline: Deadline = NEVER) -> BuiltScene:
     """Run the front end.
 
     Raises:
@@ -58,7 +58,7 @@ def build_scene(path: Path, deadline: Deadline = NEVER) -> Scene:
         result = build_surface(path, deadline, report_stage)
     INTERRUPTS.check()
     report = result.report
-    return Scene(result.surface, str(report), report.warnings, partial(side_file, result))
+    return BuiltScene(result.surface, str(report), report.warnings, partial(side_file, result))
 
 
 def read_graph(path: Path) -> Instance | LabelledSurface:

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import shown
-from cellcolor.solvers.interface import Progress
+from cellcolor.solvers.interface import OnProgress
 
 
 @contextmanager
-def progress_of(file: Path) -> Iterator[Progress | None]:
+def progress_of(file: Path) -> Iterator[OnProgress | None]:
     """A line with the time spent, the best division and the bound; None without a terminal."""
     name = shown(file.name)
     with _line(f"{name}: solving") as show:

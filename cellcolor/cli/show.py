@@ -140,7 +140,7 @@ def _same_surface(path: Path, instance: Instance, surface: LabelledSurface) -> N
 
 def _picture(subject: _Subject, claim: Path | None, view: View) -> Picture2D | Picture3D:
     from cellcolor.pictures import by_cell_and_color as paintings
-    from cellcolor.pictures.mesh_picture import draw
+    from cellcolor.pictures.mesh_picture import draw_surface
 
     if view.graph:
         return _graph(subject)
@@ -149,13 +149,13 @@ def _picture(subject: _Subject, claim: Path | None, view: View) -> Picture2D | P
     surface = subject.mesh()
     if view.color is not None:
         color = _number(surface.colors, view.color, subject.surface_path, "colors")
-        return draw(surface, paintings.by_color(surface, color))
+        return draw_surface(surface, paintings.by_color(surface, color))
     if view.reason:
         return _reasons(subject, view.branch)
     if claim is not None:
         return _solution(subject, claim)
     instance = subject.graph()
-    return draw(surface, paintings.by_cell(surface, instance, _cells(instance)))
+    return draw_surface(surface, paintings.by_cell(surface, instance, _cells(instance)))
 
 
 def _number(names: tuple[str, ...], asked: str, path: Path, field: str) -> int:
@@ -190,7 +190,7 @@ def _solution(subject: _Subject, claim: Path) -> Picture3D:
     from cellcolor.checker.division import check_solution
     from cellcolor.data.solution import Solution
     from cellcolor.pictures.by_segment import by_solution
-    from cellcolor.pictures.mesh_picture import draw
+    from cellcolor.pictures.mesh_picture import draw_surface
 
     instance, surface = subject.graph(), subject.mesh()
     solution = Solution.read(claim)
@@ -199,26 +199,26 @@ def _solution(subject: _Subject, claim: Path) -> Picture3D:
         raise InputError(str(claim), None, f"no valid solution of {subject.path}: {problems[0]}")
     if solution.cells is None:
         raise InputError(str(claim), "cells", "no division was found")
-    return draw(surface, by_solution(surface, instance, _cells(instance), solution))
+    return draw_surface(surface, by_solution(surface, instance, _cells(instance), solution))
 
 
 def _reasons(subject: _Subject, branch: str | None) -> Picture3D:
-    from cellcolor.pictures.by_reason import Verdicts, by_reason, read_verdicts
-    from cellcolor.pictures.mesh_picture import draw
+    from cellcolor.pictures.by_reason import CandidateReasons, by_reason, read_candidate_reasons
+    from cellcolor.pictures.mesh_picture import draw_surface
 
     surface = subject.mesh()
     if subject.result is None:
-        verdicts = read_verdicts(surface, subject.surface_path)
+        verdicts = read_candidate_reasons(surface, subject.surface_path)
     else:
         from cellcolor.frontend import Reason
 
         result = subject.result
         names = tuple(reason.text for reason in Reason)
-        verdicts = Verdicts(result.branches, names, result.reasons, result.node_color)
+        verdicts = CandidateReasons(result.branches, names, result.reasons, result.node_color)
     if branch is None:
-        return draw(surface, by_reason(surface, verdicts))
+        return draw_surface(surface, by_reason(surface, verdicts))
     number = _number(verdicts.branches, branch, subject.path, "--branch")
-    return draw(surface, by_reason(surface, verdicts, number))
+    return draw_surface(surface, by_reason(surface, verdicts, number))
 
 
 def _arm(subject: _Subject, vertex: int, branch: str) -> Picture3D:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from annotated_types import Ge
-from pydantic import ConfigDict
+from pydantic import ConfigDict, NonNegativeInt
 
 from cellcolor.files.validation import json_content, settle
 
@@ -32,7 +31,7 @@ class Bound:
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
     kind: str
-    value: Annotated[int, Ge(0)]
+    value: NonNegativeInt
     holds_for: Extent
     certificate: dict[str, Any] | None = None
 

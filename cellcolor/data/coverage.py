@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
-from pydantic import ConfigDict
+from pydantic import ConfigDict, NonNegativeFloat
 
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
@@ -30,7 +30,7 @@ class Coverage:
 
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
-    area_m2: Annotated[float, Ge(0)]
+    area_m2: NonNegativeFloat
     unreachable: Share
     given_up: Share
 

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
-from annotated_types import Ge
-from pydantic import ConfigDict, TypeAdapter
+from pydantic import ConfigDict, NonNegativeFloat, NonNegativeInt, TypeAdapter
 
 from cellcolor.data.coverage import Coverage
 from cellcolor.errors import InputError
@@ -24,8 +23,6 @@ OUTSIDE = -1
 """The index of everything that no configuration reaches, and of what lies beyond the mesh."""
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-Measure = Annotated[float, Ge(0)]
-Count = Annotated[int, Ge(0)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +41,7 @@ class Cell:
     id: int
     colors: tuple[int, ...]
     loops: tuple[tuple[int, ...], ...]
-    area: Measure | None = None
+    area: NonNegativeFloat | None = None
 
     def __post_init__(self) -> None:
         settle(self)
@@ -70,7 +67,7 @@ class Edge:
     left: int
     right: int
     colors: tuple[int, ...] | None = None
-    length: Measure | None = None
+    length: NonNegativeFloat | None = None
 
     def __post_init__(self) -> None:
         settle(self)
@@ -104,15 +101,15 @@ class KnownResult:
 
     __pydantic_config__ = _STRICT
 
-    segments: Count
-    schemes: Count | None = None
+    segments: NonNegativeInt
+    schemes: NonNegativeInt | None = None
 
     def __post_init__(self) -> None:
         settle(self)
 
 
 @dataclass(frozen=True, slots=True)
-class Known:
+class KnownResults:
     """Known results per search space."""
 
     __pydantic_config__ = _STRICT
@@ -150,7 +147,7 @@ class Instance:
     edges: tuple[Edge, ...]
     meta: dict[str, Any] | None = None
     surface: SurfaceReference | None = None
-    known: Known | None = None
+    known: KnownResults | None = None
     coverage: Coverage | None = None
 
     def __post_init__(self) -> None:

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from annotated_types import Ge
-from pydantic import ConfigDict, Field, TypeAdapter
+from pydantic import ConfigDict, Field, NonNegativeFloat, NonNegativeInt, PositiveInt, TypeAdapter
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
@@ -21,8 +20,6 @@ FORMAT = "cellcolor/solution"
 SCHEME_FORMAT = "cellcolor/scheme"
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-Count = Annotated[int, Ge(0)]
-Positive = Annotated[int, Ge(1)]
 
 SearchSpace = Literal["paper", "surface"]
 Status = Literal["optimal", "feasible", "unknown"]
@@ -96,11 +93,11 @@ class Seam:
 
     __pydantic_config__ = _STRICT
 
-    id: Positive
+    id: PositiveInt
     cell: int
     from_: Annotated[int, Field(alias="from")]
     to: int
-    strands: Count
+    strands: NonNegativeInt
 
     def __post_init__(self) -> None:
         settle(self)
@@ -160,21 +157,21 @@ class Solution:
 
     instance: InstanceReference
     search_space: SearchSpace
-    strands: Positive
+    strands: PositiveInt
     solver: str
     status: Status
-    segments: Count | None
-    lift_offs: Count | None
-    lower_bound: Count
-    surface_lower_bound: Count
+    segments: NonNegativeInt | None
+    lift_offs: NonNegativeInt | None
+    lower_bound: NonNegativeInt
+    surface_lower_bound: NonNegativeInt
     proved_for_surface: bool
     seams: tuple[Seam, ...]
     cells: Division | None
-    seconds: Annotated[float, Ge(0)]
-    schemes: Count | None = None
+    seconds: NonNegativeFloat
+    schemes: NonNegativeInt | None = None
     complete: bool | None = None
-    cutting_paths: Count | None = None
-    cutting_paths_lower_bound: Count | None = None
+    cutting_paths: NonNegativeInt | None = None
+    cutting_paths_lower_bound: NonNegativeInt | None = None
     bounds: tuple[Bound, ...] | None = None
     coverage: Coverage | None = None
     notes: tuple[str, ...] = ()

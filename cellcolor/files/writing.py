@@ -18,7 +18,7 @@ __all__ = [
     "PNG",
     "SIDE_FILE",
     "SVG",
-    "Kind",
+    "FileKind",
     "Output",
     "check_output",
     "is_folder",
@@ -38,7 +38,7 @@ _LOOKED_AT = 4096  # bytes at the beginning and at the end of a file that may be
 
 
 @dataclass(frozen=True, slots=True)
-class Kind:
+class FileKind:
     """A kind of file that cellcolor writes, and may therefore overwrite.
 
     Attributes:
@@ -50,14 +50,14 @@ class Kind:
     pattern: re.Pattern[bytes]
 
 
-def kind_of_format(name: str) -> Kind:
+def kind_of_format(name: str) -> FileKind:
     """JSON documents, and JSON Lines whose first line is one: their ``format`` comes first."""
     begin = rb'\s*\{\s*"format"\s*:\s*"' + re.escape(name.encode()) + rb'"'
-    return Kind(f"a file of the format {name}", re.compile(begin))
+    return FileKind(f"a file of the format {name}", re.compile(begin))
 
 
-def _kind(name: str, pattern: bytes) -> Kind:
-    return Kind(f"{name} written by cellcolor", re.compile(pattern, re.DOTALL))
+def _kind(name: str, pattern: bytes) -> FileKind:
+    return FileKind(f"{name} written by cellcolor", re.compile(pattern, re.DOTALL))
 
 
 HTML = _kind(
@@ -80,7 +80,7 @@ class Output:
     """
 
     path: Path
-    kind: Kind
+    kind: FileKind
     content: Iterable[bytes]
 
 
@@ -102,7 +102,7 @@ def is_standard_output(path: Path) -> bool:
     return os.path.samestat(own, other) and (not stat.S_ISCHR(own.st_mode) or os.isatty(1))
 
 
-def check_output(path: Path, kind: Kind, inputs: Iterable[Path] = ()) -> None:
+def check_output(path: Path, kind: FileKind, inputs: Iterable[Path] = ()) -> None:
     """Refuse a place where writing would destroy something, or cannot succeed.
 
     What a file of another format holds is never lost: an existing file has to be of the kind

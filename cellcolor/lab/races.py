@@ -10,19 +10,15 @@ from dataclasses import asdict, dataclass
 
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.deadline import Deadline
-from cellcolor.errors import CellcolorError
+from cellcolor.errors import CellcolorError, Disagreement
 from cellcolor.files.documents import parse_json
 from cellcolor.solvers.interface import Options
 
-__all__ = ["SOLVERS", "Contradiction", "Run", "compare", "max_live_darts", "measure", "run_apart"]
+__all__ = ["SOLVERS", "Run", "max_live_darts", "measure", "race", "run_apart"]
 
 SOLVERS = ("dfs", "cp-sat")
 _GRACE = 60.0
 """Seconds beyond its limit after which a process counts as not coming back."""
-
-
-class Contradiction(CellcolorError):
-    """Two solvers have proved different minima of one instance: one of them is wrong."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,18 +83,18 @@ def run_apart(solver: str, command: Sequence[str], instance: Instance, time_limi
     return Run(**json.loads(done.stdout))
 
 
-def compare(instance: Instance, time_limit: float) -> dict[str, Run]:
+def race(instance: Instance, time_limit: float) -> dict[str, Run]:
     """Every solver's run on one instance.
 
     Raises:
-        Contradiction: two proved minima differ.
+        Disagreement: two proved minima differ.
         CellcolorError: a solver failed.
     """
     runs = {solver: measure(instance, solver, time_limit) for solver in SOLVERS}
     minima = {solver: run.segments for solver, run in runs.items() if run.optimal}
     if len(set(minima.values())) > 1:
         claims = ", ".join(f"{solver} {segments}" for solver, segments in minima.items())
-        raise Contradiction(f"different proved minima: {claims}")
+        raise Disagreement(f"different proved minima: {claims}")
     return runs
 
 

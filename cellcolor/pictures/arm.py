@@ -26,7 +26,7 @@ from cellcolor.frontend.target.shapes import make_surface
 from cellcolor.frontend.target.surface import rotation_from_rpy
 from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
-from cellcolor.pictures.picture import Layer, Picture3D, Segments
+from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
 __all__ = ["arm_at"]
 
@@ -77,7 +77,7 @@ def arm_at(scene_path: Path, result: BuildResult, vertex: int, branch: int) -> P
         meshes = [_obstacle(obstacle, scene_path.parent) for obstacle in scene.obstacle]
         obstacles = _joined(meshes)
         layers.append(_layer("obstacles", "#882255", obstacles))
-    ground: tuple[Segments, ...] = ()
+    ground: tuple[SpaceLines, ...] = ()
     if scene.ground is not None:
         points = np.concatenate([layer.points for layer in layers])
         ground = (_ground(scene.ground.height_m, points),)
@@ -182,14 +182,14 @@ def _box(size: Array) -> Mesh:
     return signs * size / 2, np.array(triangles, dtype=np.int64)
 
 
-def _ground(height: float, points: Array) -> Segments:
+def _ground(height: float, points: Array) -> SpaceLines:
     """The part of the ground below everything else as a grid, in pieces that sort by depth."""
     low, high = points.min(axis=0) - 0.05, points.max(axis=0) + 0.05
     x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
     grid = np.stack([*np.meshgrid(x, y, indexing="ij"), np.full((_GRID, _GRID), height)], axis=2)
     along_x = np.stack([grid[:-1], grid[1:]], axis=2).reshape(-1, 2, 3)
     along_y = np.stack([grid[:, :-1], grid[:, 1:]], axis=2).reshape(-1, 2, 3)
-    return Segments("ground", "#AAAAAA", np.concatenate([along_x, along_y]))
+    return SpaceLines("ground", "#AAAAAA", np.concatenate([along_x, along_y]))
 
 
 def _joined(meshes: list[Mesh]) -> Mesh:

@@ -7,13 +7,13 @@ import numpy as np
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.pictures.mesh_picture import Area, Labels, Painting, vertex_areas
+from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, vertex_areas
 from cellcolor.pictures.palette import AREAS, FAINT, GREY, assign
 
 __all__ = ["bare_areas", "bare_labels", "by_cell", "by_color", "color_key", "neighboring", "shares"]
 
 
-def by_cell(surface: LabelledSurface, instance: Instance, cells: Labels) -> Painting:
+def by_cell(surface: LabelledSurface, instance: Instance, cells: Labels) -> SurfaceView:
     """Every cell in a color of its own, or at least in another one than its neighbors.
 
     Args:
@@ -26,7 +26,7 @@ def by_cell(surface: LabelledSurface, instance: Instance, cells: Labels) -> Pain
     share = shares(surface, labels, count + 2)
     fills = assign(neighboring(surface, cells, count))
     areas = [
-        Area(f"cell {cell.id} {_ids(cell.colors)}  {share[cell.id]}", fill, str(cell.id))
+        VertexClass(f"cell {cell.id} {_ids(cell.colors)}  {share[cell.id]}", fill, str(cell.id))
         for cell, fill in zip(instance.cells, fills, strict=True)
     ]
     areas += bare_areas(*share[count:])
@@ -35,10 +35,12 @@ def by_cell(surface: LabelledSurface, instance: Instance, cells: Labels) -> Pain
         notes.append("Fills repeat: the numbers tell cells apart.")
     cracks = [(crack.i, crack.j) for crack in surface.cracks]
     title = f"{surface.name}: {count} cells"
-    return Painting(title, labels, areas, cracks=cracks, notes=(*notes, *color_key(surface.colors)))
+    return SurfaceView(
+        title, labels, areas, cracks=cracks, notes=(*notes, *color_key(surface.colors))
+    )
 
 
-def by_color(surface: LabelledSurface, color: int) -> Painting:
+def by_color(surface: LabelledSurface, color: int) -> SurfaceView:
     """Where one color is available, and where others are."""
     covered = np.array(
         [0 if color in own else 1 if own else 2 for own in surface.vertex_colors], dtype=np.int64
@@ -47,13 +49,13 @@ def by_color(surface: LabelledSurface, color: int) -> Painting:
     share = shares(surface, labels, 4)
     name = surface.colors[color]
     areas = [
-        Area(f"{name}  {share[0]}", AREAS[0]),
-        Area(f"other colors only  {share[1]}", AREAS[2]),
+        VertexClass(f"{name}  {share[0]}", AREAS[0]),
+        VertexClass(f"other colors only  {share[1]}", AREAS[2]),
         *bare_areas(*share[2:]),
     ]
     cracks = [(crack.i, crack.j) for crack in surface.cracks if color in crack.colors]
     note = "Shares of the surface. Cracks are those of this color."
-    return Painting(
+    return SurfaceView(
         f"{surface.name}: color {color}, {name}", labels, areas, cracks=cracks, notes=(note,)
     )
 
@@ -70,11 +72,11 @@ def bare_labels(surface: LabelledSurface, first: int) -> Labels:
     return labels
 
 
-def bare_areas(unreachable: str, given_up: str) -> list[Area]:
+def bare_areas(unreachable: str, given_up: str) -> list[VertexClass]:
     """What no segment covers, with their shares as text."""
     return [
-        Area(f"{UNREACHABLE}  {unreachable}", FAINT),
-        Area(f"{GIVEN_UP}  {given_up}", GREY),
+        VertexClass(f"{UNREACHABLE}  {unreachable}", FAINT),
+        VertexClass(f"{GIVEN_UP}  {given_up}", GREY),
     ]
 
 

@@ -13,16 +13,16 @@ from cellcolor.data.shares import GIVEN_UP
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.pictures.by_cell_and_color import shares
-from cellcolor.pictures.mesh_picture import Area, Painting
+from cellcolor.pictures.mesh_picture import SurfaceView, VertexClass
 from cellcolor.pictures.palette import FAINT, REASONS
 
-__all__ = ["Verdicts", "by_reason", "read_verdicts"]
+__all__ = ["CandidateReasons", "by_reason", "read_candidate_reasons"]
 
 _VALID = 0
 
 
 @dataclass(frozen=True)
-class Verdicts:
+class CandidateReasons:
     """What became of every candidate.
 
     Attributes:
@@ -38,8 +38,8 @@ class Verdicts:
     node_color: NDArray[np.int64]
 
 
-def read_verdicts(surface: LabelledSurface, path: Path) -> Verdicts:
-    """The verdicts in the side file that ``build`` writes beside a scene's surface.
+def read_candidate_reasons(surface: LabelledSurface, path: Path) -> CandidateReasons:
+    """The reasons_of in the side file that ``build`` writes beside a scene's surface.
 
     Args:
         surface: the labelled surface.
@@ -54,7 +54,7 @@ def read_verdicts(surface: LabelledSurface, path: Path) -> Verdicts:
     side = path.parent / name
     try:
         with np.load(side, allow_pickle=False) as archive:
-            verdicts = Verdicts(
+            reasons_of = CandidateReasons(
                 tuple(map(str, archive["branches"])),
                 tuple(map(str, archive["reason_names"])),
                 archive["reasons"],
@@ -69,44 +69,46 @@ def read_verdicts(surface: LabelledSurface, path: Path) -> Verdicts:
     if about is not None and about != surface.sha256:
         message = "is of another surface; build the scene again"
         raise InputError(str(side), "surface_sha256", message)
-    shape = (len(surface.vertices), len(verdicts.branches))
-    if verdicts.reasons.shape != shape or verdicts.node_color.shape != shape:
+    shape = (len(surface.vertices), len(reasons_of.branches))
+    if reasons_of.reasons.shape != shape or reasons_of.node_color.shape != shape:
         raise InputError(str(side), "reasons", f"needs shape {shape}: it is of another surface")
-    if verdicts.reasons.size and verdicts.reasons.max() >= len(verdicts.reason_names):
-        raise InputError(str(side), "reasons", f"unknown code {verdicts.reasons.max()}")
-    return verdicts
+    if reasons_of.reasons.size and reasons_of.reasons.max() >= len(reasons_of.reason_names):
+        raise InputError(str(side), "reasons", f"unknown code {reasons_of.reasons.max()}")
+    return reasons_of
 
 
-def by_reason(surface: LabelledSurface, verdicts: Verdicts, branch: int | None = None) -> Painting:
+def by_reason(
+    surface: LabelledSurface, reasons_of: CandidateReasons, branch: int | None = None
+) -> SurfaceView:
     """Why vertices are not reachable.
 
     Args:
         surface: the labelled surface.
-        verdicts: what became of its candidates.
+        reasons_of: what became of its candidates.
         branch: look at this branch alone. None: at the branch that came farthest through the
             tests; a vertex is reachable if it has any color.
     """
     rows = slice(None) if branch is None else slice(branch, branch + 1)
-    codes, colors = verdicts.reasons[:, rows], verdicts.node_color[:, rows]
+    codes, colors = reasons_of.reasons[:, rows], reasons_of.node_color[:, rows]
     valid = (codes == _VALID).any(axis=1)
-    given_up = len(verdicts.reason_names)
+    given_up = len(reasons_of.reason_names)
     # Numbered in the order of the tests; a blocked tip is so for all branches that reach there.
     labels = np.where(valid, _VALID, codes.max(axis=1)).astype(np.int64)
     # A sliver policy takes colors away from what is valid.
     labels[valid & (colors < 0).all(axis=1)] = given_up
     share = shares(surface, labels, given_up + 1)
     counts = np.bincount(labels, minlength=given_up + 1)
-    names = [*verdicts.reason_names, GIVEN_UP]
+    names = [*reasons_of.reason_names, GIVEN_UP]
     names[_VALID] = "reachable" if branch is None else "valid"
     fills = [REASONS[(code - 1) % len(REASONS)] for code in range(given_up + 1)]
     fills[_VALID] = FAINT
     areas = [
-        Area(f"{names[code]}  {share[code]}, {counts[code]} vertices", fills[code])
+        VertexClass(f"{names[code]}  {share[code]}, {counts[code]} vertices", fills[code])
         for code in range(given_up + 1)
     ]
-    who = "any branch" if branch is None else verdicts.branches[branch]
+    who = "any branch" if branch is None else reasons_of.branches[branch]
     notes = ["Shares of the surface."]
     if branch is None:
         notes.insert(0, "Reason of the branch that came farthest through the tests.")
     title = f"{surface.name}: reach of {who}"
-    return Painting(title, labels, areas, notes=tuple(notes))
+    return SurfaceView(title, labels, areas, notes=tuple(notes))

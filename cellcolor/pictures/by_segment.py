@@ -19,7 +19,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Step
 from cellcolor.decomposition.coverage import coverage_of, vertex_areas
 from cellcolor.pictures.by_cell_and_color import bare_areas, bare_labels, neighboring, shares
-from cellcolor.pictures.mesh_picture import Area, Labels, Painting
+from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass
 from cellcolor.pictures.palette import AREAS, assign
 
 __all__ = ["by_solution"]
@@ -30,7 +30,7 @@ Curves = dict[int, tuple[Step, ...]]
 
 def by_solution(
     surface: LabelledSurface, instance: Instance, cells: Labels, solution: Solution
-) -> Painting:
+) -> SurfaceView:
     """Every segment in a color of its own.
 
     Args:
@@ -58,7 +58,7 @@ def by_solution(
     bare = shares(surface, labels, count + 3)[count + 1 :]
     fills = assign(neighboring(surface, labels, count))
     areas = [
-        Area(
+        VertexClass(
             f"segment {number}: {instance.colors[color[number]]}  "
             f"{percent(*share.segments[number])}",
             fills[number],
@@ -66,7 +66,7 @@ def by_solution(
         )
         for number in range(count)
     ]
-    areas.append(Area("cut between segments", _CUT))
+    areas.append(VertexClass("cut between segments", _CUT))
     areas += bare_areas(*bare)
     notes = [f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells."]
     if not share.certain:
@@ -86,7 +86,7 @@ def by_solution(
         f"{lift_offs} lift-off{'' if lift_offs == 1 else 's'}"
     )
     cracks = [(crack.i, crack.j) for crack in surface.cracks]
-    return Painting(title, labels, areas, borders=cells, cracks=cracks, notes=tuple(notes))
+    return SurfaceView(title, labels, areas, borders=cells, cracks=cracks, notes=tuple(notes))
 
 
 def _measured(surface: LabelledSurface, instance: Instance, cells: Labels) -> Instance:

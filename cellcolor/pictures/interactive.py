@@ -11,7 +11,7 @@ import plotly.graph_objects as go
 from cellcolor.arrays import Array
 from cellcolor.files.writing import MARKER
 from cellcolor.pictures.palette import INK
-from cellcolor.pictures.picture import Layer, Picture2D, Picture3D, Segments
+from cellcolor.pictures.picture import Layer, Picture2D, Picture3D, SpaceLines
 
 __all__ = ["render"]
 
@@ -105,7 +105,7 @@ def _mesh(layer: Layer) -> Any:
     )
 
 
-def _pieces(line: Segments) -> Any:
+def _pieces(line: SpaceLines) -> Any:
     gap = np.full((len(line.ends), 1, 3), np.nan)
     x, y, z = np.concatenate([line.ends, gap], axis=1).reshape(-1, 3).T
     look = {"color": line.color, "width": 2}

@@ -15,15 +15,22 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.pictures.palette import INK, WARNING
-from cellcolor.pictures.picture import Layer, Picture3D, Segments, Text
+from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
 
-__all__ = ["Area", "Painting", "draw", "mesh_picture_parts", "vertex_areas", "vertex_normals"]
+__all__ = [
+    "SurfaceView",
+    "VertexClass",
+    "draw_surface",
+    "mesh_picture_parts",
+    "vertex_areas",
+    "vertex_normals",
+]
 
 Labels = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
-class Area:
+class VertexClass:
     """A class of vertices: its name for the legend, its color, and a number to write on it."""
 
     name: str
@@ -32,7 +39,7 @@ class Area:
 
 
 @dataclass(frozen=True)
-class Painting:
+class SurfaceView:
     """What is to be seen on a surface.
 
     Attributes:
@@ -46,13 +53,13 @@ class Painting:
 
     title: str
     labels: Labels
-    areas: Sequence[Area]
+    areas: Sequence[VertexClass]
     borders: Labels | None = None
     cracks: Collection[tuple[int, int]] = ()
     notes: tuple[str, ...] = ()
 
 
-def draw(surface: LabelledSurface, painting: Painting) -> Picture3D:
+def draw_surface(surface: LabelledSurface, painting: SurfaceView) -> Picture3D:
     """The painted surface."""
     vertices, faces = surface.vertices, surface.faces
     normals = vertex_normals(vertices, faces)
@@ -133,7 +140,7 @@ def _lines(
     normals: Array,
     classes: Labels,
     cracks: set[tuple[int, int]],
-) -> tuple[Segments, ...]:
+) -> tuple[SpaceLines, ...]:
     """Borders and cracks, lifted off the surface by a little so that they stay visible."""
     ends: dict[str, list[Array]] = {"border": [], "crack": []}
     edge = float(np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1).mean())
@@ -150,13 +157,13 @@ def _lines(
             ends[name].append(np.stack([middles[rows], centers[rows]], axis=1))
     colors = {"border": INK, "crack": WARNING}
     return tuple(
-        Segments(name, colors[name], np.concatenate(pieces))
+        SpaceLines(name, colors[name], np.concatenate(pieces))
         for name, pieces in ends.items()
         if any(map(len, pieces))
     )
 
 
-def _numbers(surface: LabelledSurface, painting: Painting, normals: Array) -> list[Text]:
+def _numbers(surface: LabelledSurface, painting: SurfaceView, normals: Array) -> list[Text]:
     """Each area's number at the vertex deepest inside of it."""
     labels = painting.labels
     depth = _depth(surface, labels)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 
-__all__ = ["Curve", "Layer", "Picture2D", "Picture3D", "Segments", "Shape", "Text"]
+__all__ = ["Layer", "Outline", "Picture2D", "Picture3D", "PlaneLine", "SpaceLines", "Text"]
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Layer:
 
 
 @dataclass(frozen=True)
-class Segments:
+class SpaceLines:
     """Straight pieces of one kind of line in space: (k, 2, 3) in m."""
 
     name: str
@@ -64,14 +64,14 @@ class Picture3D:
 
     title: str
     layers: tuple[Layer, ...]
-    segments: tuple[Segments, ...]
+    segments: tuple[SpaceLines, ...]
     texts: tuple[Text, ...]
     notes: tuple[str, ...]
     towards: Array
 
 
 @dataclass(frozen=True)
-class Curve:
+class PlaneLine:
     """A line in the plane: points (k, 2), width in points; ``name`` groups legend entries."""
 
     name: str
@@ -82,7 +82,7 @@ class Curve:
 
 
 @dataclass(frozen=True)
-class Shape:
+class Outline:
     """A filled outline in the plane: points (k, 2)."""
 
     color: str
@@ -102,7 +102,7 @@ class Picture2D:
     """
 
     title: str
-    curves: tuple[Curve, ...]
-    shapes: tuple[Shape, ...]
+    curves: tuple[PlaneLine, ...]
+    shapes: tuple[Outline, ...]
     texts: tuple[tuple[str, Array, float], ...]
     notes: tuple[str, ...]

@@ -14,7 +14,7 @@ from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.pictures.mesh_picture import Labels, vertex_normals
 from cellcolor.pictures.palette import INK, LINES
-from cellcolor.pictures.picture import Curve, Picture2D, Shape
+from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
 
 __all__ = ["draw_graph", "places_on"]
 
@@ -45,7 +45,7 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
         direction = np.array([np.cos(angles[dart]), np.sin(angles[dart])])
         return centers[owner[dart]] + radii[owner[dart]] * direction, direction
 
-    curves: list[Curve] = []
+    curves: list[PlaneLine] = []
     texts: list[tuple[str, Array, float]] = []
     for edge in instance.edges:
         sides = [dart for dart in (edge.id, -edge.id) if dart in owner]
@@ -54,25 +54,25 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
         )
         colors = instance.joinable(edge.id)
         if not colors:
-            curves.append(Curve(_DEAD, "#777777", path, 1.0, dashed=True))
+            curves.append(PlaneLine(_DEAD, "#777777", path, 1.0, dashed=True))
         for place, color in enumerate(colors):
             shifted = _beside(path, (place - (len(colors) - 1) / 2) * 2.2 * unit)
             name = f"{color}: {instance.colors[color]}"
-            curves.append(Curve(name, LINES[color % len(LINES)], shifted, 2.0))
+            curves.append(PlaneLine(name, LINES[color % len(LINES)], shifted, 2.0))
         if len(instance.colors) > len(LINES) and colors:
             texts.append((",".join(map(str, colors)), path[len(path) // 2], 6.0))
 
-    shapes: list[Shape] = []
+    shapes: list[Outline] = []
     for cell in instance.cells:
         center, radius = centers[cell.id], float(radii[cell.id])
         bounds = np.linspace(0, 2 * np.pi, len(cell.colors) + 1) + np.pi / 2
         for color, start, end in zip(cell.colors, bounds[:-1], bounds[1:], strict=True):
             wedge = _arc(center, radius, start, end, hub=len(cell.colors) > 1)
-            shapes.append(Shape(LINES[color % len(LINES)], wedge))
-        shapes.append(Shape("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
+            shapes.append(Outline(LINES[color % len(LINES)], wedge))
+        shapes.append(Outline("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
         if len(cell.loops) > 1:
             shapes += [
-                Shape(INK, center + radius * np.array([[0.45], [0.86]]) * _direction(at))
+                Outline(INK, center + radius * np.array([[0.45], [0.86]]) * _direction(at))
                 for at in _gaps(cell.loops, angles)
             ]
         texts.append((str(cell.id), center, min(11.0, 0.45 * radius / unit)))

@@ -11,13 +11,12 @@ from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
-from cellcolor.errors import CellcolorError, InputError
-from cellcolor.solvers.interface import Answer, Options, Progress, Solver
+from cellcolor.errors import InputError, RefusedResult
+from cellcolor.solvers.interface import Answer, OnProgress, Options, Solver
 
 __all__ = [
     "CONTENDERS",
     "SOLVERS",
-    "ContradictionError",
     "enumerate_schemes",
     "make_solver",
     "solve",
@@ -29,10 +28,6 @@ SOLVERS = ("cp-sat", "dfs")
 CONTENDERS = (*SOLVERS, "cp-sat-model")
 """What is held to each other: also the full CP-SAT model without plans, which settle most instances
 before it is built."""
-
-
-class ContradictionError(CellcolorError):
-    """A solver returned something that the checker refuses: a bug in one of the two."""
 
 
 def make_solver(name: str) -> Solver:
@@ -56,7 +51,7 @@ def solve(
     instance: Instance,
     options: Options,
     solver: str = "cp-sat",
-    progress: Progress | None = None,
+    progress: OnProgress | None = None,
 ) -> Solution:
     """Color an instance with the fewest segments.
 
@@ -72,7 +67,7 @@ def solve(
     Raises:
         InputError: an option is of CP-SAT only, and the solver is another; or there are too many
             strands.
-        ContradictionError: the checker refuses what the solver found.
+        RefusedResult: the checker refuses what the solver found.
     """
     if solver == "dfs":
         for name, asked in (("start", options.start), ("fewest_cuts", options.fewest_cuts)):
@@ -140,7 +135,7 @@ def enumerate_schemes(
     Raises:
         OutOfTime: the time limit came first.
         TooLarge: the model would not fit into memory.
-        ContradictionError: the checker refuses what the solver found.
+        RefusedResult: the checker refuses what the solver found.
     """
     found = False
     for division in make_solver(solver).optimal_schemes(instance, options, segments):
@@ -149,10 +144,10 @@ def enumerate_schemes(
         _insist(report, solver)
         if report.segments != segments or not report.is_scheme:
             reasons = "; ".join(report.not_canonical) or f"{report.segments} segments"
-            raise ContradictionError(f"{solver} returned no optimal scheme: {reasons}")
+            raise RefusedResult(f"{solver} returned no optimal scheme: {reasons}")
         yield division
     if not found:
-        raise ContradictionError(f"{solver} found no scheme with {segments} segments, the minimum")
+        raise RefusedResult(f"{solver} found no scheme with {segments} segments, the minimum")
 
 
 def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
@@ -176,4 +171,4 @@ def _cuts(instance: Instance, answer: Answer) -> int | None:
 
 def _insist(report: Report, solver: str) -> None:
     if not report.valid:
-        raise ContradictionError(f"{solver} returned something illegal: {report.problems[0]}")
+        raise RefusedResult(f"{solver} returned something illegal: {report.problems[0]}")

@@ -21,7 +21,7 @@ PORTFOLIO = 8
 STRANDS: dict[SearchSpace, int] = {"paper": 1, "surface": 2}
 """Strands per topological edge unless asked for otherwise; in ``paper`` there is no other."""
 
-Progress = Callable[[int | None, int], None]
+OnProgress = Callable[[int | None, int], None]
 """Called with the segments of the best division so far (None: none yet) and the lower bound."""
 
 
@@ -106,7 +106,7 @@ class Solver(Protocol):
     name: str
 
     def minimize(
-        self, instance: Instance, options: Options, progress: Progress | None = None
+        self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
         """A division with the fewest segments, or the best found before the deadline."""
 

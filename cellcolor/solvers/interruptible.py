@@ -10,10 +10,10 @@ from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
 
-__all__ = ["make_solver", "solve_interruptibly"]
+__all__ = ["make_cp_solver", "solve_interruptibly"]
 
 
-def make_solver(
+def make_cp_solver(
     deadline: Deadline, workers: int, seed: int, effort: float | None = None
 ) -> cp_model.CpSolver:
     """A solver with limits.

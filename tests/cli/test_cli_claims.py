@@ -13,7 +13,7 @@ from library import PAPER
 from pages import small_wok
 
 from cellcolor.checker.known_results import contradictions
-from cellcolor.data.instance import Instance, Known, KnownResult
+from cellcolor.data.instance import Instance, KnownResult, KnownResults
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
@@ -146,13 +146,15 @@ class TestKnown:
         ("known", "options"),
         [
             # A surface may need fewer than the paper's divisions, and strands may need more.
-            (Known(KnownResult(3), KnownResult(2)), Options("paper")),
-            (Known(KnownResult(3), KnownResult(2)), Options("surface", strands=2)),
-            (Known(KnownResult(3), KnownResult(2)), Options("surface", strands=1)),
-            (Known(KnownResult(3)), Options("surface", strands=2)),
+            (KnownResults(KnownResult(3), KnownResult(2)), Options("paper")),
+            (KnownResults(KnownResult(3), KnownResult(2)), Options("surface", strands=2)),
+            (KnownResults(KnownResult(3), KnownResult(2)), Options("surface", strands=1)),
+            (KnownResults(KnownResult(3)), Options("surface", strands=2)),
             (None, Options()),
         ],
     )
-    def test_what_is_right_contradicts_nothing(self, known: Known | None, options: Options) -> None:
+    def test_what_is_right_contradicts_nothing(
+        self, known: KnownResults | None, options: Options
+    ) -> None:
         instance = replace(Instance.read(CORRIDORS), known=known)
         assert contradictions(instance, solve(instance, options)) == []

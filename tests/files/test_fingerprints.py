@@ -19,7 +19,7 @@ from meshes import surfaces
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance, Known, KnownResult, SurfaceReference
+from cellcolor.data.instance import Instance, KnownResult, KnownResults, SurfaceReference
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
@@ -69,7 +69,7 @@ def test_what_no_solver_reads_is_not_in_it(mesh: LabelledSurface, random: Any) -
         SurfaceReference("elsewhere.json", instance.surface.vertex_cell, "0" * 64)
         if instance.surface
         else None,
-        Known(KnownResult(3)),
+        KnownResults(KnownResult(3)),
         Coverage(1.0, 0.5, 0.0),
     )
     assert same.sha256 == instance.sha256

@@ -20,7 +20,14 @@ from meshes import drawn, surfaces
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Cell, Edge, Instance, Known, KnownResult, SurfaceReference
+from cellcolor.data.instance import (
+    Cell,
+    Edge,
+    Instance,
+    KnownResult,
+    KnownResults,
+    SurfaceReference,
+)
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import (
     CellDivision,
@@ -138,7 +145,7 @@ def test_graphs_and_solutions_are_those_of_the_file() -> None:
         ],
         {"source": "by hand"},
         SurfaceReference("pair.surface.json", np.array([0, 1, -1]), "0" * 64),
-        Known(KnownResult(one, one), KnownResult(one)),
+        KnownResults(KnownResult(one, one), KnownResult(one)),
         Coverage(2, np.float64(0.25), 0.125),
     )
     assert made == Instance.from_document(INSTANCE)

@@ -28,7 +28,7 @@ from cellcolor.files.writing import (
     PNG,
     SIDE_FILE,
     SVG,
-    Kind,
+    FileKind,
     Output,
     check_output,
     kind_of_format,
@@ -83,7 +83,7 @@ OLD = json.dumps(INSTANCE).encode()
 class TestForeignFiles:
     @pytest.mark.parametrize("kind", KINDS.values(), ids=KINDS.keys())
     @pytest.mark.parametrize("content", FOREIGN.values(), ids=FOREIGN.keys())
-    def test_refused(self, content: bytes, kind: Kind, tmp_path: Path) -> None:
+    def test_refused(self, content: bytes, kind: FileKind, tmp_path: Path) -> None:
         path = tmp_path / "there"
         path.write_bytes(content)
         with pytest.raises(InputError, match="not overwritten"):

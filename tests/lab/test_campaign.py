@@ -20,23 +20,22 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
+from cellcolor.errors import Disagreement, RefusedResult
 from cellcolor.lab.campaign.agreement import (
-    Disagreement,
     Finding,
     MeshFinding,
-    compare,
     compare_on_mesh,
+    compare_solvers,
 )
-from cellcolor.lab.campaign.cases import KINDS, draw, live_darts, live_loops
+from cellcolor.lab.campaign.cases import KINDS, draw_case, live_darts, live_loops
 from cellcolor.lab.campaign.pool import Outcome, Wrong, campaign, examine
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 from cellcolor.lab.campaign.summary import Summary
 from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
 from cellcolor.lab.families import blobs, planar_graph
-from cellcolor.solvers.checked import ContradictionError
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver
-from cellcolor.solvers.interface import Answer, Options, Progress
+from cellcolor.solvers.interface import Answer, OnProgress, Options
 
 RING = Instance.read(PAPER / "ring.json")
 EVERY_KIND = len(KINDS)
@@ -47,7 +46,7 @@ def has_busy_cell(instance: Instance) -> bool:
 
 
 def boast(
-    self: CpSatSolver, instance: Instance, options: Options, progress: Progress | None = None
+    self: CpSatSolver, instance: Instance, options: Options, progress: OnProgress | None = None
 ) -> Answer:
     """Wrong on purpose: where a cell has three live darts, one segment more is claimed."""
     answer = right_minimize(self, instance, options, progress)
@@ -82,7 +81,7 @@ def test_solvers_agree_on_every_kind() -> None:
 
 def test_instances_are_a_function_of_seed_and_number() -> None:
     for number in range(EVERY_KIND):
-        one, again, other = draw(3, number), draw(3, number), draw(4, number)
+        one, again, other = draw_case(3, number), draw_case(3, number), draw_case(4, number)
         assert one.instance.to_json() == again.instance.to_json() != other.instance.to_json()
         assert one.kind == KINDS[number]
         several = one.kind == "islands, holes"
@@ -106,7 +105,7 @@ def test_a_wrong_minimum_is_noticed_and_made_small(
     believe_bounds(monkeypatch)
     monkeypatch.setattr(CpSatSolver, "minimize", boast)
     kept = tmp_path / "kept"
-    number = next(n for n in range(9) if has_busy_cell(draw(0, n).instance))
+    number = next(n for n in range(9) if has_busy_cell(draw_case(0, n).instance))
     assert main(["campaign", "--count", str(number + 1), "--jobs", "1", "-o", str(kept)]) == 1
     file = kept / f"campaign_0_{number}.json"
     assert f"{file}: dfs has" in capsys.readouterr().err
@@ -116,9 +115,9 @@ def test_a_wrong_minimum_is_noticed_and_made_small(
     assert all(len(small.joinable(edge.id)) == 1 for edge in small.edges)
     assert len(small.edges) <= 3 and max(live_darts(small, cell) for cell in small.cells) == 3
     with pytest.raises(Disagreement):
-        compare(small, 10.0)
+        compare_solvers(small, 10.0)
     monkeypatch.undo()
-    compare(small, 10.0)
+    compare_solvers(small, 10.0)
 
 
 def test_a_lost_scheme_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -128,15 +127,15 @@ def test_a_lost_scheme_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
         yield from islice(right_schemes(self, instance, options, segments), 1, None)
 
     figure = Instance.read(PAPER / "split-cell.json")  # its only optimum has a cutting path
-    assert compare(figure, 10.0).always_cut
+    assert compare_solvers(figure, 10.0).always_cut
     monkeypatch.setattr(ReferenceSolver, "optimal_schemes", without_the_first)
-    with pytest.raises(ContradictionError, match="dfs found no scheme with 2 segments"):
-        compare(figure, 10.0)
+    with pytest.raises(RefusedResult, match="dfs found no scheme with 2 segments"):
+        compare_solvers(figure, 10.0)
     figure = Instance.read(PAPER / "crossing-zeros.json")  # three optimal schemes
     with pytest.raises(
         Disagreement, match="cp-sat lists 1 optimal schemes that dfs does not, dfs 0"
     ):
-        compare(figure, 10.0)
+        compare_solvers(figure, 10.0)
 
 
 def test_a_scheme_listed_twice_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -149,14 +148,14 @@ def test_a_scheme_listed_twice_is_noticed(monkeypatch: pytest.MonkeyPatch) -> No
 
     monkeypatch.setattr(ReferenceSolver, "optimal_schemes", twice)
     with pytest.raises(Disagreement, match="dfs lists a scheme twice"):
-        compare(RING, 10.0)
+        compare_solvers(RING, 10.0)
 
 
 def test_a_bound_above_a_coloring_of_the_vertices_is_noticed(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     def boastful(
-        self: CpSatSolver, instance: Instance, options: Options, progress: Progress | None = None
+        self: CpSatSolver, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
         answer = right_minimize(self, instance, options, progress)
         if options.search_space == "paper":
@@ -172,7 +171,7 @@ def test_a_bound_above_a_coloring_of_the_vertices_is_noticed(
     monkeypatch.setattr("cellcolor.lab.campaign.pool.SHRINK_SECONDS", 3.0)
     (wrong,) = examine(0, 20.0, number).wrong
     assert "a coloring of the vertices has" in wrong.message
-    surface = draw(0, number).surface
+    surface = draw_case(0, number).surface
     assert surface is not None
     small = LabelledSurface.from_document(json.loads(wrong.document))
     assert sum(map(len, small.vertex_colors)) < sum(map(len, surface.vertex_colors))

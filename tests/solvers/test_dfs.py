@@ -26,7 +26,7 @@ from cellcolor.solvers.dfs import ReferenceSolver, code, divisions, literal_cost
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell, Graphs
 from cellcolor.solvers.dfs.search import Search
-from cellcolor.solvers.dfs.segment_counts import Segments
+from cellcolor.solvers.dfs.segment_counts import SegmentCounts
 from cellcolor.solvers.dfs.zero_darts import zeros_fit
 from cellcolor.solvers.interface import Answer, Options
 
@@ -154,7 +154,7 @@ def test_literal_cost_refuses_another_instance() -> None:
 def test_segments_are_undone(joins: list[tuple[int, int]], data: st.DataObject) -> None:
     """After taking back the last joins the cost is that of the first ones alone."""
     kept = data.draw(st.integers(0, len(joins)))
-    tried = Segments()
+    tried = SegmentCounts()
     for region in range(10):
         tried.add(region)
     for number, (a, b) in enumerate(joins):

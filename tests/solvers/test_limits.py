@@ -24,7 +24,7 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import search, windows
 from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.full import build, model_size
+from cellcolor.solvers.cpsat.model.full import full_model, model_size
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, division_of
 from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.cpsat.routes.routing import route
@@ -121,7 +121,7 @@ def test_plans_partings_and_models_end_with_the_deadline() -> None:
     with pytest.raises(OutOfTime):
         planner.find_partings(plan)
     with pytest.raises(OutOfTime):
-        build(graph, regions, deadline=OVER)
+        full_model(graph, regions, deadline=OVER)
     # What is left of a route is a division; windows are not begun.
     painting = route(refined(graph, 1), plan, 1000, 0, OVER)
     assert check_division(instance, division_of(graph, painting), graph.seams).valid
@@ -162,7 +162,7 @@ def test_the_estimate_of_a_model_is_near_its_size(seed: int, cells: int, colors:
     instance = planar_graph(seed, cells, cells + 5, colors)
     graph = graph_of(instance, None)
     assume(len(graph.darts) > 6)
-    proto = build(graph, color_regions(instance)).model.proto
+    proto = full_model(graph, color_regions(instance)).model.proto
     terms = sum(
         len(c.linear.vars)
         + sum(len(g.literals) for g in (c.bool_or, c.bool_and, c.at_most_one, c.exactly_one))
@@ -190,7 +190,7 @@ def test_what_is_too_large_is_not_built_and_that_is_said(
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("built")
 
-    monkeypatch.setattr(search, "build", refuse)
+    monkeypatch.setattr(search, "full_model", refuse)
     found = solve(instance, Options(fewest_cuts=fewest_cuts), "cp-sat-model")
     assert found.status == "feasible"
     assert len(found.notes) == 1 and "was not built" in found.notes[0]
@@ -312,9 +312,9 @@ def test_windows_leave_out_what_is_too_large(monkeypatch: pytest.MonkeyPatch) ->
 
     def noted(window: DartGraph, *rest: object, **named: object) -> object:
         sizes.append(model_size(window))
-        return build(window, *rest, **named)  # type: ignore[arg-type]
+        return full_model(window, *rest, **named)  # type: ignore[arg-type]
 
-    monkeypatch.setattr(windows, "build", noted)
+    monkeypatch.setattr(windows, "full_model", noted)
     list(improve(graph, whole_cells(graph), solved, 0, NEVER))
     assert all(size <= windows.LARGEST_WINDOW for size in sizes)
 

@@ -14,9 +14,9 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
-from cellcolor.errors import CellcolorError, InputError
+from cellcolor.errors import CellcolorError, InputError, RefusedResult
 from cellcolor.oracle import proven_range
-from cellcolor.solvers.checked import ContradictionError, enumerate_schemes, make_solver, solve
+from cellcolor.solvers.checked import enumerate_schemes, make_solver, solve
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.interface import STRANDS, Options
 
@@ -113,7 +113,7 @@ class TestStatusesOfTheSchemes:
 
     def test_none_at_all_contradicts_the_minimum(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.end_with(monkeypatch, cp_model.INFEASIBLE)
-        with pytest.raises(ContradictionError, match="no scheme with 2 segments"):
+        with pytest.raises(RefusedResult, match="no scheme with 2 segments"):
             list(enumerate_schemes(RING, Options(), "cp-sat", 2))
 
 

@@ -21,14 +21,14 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
-from cellcolor.solvers.bounds.conflicts import Area, conflicts
+from cellcolor.solvers.bounds.conflicts import MergedCell, conflicts
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.painting import division_of
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
-from cellcolor.solvers.cpsat.routes.segment_plans import Plan, PlannedSegment, Planner
+from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, Planner, SegmentPlan
 from cellcolor.solvers.interface import Options
 
 RED, BLUE, GREEN = 0, 1, 2
@@ -49,7 +49,7 @@ def hub(*petals: int) -> Instance:
     )
 
 
-def areas(pair: tuple[Area, Area]) -> tuple[list[int], list[int]]:
+def areas(pair: tuple[MergedCell, MergedCell]) -> tuple[list[int], list[int]]:
     one, other = pair
     return sorted(one), sorted(other)
 
@@ -249,7 +249,7 @@ def planner_of(instance: Instance) -> Planner:
     return Planner(instance, color_regions(instance), set_cover(instance).bound, run, NEVER)
 
 
-def fewest_planned(instance: Instance) -> tuple[int, Plan]:
+def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
     """The fewest segments for which there is a plan without conflicts."""
     planner = planner_of(instance)
     segments = set_cover(instance).bound
@@ -296,7 +296,7 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
 # --- routing ------------------------------------------------------------------------------------
 
 
-def whole_cover(instance: Instance) -> Plan:
+def whole_cover(instance: Instance) -> SegmentPlan:
     return tuple(PlannedSegment(region, region[1]) for region in set_cover(instance).regions)
 
 
@@ -306,7 +306,7 @@ def graph_of(instance: Instance) -> DartGraph:
     return dart_graph(instance, colors, once, seams_of(instance, colors, once, 2))
 
 
-def segments_of(instance: Instance, plan: Plan, rings: int, rounds: int = 40) -> int:
+def segments_of(instance: Instance, plan: SegmentPlan, rings: int, rounds: int = 40) -> int:
     graph = graph_of(instance)
     painting = route(refined(graph, rings), plan, rounds, 0)
     report = check_division(instance, division_of(graph, painting), seams=graph.seams)

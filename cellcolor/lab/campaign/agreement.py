@@ -10,13 +10,13 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, SearchSpace, scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.errors import CellcolorError, TooLarge
+from cellcolor.errors import Disagreement, TooLarge
 from cellcolor.lab.campaign.cases import live_loops
 from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
 from cellcolor.solvers.checked import CONTENDERS, SOLVERS, enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
 
-__all__ = ["Disagreement", "Finding", "MeshFinding", "compare", "compare_on_mesh", "complaint"]
+__all__ = ["Finding", "MeshFinding", "compare_on_mesh", "compare_solvers", "complaint"]
 
 MOST_SCHEMES = 3000
 """Sets of optimal schemes that are larger are not compared."""
@@ -26,10 +26,6 @@ MOST_STATES = 6_000
 
 _STRANDS = (2, 4)
 """Corridors across an edge that are tried before a coloring with fewer segments counts as news."""
-
-
-class Disagreement(CellcolorError):
-    """Two solvers, or a solver and the checker, contradict each other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +56,7 @@ class MeshFinding:
     segments: int
 
 
-def compare(instance: Instance, time_limit: float) -> Finding:
+def compare_solvers(instance: Instance, time_limit: float) -> Finding:
     """Every solver's minimum and, where it is defined, set of optimal schemes.
 
     Args:

@@ -13,13 +13,13 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, hub_grid, planar_graph
 
-__all__ = ["KINDS", "Case", "draw", "live_darts", "live_loops"]
+__all__ = ["KINDS", "Case", "draw_case", "live_darts", "live_loops"]
 
 MOST_CELLS = 10
-MOST_DARTS = 9
+MOST_CELL_DARTS = 9
 """Live darts of a cell: what a depth-first search over the divisions of cells has time for."""
 
-MOST_DARTS_WITH_LOOPS = 5
+MOST_CELL_DARTS_WITH_LOOPS = 5
 
 _Made = LabelledSurface | Instance
 _Maker = Callable[[random.Random], _Made]
@@ -92,7 +92,7 @@ def _graph(rng: random.Random, self_edges: bool) -> Instance:
 
 
 def _hub(rng: random.Random) -> Instance:
-    return hub(rng.randrange(2**31), rng.randint(3, MOST_DARTS), rng.randint(3, 4))
+    return hub(rng.randrange(2**31), rng.randint(3, MOST_CELL_DARTS), rng.randint(3, 4))
 
 
 def _hub_grid(rng: random.Random) -> Instance:
@@ -118,13 +118,13 @@ KINDS = tuple(_MAKERS)
 """What a campaign takes its instances from, in turn."""
 
 
-def draw(seed: int, number: int) -> Case:
+def draw_case(seed: int, number: int) -> Case:
     """Instance ``number`` of the campaign with a seed, of a size that every solver can bear.
 
     Instances of hubs and their grids are as large as they are made. Of the other kinds those are
-    taken that have 2 to ``MOST_CELLS`` cells, none with more than ``MOST_DARTS`` live darts, and,
-    where the kind asks for it, some cell with several live loops or none. Seams multiply darts:
-    there cells may have ``MOST_DARTS_WITH_LOOPS``.
+    taken that have 2 to ``MOST_CELLS`` cells, none with more than ``MOST_CELL_DARTS`` live darts,
+    and, where the kind asks for it, some cell with several live loops or none. Seams multiply
+    darts: there cells may have ``MOST_CELL_DARTS_WITH_LOOPS``.
     """
     kind = KINDS[number % len(KINDS)]
     make, wanted = _MAKERS[kind]
@@ -137,7 +137,7 @@ def draw(seed: int, number: int) -> Case:
             instance, surface = decompose(made), made
         if kind in ("hubs", "grids of hubs"):
             return Case(seed, number, kind, instance, surface)
-        most = MOST_DARTS_WITH_LOOPS if kind == "islands, holes" else MOST_DARTS
+        most = MOST_CELL_DARTS_WITH_LOOPS if kind == "islands, holes" else MOST_CELL_DARTS
         if (
             2 <= len(instance.cells) <= MOST_CELLS
             and max(live_darts(instance, cell) for cell in instance.cells) <= most

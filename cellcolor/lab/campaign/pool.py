@@ -17,11 +17,11 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.campaign.agreement import (
     Finding,
     MeshFinding,
-    compare,
     compare_on_mesh,
+    compare_solvers,
     complaint,
 )
-from cellcolor.lab.campaign.cases import Case, draw, live_darts
+from cellcolor.lab.campaign.cases import Case, draw_case, live_darts
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 
 __all__ = ["Outcome", "Wrong", "campaign"]
@@ -99,7 +99,7 @@ def campaign(count: int, seed: int, time_limit: float, jobs: int) -> Iterator[Ou
 def examine(seed: int, time_limit: float, number: int) -> Outcome:
     """Make one instance of a campaign, and hold the solvers to each other on it."""
     started = time.monotonic()
-    case = draw(seed, number)
+    case = draw_case(seed, number)
     instance, surface = case.instance, case.surface
     wrong: list[Wrong] = []
     finding: Finding | None = None
@@ -107,7 +107,7 @@ def examine(seed: int, time_limit: float, number: int) -> Outcome:
 
     def on_graph() -> None:
         nonlocal finding
-        finding = compare(instance, time_limit)
+        finding = compare_solvers(instance, time_limit)
 
     if complaint(on_graph) is not None:
         wrong.append(_smallest_instance(case, time_limit))
@@ -133,7 +133,7 @@ def examine(seed: int, time_limit: float, number: int) -> Outcome:
 
 def _smallest_instance(case: Case, time_limit: float) -> Wrong:
     def check(instance: Instance) -> str | None:
-        return complaint(lambda: compare(instance, time_limit))
+        return complaint(lambda: compare_solvers(instance, time_limit))
 
     small = shrink_instance(case.instance, lambda i: check(i) is not None, SHRINK_SECONDS)
     message = check(small) or "did not happen again"

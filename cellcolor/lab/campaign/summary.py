@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 from cellcolor.lab.campaign.pool import Outcome
 
-__all__ = ["Kind", "Summary"]
+__all__ = ["Summary", "Tally"]
 
 _BINS: tuple[tuple[int, str], ...] = (
     (1, "1"),
@@ -23,7 +23,7 @@ _BINS: tuple[tuple[int, str], ...] = (
 
 
 @dataclass(slots=True)
-class Kind:
+class Tally:
     """Counts, of one family or of all together.
 
     Attributes:
@@ -68,14 +68,14 @@ class Summary:
         kinds: the same for each family.
     """
 
-    total: Kind = field(default_factory=Kind)
-    kinds: dict[str, Kind] = field(default_factory=dict)
+    total: Tally = field(default_factory=Tally)
+    kinds: dict[str, Tally] = field(default_factory=dict)
     _outcomes: list[Outcome] = field(default_factory=list)
 
     def add(self, outcome: Outcome) -> None:
         """Count one more."""
         self.total.add(outcome)
-        self.kinds.setdefault(outcome.kind, Kind()).add(outcome)
+        self.kinds.setdefault(outcome.kind, Tally()).add(outcome)
         self._outcomes.append(outcome)
 
     def histograms(self) -> dict[str, Sequence[tuple[str, int]]]:

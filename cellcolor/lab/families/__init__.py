@@ -13,13 +13,13 @@ from cellcolor.lab.families.hubs import (
     hub_with_loops,
     wide_hub,
 )
-from cellcolor.lab.families.meshes import SHAPES, Shape
+from cellcolor.lab.families.meshes import SHAPES, Topology
 from cellcolor.lab.families.parts import part
 from cellcolor.lab.families.voronoi import voronoi
 
 __all__ = [
     "SHAPES",
-    "Shape",
+    "Topology",
     "blobs",
     "cover_tree",
     "hub",

@@ -6,7 +6,7 @@ import random
 from collections.abc import Sequence
 from functools import cache
 
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, Known, KnownResult
+from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, KnownResult, KnownResults
 from cellcolor.errors import InputError
 
 __all__ = ["cover_tree", "hub", "hub_grid", "hub_minimum", "hub_with_loops", "wide_hub"]
@@ -29,7 +29,7 @@ def hub(seed: int, petals: int, colors: int) -> Instance:
         raise InputError(None, None, f"no hub has {petals} petals in {colors} colors")
     rng = random.Random(f"hub {seed} {petals} {colors}")
     ring = _ring(rng, petals, colors)
-    known = Known(paper=KnownResult(hub_minimum(ring)))
+    known = KnownResults(paper=KnownResult(hub_minimum(ring)))
     return _hub(f"hub_{seed}_{petals}", [[(color,) for color in ring]], colors, known)
 
 
@@ -139,7 +139,7 @@ def _hub(
     name: str,
     rings: Sequence[Sequence[tuple[int, ...]]],
     colors: int,
-    known: Known | None = None,
+    known: KnownResults | None = None,
 ) -> Instance:
     """A cell with all colors and a ring of petals, given by their colors, round each loop."""
     loops: list[tuple[int, ...]] = []

@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 
 from cellcolor.errors import InputError
 
-__all__ = ["SHAPES", "Mesh", "Shape", "grid_faces", "make_mesh", "sphere"]
+__all__ = ["SHAPES", "Mesh", "Topology", "grid_faces", "make_mesh", "sphere"]
 
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 """Vertices, (n, 3) in metres, and faces, (m, 3), counter-clockwise seen from outside."""
 
-Shape = Literal["disc", "annulus", "sphere", "torus", "double torus"]
-SHAPES: tuple[Shape, ...] = get_args(Shape)
+Topology = Literal["disc", "annulus", "sphere", "torus", "double torus"]
+SHAPES: tuple[Topology, ...] = get_args(Topology)
 
 LEAST_SIZE = 6
 
 
-def make_mesh(shape: Shape, size: int) -> Mesh:
+def make_mesh(shape: Topology, size: int) -> Mesh:
     """A mesh of a shape with ``size`` squared vertices or nearly, 1 to 3 m wide.
 
     Raises:

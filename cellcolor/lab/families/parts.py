@@ -14,7 +14,7 @@ from cellcolor.lab.families.meshes import sphere
 
 __all__ = ["part"]
 
-BRANCHES = 8
+BRANCH_COUNT = 8
 CREASES = 4
 ROUGHNESS = (0.3, 0.2, 0.15, 0.12, 0.1, 0.08, 0.06, 0.05, 0.04, 0.03, 0.02, 0.01, 0.0)
 """Noise on the fields, tried until what it makes leaves room for the specks."""
@@ -104,19 +104,21 @@ class _Smooth:
         creases: int,
     ) -> None:
         count = len(vertices)
-        self._fields = np.empty((count, BRANCHES))
-        for pair in range(0, BRANCHES, 2):
+        self._fields = np.empty((count, BRANCH_COUNT))
+        for pair in range(0, BRANCH_COUNT, 2):
             common = _field(rng, vertices, frequency)
             for branch in (pair, pair + 1):
                 self._fields[:, branch] = common + 0.2 * _field(rng, vertices, 2 * frequency)
-        noise = rng.normal(size=(count, BRANCHES))
+        noise = rng.normal(size=(count, BRANCH_COUNT))
         # Averages over neighbors, so that what the noise makes is larger than a vertex.
         self._noise = noise + np.array([noise[others].sum(axis=0) for others in neighbors])
-        self._coverage = rng.uniform(0.4, 0.7, BRANCHES)
+        self._coverage = rng.uniform(0.4, 0.7, BRANCH_COUNT)
         self._cracked: dict[Pair, set[int]] = {}
         for _ in range(creases):
             crease = _field(rng, vertices, 0.3)
-            affected = np.stack([_field(rng, vertices, 0.4) > 0 for _ in range(BRANCHES)], axis=1)
+            affected = np.stack(
+                [_field(rng, vertices, 0.4) > 0 for _ in range(BRANCH_COUNT)], axis=1
+            )
             for a, others in enumerate(neighbors):
                 for b in others:
                     if a < b and (crease[a] > 0) != (crease[b] > 0):
@@ -126,7 +128,7 @@ class _Smooth:
     def labels(self, roughness: float) -> _Labels:
         """What the branches reach when that much noise is added."""
         fields = self._fields + roughness * self._noise
-        least = [np.quantile(fields[:, b], 1.0 - self._coverage[b]) for b in range(BRANCHES)]
+        least = [np.quantile(fields[:, b], 1.0 - self._coverage[b]) for b in range(BRANCH_COUNT)]
         cracked = {edge: set(branches) for edge, branches in self._cracked.items() if branches}
         return _Labels(fields >= np.array(least), cracked)
 
@@ -146,7 +148,7 @@ def _colors(
     """The colors, each as its branch and its number there, and those of each vertex."""
     names: list[Pair] = []
     sets: list[list[int]] = [[] for _ in neighbors]
-    for branch in range(BRANCHES):
+    for branch in range(BRANCH_COUNT):
         open_nodes = set(np.flatnonzero(labels.reached[:, branch]).tolist())
         number = 0
         for first in sorted(open_nodes):
@@ -222,7 +224,7 @@ def _filled(
         if not sets[center] or used & (disc | ring) or not _alike(sets, disc | ring):
             continue
         present = np.flatnonzero(labels.reached[center]).tolist()
-        absent = sorted(set(range(BRANCHES)) - set(present))
+        absent = sorted(set(range(BRANCH_COUNT)) - set(present))
         if int(rng.integers(colored + bare)) < colored:
             if absent and rng.random() < 0.6:
                 labels.reached[sorted(disc), absent[int(rng.integers(len(absent)))]] = True

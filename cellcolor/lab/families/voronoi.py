@@ -10,7 +10,7 @@ from cellcolor.data.mesh import directed_edges
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.lab.families.cracks import crack_paths
-from cellcolor.lab.families.meshes import Shape, make_mesh
+from cellcolor.lab.families.meshes import Topology, make_mesh
 
 __all__ = ["voronoi"]
 
@@ -20,7 +20,7 @@ Regions = list[int]
 
 def voronoi(
     seed: int,
-    shape: Shape = "disc",
+    shape: Topology = "disc",
     size: int = 24,
     regions: int = 40,
     colors: int = 6,

@@ -176,9 +176,9 @@ def _solve(
     """
     from ortools.sat.python import cp_model
 
-    from cellcolor.solvers.interruptible import make_solver, solve_interruptibly
+    from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
-    solver = make_solver(deadline, 1, 0, EFFORT)
+    solver = make_cp_solver(deadline, 1, 0, EFFORT)
     # A cover of many regions is bounded by its linear relaxation or hardly at all.
     solver.parameters.linearization_level = 2
     status, interrupt = solve_interruptibly(solver, model)

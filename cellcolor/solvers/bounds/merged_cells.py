@@ -20,20 +20,20 @@ class MergedCells:
         loops: the live darts around each merged cell.
         sides: the merged cells to the left and to the right of each edge that is left.
         joinable: the joinable colors of each edge that is left.
-        part_of: the merged cell that each cell went into.
+        merged_cell_of: the merged cell that each cell went into.
     """
 
     loops: dict[int, list[list[int]]]
     sides: dict[int, tuple[int, int]]
     joinable: dict[int, frozenset[int]]
-    part_of: dict[int, int]
+    merged_cell_of: dict[int, int]
 
     def cells(self) -> dict[int, frozenset[int]]:
         """The cells that each merged cell consists of."""
         members: dict[int, list[int]] = {}
-        for cell, part in self.part_of.items():
-            members.setdefault(part, []).append(cell)
-        return {part: frozenset(cells) for part, cells in members.items()}
+        for cell, merged_cell in self.merged_cell_of.items():
+            members.setdefault(merged_cell, []).append(cell)
+        return {merged_cell: frozenset(cells) for merged_cell, cells in members.items()}
 
 
 def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> MergedCells:
@@ -73,16 +73,16 @@ def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> Mer
             merged.union(left, right)
         rings.remove(edge_id)
         del joinable[edge_id]
-    part_of = {cell: merged[cell] for cell in colors}
-    loops: dict[int, list[list[int]]] = {part: [] for part in part_of.values()}
+    merged_cell_of = {cell: merged[cell] for cell in colors}
+    loops: dict[int, list[list[int]]] = {merged_cell: [] for merged_cell in merged_cell_of.values()}
     sides = {
-        edge: (part_of[instance.edge(edge).left], part_of[instance.edge(edge).right])
+        edge: (merged_cell_of[instance.edge(edge).left], merged_cell_of[instance.edge(edge).right])
         for edge in joinable
     }
     for darts in rings.loops():
         left, right = sides[abs(darts[0])]
         loops[left if darts[0] > 0 else right].append(darts)
-    return MergedCells(loops, sides, joinable, part_of)
+    return MergedCells(loops, sides, joinable, merged_cell_of)
 
 
 class _Rings:

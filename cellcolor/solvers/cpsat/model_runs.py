@@ -8,7 +8,7 @@ from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.interface import PORTFOLIO, Options
-from cellcolor.solvers.interruptible import make_solver, solve_interruptibly
+from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
 __all__ = ["Runner"]
 
@@ -44,7 +44,7 @@ class Runner:
             workers: other than the options' number of them.
             seed: added to the options' seed.
         """
-        return make_solver(
+        return make_cp_solver(
             deadline or self._options.deadline,
             workers or self._options.workers or PORTFOLIO,
             self._options.seed + seed,

@@ -17,7 +17,7 @@ from cellcolor.solvers.cpsat.model.full import (
     LARGEST_MODEL,
     Model,
     add_hint,
-    build,
+    full_model,
     model_size,
     read_painting,
     seams_size,
@@ -28,7 +28,7 @@ from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import Part
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
-from cellcolor.solvers.cpsat.routes.segment_plans import Plan, Planner, Undecided
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
 from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.interface import PORTFOLIO, Options
 
@@ -137,7 +137,7 @@ class PartSearch:
             if looser is not None:
                 self._route(looser, 1, ROUNDS, 0, deadline)
 
-    def _plan_that_holds(self, planner: Planner, attempt: int, deadline: Deadline) -> Plan:
+    def _plan_that_holds(self, planner: Planner, attempt: int, deadline: Deadline) -> SegmentPlan:
         """A plan with as many segments as the bound in which no two are known to cross.
 
         Raises:
@@ -224,7 +224,9 @@ class PartSearch:
         solver = self._runner.solver(PLAN_EFFORT, workers=1, seed=seed)
         return solver, self._runner.solve(solver, model)
 
-    def _route(self, plan: Plan, rings: int, rounds: int, seed: int, deadline: Deadline) -> None:
+    def _route(
+        self, plan: SegmentPlan, rings: int, rounds: int, seed: int, deadline: Deadline
+    ) -> None:
         if self.done:
             return
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
@@ -245,7 +247,7 @@ class PartSearch:
         graph = dart_graph(self._instance, colors, strands, seams, self._part.loops)
         if not self._fits(model_size(graph)):
             return
-        built = build(graph, color_regions(self._instance, colors), deadline=deadline)
+        built = full_model(graph, color_regions(self._instance, colors), deadline=deadline)
         self._hint(built, graph)
         solver = self._runner.solver(None if final else TRIAL_EFFORT, deadline)
         if final:

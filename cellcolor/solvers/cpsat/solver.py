@@ -27,7 +27,7 @@ from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import live_loops, seam_places, split
 from cellcolor.solvers.cpsat.schemes.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.search import PartSearch
-from cellcolor.solvers.interface import Answer, Options, Progress, Start
+from cellcolor.solvers.interface import Answer, OnProgress, Options, Start
 
 __all__ = ["CpSatSolver"]
 
@@ -49,7 +49,7 @@ class CpSatSolver:
         self._plans = plans
 
     def minimize(
-        self, instance: Instance, options: Options, progress: Progress | None = None
+        self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
         """A division with the fewest segments, or the best found before the deadline."""
         if not instance.cells:
@@ -70,7 +70,7 @@ class _Search:
     """The best division of the whole instance so far, put together from its parts."""
 
     def __init__(
-        self, instance: Instance, options: Options, progress: Progress | None, plans: bool
+        self, instance: Instance, options: Options, progress: OnProgress | None, plans: bool
     ) -> None:
         self._instance = instance
         self._options = options

@@ -17,7 +17,7 @@ from ortools.sat.python import cp_model
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import Dart, DartGraph
-from cellcolor.solvers.cpsat.model.full import build, model_size, read_painting
+from cellcolor.solvers.cpsat.model.full import full_model, model_size, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
 
 __all__ = ["improve"]
@@ -187,7 +187,7 @@ def _solved(
     window: _Window, graph: DartGraph, painting: Painting, solve: Solve, seed: int
 ) -> Painting | None:
     """The whole painting with the window's cells solved anew; None if nothing was found."""
-    built = build(window.graph, _regions(window.graph))
+    built = full_model(window.graph, _regions(window.graph))
     solver, status = solve(built.model, seed)
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None

@@ -17,9 +17,9 @@ from dataclasses import dataclass
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.dfs.graph import GraphCell
 
-__all__ = ["CellScheme", "Known", "cell_schemes", "code", "divisions", "zero_colors"]
+__all__ = ["CellScheme", "DartKnowledge", "cell_schemes", "code", "divisions", "zero_colors"]
 
-Known = tuple[int, int | None] | None
+DartKnowledge = tuple[int, int | None] | None
 """What is known of an edge from the cell beyond it: ``(1, color)``, ``(0, color)`` when the other
 side certainly shows that color, ``(0, None)`` when it may show either of two, None if unsolved."""
 
@@ -35,7 +35,7 @@ class CellScheme:
     """
 
     subcells: tuple[tuple[int, tuple[int, ...]], ...]
-    sides: tuple[Known, ...]
+    sides: tuple[DartKnowledge, ...]
 
 
 def zero_colors(painted: Sequence[int | None], own: int) -> list[tuple[int, int] | None]:
@@ -66,7 +66,7 @@ def zero_colors(painted: Sequence[int | None], own: int) -> list[tuple[int, int]
 
 
 def cell_schemes(
-    cell: GraphCell, known: Sequence[Known], deadline: Deadline = NEVER
+    cell: GraphCell, known: Sequence[DartKnowledge], deadline: Deadline = NEVER
 ) -> Iterator[CellScheme]:
     """Every way to divide and paint a cell that agrees with its solved neighbours.
 
@@ -84,7 +84,7 @@ def cell_schemes(
 class _CellSearch:
     """The recursion of :func:`cell_schemes`."""
 
-    def __init__(self, cell: GraphCell, known: Sequence[Known], deadline: Deadline) -> None:
+    def __init__(self, cell: GraphCell, known: Sequence[DartKnowledge], deadline: Deadline) -> None:
         self._cell = cell
         self._known = known
         self._deadline = deadline
@@ -206,7 +206,7 @@ class _CellSearch:
         self, subcells: tuple[tuple[int, tuple[int, ...]], ...], own: int
     ) -> Iterator[CellScheme]:
         painted = [self._color[b] if b >= 0 else None for b in self._block]
-        sides: list[Known] = []
+        sides: list[DartKnowledge] = []
         for color, shown in zip(painted, zero_colors(painted, own), strict=True):
             if shown is None:
                 sides.append((1, color))

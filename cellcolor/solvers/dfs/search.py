@@ -12,9 +12,9 @@ from itertools import chain, islice
 
 from cellcolor.data.solution import DartName
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.solvers.dfs.cell_schemes import CellScheme, Known, cell_schemes
+from cellcolor.solvers.dfs.cell_schemes import CellScheme, DartKnowledge, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell, twin
-from cellcolor.solvers.dfs.segment_counts import Segments
+from cellcolor.solvers.dfs.segment_counts import SegmentCounts
 from cellcolor.solvers.dfs.zero_darts import zeros_fit
 
 __all__ = ["Search"]
@@ -42,8 +42,8 @@ class Search:
         self._cells = cells
         self._region = region
         self._deadline = deadline
-        self._segments = Segments()
-        self._memory: list[dict[tuple[Known, ...], list[CellScheme]]] = [{} for _ in cells]
+        self._segments = SegmentCounts()
+        self._memory: list[dict[tuple[DartKnowledge, ...], list[CellScheme]]] = [{} for _ in cells]
         self._covers: list[dict[int, int]] = [{} for _ in range(len(cells) + 1)]
         self._chosen: list[CellScheme] = []
         self._index_darts()
@@ -69,7 +69,7 @@ class Search:
                 depth_of.append(depth)
         self._numbers = [[number[dart] for dart in cell.darts] for cell in self._cells]
         self._twins = [[number[twin(dart)] for dart in cell.darts] for cell in self._cells]
-        self._side: list[Known] = [None] * len(number)
+        self._side: list[DartKnowledge] = [None] * len(number)
         """What each dart's other side learns; None as long as its cell is unsolved."""
         self._holder = [-1] * len(number)
         """The sub-cell of each dart in state 1 of the solved cells."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-__all__ = ["Segments"]
+__all__ = ["SegmentCounts"]
 
 
-class Segments:
+class SegmentCounts:
     """Sub-cells joined into segments: a union-find whose last steps can be taken back.
 
     Attributes:

@@ -15,7 +15,7 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.dfs.cell_schemes import CellScheme
 from cellcolor.solvers.dfs.graph import GraphCell, Graphs
 from cellcolor.solvers.dfs.search import Search
-from cellcolor.solvers.interface import Answer, Options, Progress
+from cellcolor.solvers.interface import Answer, OnProgress, Options
 
 __all__ = ["ReferenceSolver"]
 
@@ -40,7 +40,7 @@ class ReferenceSolver:
     name = "dfs"
 
     def minimize(
-        self, instance: Instance, options: Options, progress: Progress | None = None
+        self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
         """A division with the fewest segments, or the best that the time limit allowed.
 

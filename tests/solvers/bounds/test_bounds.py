@@ -163,8 +163,8 @@ def test_two_cells_that_nothing_separates_become_one() -> None:
     )
     instance = Instance("row", ("red", "blue"), cells, (Edge(1, 0, 1), Edge(2, 1, 2, (RED,))))
     found = merge_cells(instance, dict.fromkeys(range(3), frozenset({RED, BLUE})))
-    both = found.part_of[0]
-    assert found.part_of == {0: both, 1: both, 2: 2}
+    both = found.merged_cell_of[0]
+    assert found.merged_cell_of == {0: both, 1: both, 2: 2}
     assert found.loops == {both: [[2]], 2: [[-2]]}
     assert found.sides == {2: (both, 2)}
     assert found.joinable == {2: frozenset({RED})}
@@ -184,6 +184,6 @@ def test_merging_around_a_cell_leaves_a_hole() -> None:
         (Edge(1, 0, 1), Edge(2, 0, 2), Edge(3, 0, 1), Edge(4, 1, 2), Edge(5, 0, 3), Edge(6, 1, 3)),
     )
     found = merge_cells(instance, {cell.id: frozenset(cell.colors) for cell in instance.cells})
-    ring = found.part_of[0]
-    assert found.part_of == {0: ring, 1: ring, 2: 2, 3: 3}
+    ring = found.merged_cell_of[0]
+    assert found.merged_cell_of == {0: ring, 1: ring, 2: 2, 3: 3}
     assert {frozenset(loop) for loop in found.loops[ring]} == {frozenset({2, 4}), frozenset({5, 6})}

@@ -20,8 +20,8 @@ __all__ = [
     "LARGEST_MODEL",
     "Model",
     "add_hint",
-    "build",
     "fewest_subcells",
+    "full_model",
     "model_size",
     "read_painting",
     "seams_size",
@@ -88,7 +88,7 @@ def too_large(size: float) -> str:
     return f"A model of {size:.1g} terms was not built; {LARGEST_MODEL:.1g} are the most."
 
 
-def build(
+def full_model(
     graph: DartGraph,
     regions: Sequence[Region],
     groups: Sequence[Group] = DEFINING + REDUNDANT,

@@ -28,8 +28,8 @@ from cellcolor.solvers.cpsat.model.dart_graph import (
 )
 from cellcolor.solvers.cpsat.model.full import (
     LARGEST_MODEL,
-    build,
     fewest_subcells,
+    full_model,
     model_size,
     read_painting,
     seams_size,
@@ -175,7 +175,7 @@ class SeamWriter:
         small = dart_graph(instance, colors, dict.fromkeys(local.values(), 1), own)
         if (size := model_size(small)) > LARGEST_MODEL:
             raise TooLarge(too_large(size))
-        built = build(small, color_regions(instance))
+        built = full_model(small, color_regions(instance))
         fewest_subcells(built.model, small, built.variables, built.variables.alone, spare)
         solver, status = self._solve(built.model)
         if status == cp_model.INFEASIBLE:

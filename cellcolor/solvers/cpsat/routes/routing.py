@@ -17,7 +17,7 @@ from math import inf
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.cpsat.model.painting import Painting
 from cellcolor.solvers.cpsat.routes.sectors import RefinedGraph, painting_of_nodes
-from cellcolor.solvers.cpsat.routes.segment_plans import Plan
+from cellcolor.solvers.cpsat.routes.segment_plans import SegmentPlan
 
 __all__ = ["route"]
 
@@ -26,7 +26,7 @@ FIRST_PRICE, PRICE_FACTOR, HIGHEST_PRICE = 0.5, 1.3, 50.0
 
 
 def route(
-    graph: RefinedGraph, plan: Plan, rounds: int, seed: int, deadline: Deadline = NEVER
+    graph: RefinedGraph, plan: SegmentPlan, rounds: int, seed: int, deadline: Deadline = NEVER
 ) -> Painting:
     """Paint a plan.
 
@@ -48,7 +48,7 @@ def route(
 
 
 class _Router:
-    def __init__(self, graph: RefinedGraph, plan: Plan, seed: int) -> None:
+    def __init__(self, graph: RefinedGraph, plan: SegmentPlan, seed: int) -> None:
         self._graph = graph
         self._plan = plan
         self._random = random.Random(seed)

@@ -20,7 +20,7 @@ from cellcolor.solvers.bounds.conflicts import Parting, RegionPair, Side
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.bounds.merged_cells import merge_cells
 
-__all__ = ["Plan", "PlannedSegment", "Planner", "Undecided"]
+__all__ = ["PlannedSegment", "Planner", "SegmentPlan", "Undecided"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +36,10 @@ class PlannedSegment:
     cells: frozenset[int]
 
 
-Plan = tuple[PlannedSegment, ...]
+SegmentPlan = tuple[PlannedSegment, ...]
 
 MOST_LITERALS = 100_000
-"""For the areas that segments touch."""
+"""For the merged cells that segments touch."""
 
 MOST_PARTED = 2_000
 """Literals of the constraints that keep segments from crossing. Around a cell with many petals
@@ -49,8 +49,8 @@ MOST_PARTINGS = 200
 """Found at a time, before the next plan is made with them."""
 
 MOST_STARTS = 5
-"""Areas of a segment from which curves are drawn to its other ones, if one such area does not show
-that the segment crosses another."""
+"""Merged cells of a segment from which curves are drawn to its other ones, if one such merged cell
+does not show that the segment crosses another."""
 
 Solve = Callable[[cp_model.CpModel, int], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
 
@@ -86,19 +86,19 @@ class Planner:
         self._solve = solve
         self._deadline = deadline
         self._number = {region: number for number, region in enumerate(regions)}
-        # A segment that touches one cell of an area in which nothing separates its cells can be
-        # grown over all of it, so that areas are all that a plan has to know.
+        # A segment that touches one cell of a merged cell in which nothing separates its cells can
+        # be grown over all of it, so that merged cells are all that a plan has to know.
         own = {cell.id: frozenset(cell.colors) for cell in instance.cells}
         self._merged = merge_cells(instance, own)
-        self._areas = self._merged.cells()
-        self._areas_of = [
-            sorted({self._merged.part_of[cell] for cell in cells}) for _, cells in regions
+        self._merged_cells = self._merged.cells()
+        self._merged_cells_of = [
+            sorted({self._merged.merged_cell_of[cell] for cell in cells}) for _, cells in regions
         ]
         self._pairs: dict[tuple[int, int], RegionPair] = {}
         self._partings: dict[tuple[int, int], list[Parting]] = {}
         self._looked_at: set[tuple[tuple[int, int], int, int]] = set()
 
-    def plan(self, segments: int, seed: int) -> Plan | None:
+    def plan(self, segments: int, seed: int) -> SegmentPlan | None:
         """A plan with exactly so many segments that heeds all partings found so far.
 
         Args:
@@ -115,7 +115,7 @@ class Planner:
         parted = [parting for partings in self._partings.values() for parting in partings]
         if copies**2 * sum(2 + len(parting.groups) for parting in parted) > MOST_PARTED:
             raise Undecided
-        if copies * sum(map(len, self._areas_of)) > MOST_LITERALS:
+        if copies * sum(map(len, self._merged_cells_of)) > MOST_LITERALS:
             raise Undecided
         model = cp_model.CpModel()
         touched = self._add_segments(model, segments)
@@ -133,7 +133,7 @@ class Planner:
             raise Undecided
         return self._read(solver, touched)
 
-    def find_partings(self, plan: Plan) -> bool:
+    def find_partings(self, plan: SegmentPlan) -> bool:
         """Look for segments of a plan that would cross; whether there are any.
 
         Raises:
@@ -141,8 +141,8 @@ class Planner:
         """
         return any(self._find(plan, every) for every in (False, True))
 
-    def _find(self, plan: Plan, every: bool) -> bool:
-        """Look at curves from one area of each segment, or from every one of a few."""
+    def _find(self, plan: SegmentPlan, every: bool) -> bool:
+        """Look at curves from one merged cell of each segment, or from every one of a few."""
         found = 0
         for one, other in combinations(plan, 2):
             first, second = sorted((one, other), key=lambda s: self._number[s.region])
@@ -157,8 +157,8 @@ class Planner:
                 (numbers, pair.first, first, second),
                 (numbers[::-1], pair.second, second, first),
             ):
-                held = {pair.area_of(cell) for cell in own.cells}
-                ends = [area for area in side.areas if area in held]
+                held = {pair.merged_cell_of(cell) for cell in own.cells}
+                ends = [merged_cell for merged_cell in side.merged_cells if merged_cell in held]
                 for parting in self._violated(key, side, ends, parted.cells, every):
                     self._partings.setdefault(key, []).append(parting)
                     found += 1
@@ -174,37 +174,43 @@ class Planner:
         cells: frozenset[int],
         every: bool,
     ) -> Iterator[Parting]:
-        """New partings, by a segment that touches some areas, of the cells of another segment."""
+        """New partings, by a segment that touches some merged cells, of the cells of another
+        segment."""
         starts = range(min(MOST_STARTS, len(ends))) if every else range(1)
-        for near, far in ((ends[n], area) for n in starts for area in ends[n + 1 :]):
+        for near, far in ((ends[n], merged_cell) for n in starts for merged_cell in ends[n + 1 :]):
             if (key, near, far) in self._looked_at:
                 continue
             self._deadline.check()
             for parting in side.partings(near, far):
                 touched = (
-                    any(not area.isdisjoint(cells) for area in group) for group in parting.groups
+                    any(not merged_cell.isdisjoint(cells) for merged_cell in group)
+                    for group in parting.groups
                 )
                 if sum(touched) > 1:
                     self._looked_at.add((key, near, far))
                     yield parting
 
     def _add_segments(self, model: cp_model.CpModel, segments: int) -> _Touched:
-        """Literals for the areas that each segment touches, by region and copy."""
+        """Literals for the merged cells that each segment touches, by region and copy."""
         # The regions in use touch all cells, so there are at least the fewest different ones.
         copies = segments - self._fewest + 1
         touched: _Touched = {}
         used: list[cp_model.IntVar] = []
-        touching: dict[int, list[cp_model.IntVar]] = {area: [] for area in self._areas}
-        for number, areas in enumerate(self._areas_of):
+        touching: dict[int, list[cp_model.IntVar]] = {
+            merged_cell: [] for merged_cell in self._merged_cells
+        }
+        for number, merged_cells in enumerate(self._merged_cells_of):
             for copy in range(copies):
                 in_use = model.new_bool_var("")
                 if copy:
                     model.add_implication(in_use, used[-1])
                 used.append(in_use)
-                touched[number, copy] = {area: model.new_bool_var("") for area in areas}
-                for area, literal in touched[number, copy].items():
+                touched[number, copy] = {
+                    merged_cell: model.new_bool_var("") for merged_cell in merged_cells
+                }
+                for merged_cell, literal in touched[number, copy].items():
                     model.add_implication(literal, in_use)
-                    touching[area].append(literal)
+                    touching[merged_cell].append(literal)
         for literals in touching.values():
             model.add_bool_or(literals)
         model.add(sum(used) == segments)
@@ -220,26 +226,30 @@ class Planner:
             key = region, copy, cells
             if key not in touching:
                 touching[key] = model.new_bool_var("")
-                for area in sorted({self._merged.part_of[cell] for cell in cells}):
-                    model.add_implication(touched[region, copy][area], touching[key])
+                for merged_cell in sorted({self._merged.merged_cell_of[cell] for cell in cells}):
+                    model.add_implication(touched[region, copy][merged_cell], touching[key])
             return touching[key]
 
         copies = {copy for _, copy in touched}
         for parting in self._partings[one, other]:
             groups = [frozenset[int]().union(*group) for group in parting.groups]
             for near, far in product(copies, repeat=2):
-                ends = [touches(one, near, area) for area in parting.ends]
+                ends = [touches(one, near, merged_cell) for merged_cell in parting.ends]
                 parted = [touches(other, far, group) for group in groups]
                 model.add(sum(parted) <= 1).only_enforce_if(ends)
 
-    def _read(self, solver: cp_model.CpSolver, touched: _Touched) -> Plan:
+    def _read(self, solver: cp_model.CpSolver, touched: _Touched) -> SegmentPlan:
         """The plan in which every cell is touched by one segment only."""
-        left = set(self._areas)
+        left = set(self._merged_cells)
         plan = []
         for (number, _), literals in touched.items():
-            areas = {area for area, literal in literals.items() if solver.boolean_value(literal)}
-            if areas:
-                cells = (self._areas[area] for area in areas & left)
+            merged_cells = {
+                merged_cell
+                for merged_cell, literal in literals.items()
+                if solver.boolean_value(literal)
+            }
+            if merged_cells:
+                cells = (self._merged_cells[merged_cell] for merged_cell in merged_cells & left)
                 plan.append(PlannedSegment(self._regions[number], frozenset().union(*cells)))
-                left -= areas
+                left -= merged_cells
         return tuple(plan)
