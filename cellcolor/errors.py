@@ -32,6 +32,10 @@ class InputError(CellcolorError):
         self.message = " ".join(message.split())
         super().__init__(": ".join(part for part in (file, field, self.message) if part))
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str | None, str | None, str]]:
+        # Python would hand the text of the whole line to __init__, which takes its three parts.
+        return type(self), (self.file, self.field, self.message)
+
     def in_file(self, file: str) -> InputError:
         """The same error with the file named, for data that learns its file late."""
         return InputError(file, self.field, self.message)
@@ -60,14 +64,20 @@ class BeatenBound(ContradictionError):
     """A valid plan has fewer segments than the proven lower bound of its surface.
 
     Attributes:
+        name: of the surface.
         segments: of the plan.
         lower: the bound that it beats.
     """
 
     def __init__(self, name: str, segments: int, lower: int) -> None:
+        self.name = name
         self.segments = segments
         self.lower = lower
         super().__init__(
             f"internal contradiction: a valid plan on {name!r} has {segments} segments, fewer "
             f"than the proven lower bound of {lower}; please report this surface and plan"
         )
+
+    def __reduce__(self) -> tuple[type[BeatenBound], tuple[str, int, int]]:
+        # As in InputError.
+        return type(self), (self.name, self.segments, self.lower)

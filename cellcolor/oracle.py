@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import BeatenBound
@@ -48,6 +49,11 @@ class ProvenRange:
     def exact(self) -> bool:
         """The minimum is known."""
         return self.lower == self.upper
+
+    def __str__(self) -> str:
+        if self.exact:
+            return f"exactly {count(self.lower, 'segment')}"
+        return f"between {self.lower} and {count(self.upper, 'segment')}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +104,20 @@ class Verdict:
         if self.segments > self.bounds.upper:
             return self.segments - self.bounds.upper
         return 0 if self.segments == self.bounds.lower else None
+
+    def __str__(self) -> str:
+        if self.segments is None or self.lift_offs is None:
+            more = len(self.problems) - 1
+            rest = f" (and {count(more, 'other problem')})" if more > 0 else ""
+            return f"not valid: {self.problems[0]}{rest}"
+        found = f"{count(self.segments, 'segment')}, {count(self.lift_offs, 'lift-off')}"
+        if self.bounds is None:
+            return found
+        if self.optimal:
+            return f"{found}, optimal: no division of the surface has fewer"
+        if self.beatable_by:
+            return f"{found}, {self.beatable_by} fewer are proved to be enough"
+        return f"{found}, not known to be optimal; the fewest are {self.bounds}"
 
 
 def proven_range(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from pydantic import ConfigDict, NonNegativeInt
 
+from cellcolor.data.wording import count
 from cellcolor.files.validation import json_content, settle
 
 __all__ = ["Bound", "greatest"]
@@ -33,13 +34,17 @@ class Bound:
     kind: str
     value: NonNegativeInt
     holds_for: Extent
-    certificate: dict[str, Any] | None = None
+    certificate: dict[str, Any] | None = field(default=None, hash=False)
 
     def __post_init__(self) -> None:
         settle(self)
         if self.certificate is not None:
             content = json_content(self.certificate, "certificate")
             object.__setattr__(self, "certificate", content)
+
+    def __str__(self) -> str:
+        extent = "any division of the surface" if self.holds_for == "surface" else "these strands"
+        return f"at least {count(self.value, 'segment')} for {extent}, by {self.kind}"
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""

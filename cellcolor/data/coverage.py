@@ -45,6 +45,13 @@ class Coverage:
         share = 1 - self.unreachable - self.given_up
         return share if share > _ROUNDING else 0.0
 
+    def __str__(self) -> str:
+        given_up = f", {100 * self.given_up:.1f} % given up" if self.given_up else ""
+        return (
+            f"{100 * self.covered:.1f} % of {self.area_m2:.4g} m² can be covered, "
+            f"{100 * self.unreachable:.1f} % is unreachable{given_up}"
+        )
+
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
         return {

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import pairwise
-from pathlib import Path
+from os import PathLike
 from typing import Any
 
 from pydantic import ConfigDict, NonNegativeFloat, NonNegativeInt, TypeAdapter
 
 from cellcolor.data.coverage import Coverage
+from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_document, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
@@ -47,6 +48,14 @@ class Cell:
         settle(self)
         object.__setattr__(self, "colors", tuple(sorted(self.colors)))
 
+    def __str__(self) -> str:
+        numbers = "color" if len(self.colors) == 1 else "colors"
+        size = "" if self.area is None else f", {self.area:.4g} m²"
+        return (
+            f"cell {self.id}: {numbers} {listed(self.colors)}, "
+            f"{count(sum(map(len, self.loops)), 'dart')} on {count(len(self.loops), 'loop')}{size}"
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class Edge:
@@ -73,6 +82,14 @@ class Edge:
         settle(self)
         if self.colors is not None:
             object.__setattr__(self, "colors", tuple(sorted(self.colors)))
+
+    def __str__(self) -> str:
+        left, right = (
+            "the outside" if cell == OUTSIDE else f"cell {cell}" for cell in (self.left, self.right)
+        )
+        size = "" if self.length is None else f", {self.length:.4g} m"
+        few = "" if self.colors is None else f", joinable colors: {listed(self.colors)}"
+        return f"edge {self.id}: {left} on its left, {right} on its right{few}{size}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +138,7 @@ class KnownResults:
         settle(self)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Instance:
     """A validated topological graph, all that is needed to solve.
 
@@ -145,7 +162,7 @@ class Instance:
     colors: tuple[str, ...]
     cells: tuple[Cell, ...]
     edges: tuple[Edge, ...]
-    meta: dict[str, Any] | None = None
+    meta: dict[str, Any] | None = field(default=None, hash=False)
     surface: SurfaceReference | None = None
     known: KnownResults | None = None
     coverage: Coverage | None = None
@@ -163,6 +180,15 @@ class Instance:
                     raise InputError(
                         None, f"surface.vertex_cell[{vertex}]", f"no cell {cell} in this instance"
                     )
+
+    def __str__(self) -> str:
+        return (
+            f"{self.name}: {count(len(self.cells), 'cell')}, {count(len(self.edges), 'edge')}, "
+            f"{count(len(self.colors), 'color')}"
+        )
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
 
     def _check_cells(self) -> None:
         for position, cell in enumerate(self.cells):
@@ -344,7 +370,7 @@ class Instance:
         return instance
 
     @classmethod
-    def read(cls, path: Path) -> Instance:
+    def read(cls, path: str | PathLike[str]) -> Instance:
         """An instance from a file.
 
         Raises:

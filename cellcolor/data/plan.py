@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from pathlib import Path
+from os import PathLike
 from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter
 
+from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document, take_body, validate
 from cellcolor.files.validation import settle
@@ -16,7 +17,7 @@ from cellcolor.files.validation import settle
 FORMAT = "cellcolor/plan"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Plan:
     """One color per vertex of a labelled surface.
 
@@ -35,6 +36,15 @@ class Plan:
     def __post_init__(self) -> None:
         settle(self)
 
+    def __str__(self) -> str:
+        painted = [color for color in self.vertex_colors if color is not None]
+        vertices = count(len(self.vertex_colors), "vertex", "vertices")
+        colors = count(len(set(painted)), "color")
+        return f"plan for {vertices}, {len(painted)} of them painted, in {colors}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__}: {self}>"
+
     def to_json(self) -> str:
         """The file's text."""
         return json.dumps(
@@ -47,7 +57,7 @@ class Plan:
         return validate(_ADAPTER, take_body(document, FORMAT))
 
     @classmethod
-    def read(cls, path: Path) -> Plan:
+    def read(cls, path: str | PathLike[str]) -> Plan:
         """A plan from a file.
 
         Raises:

@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
+from os import PathLike
 from typing import Annotated, Any, Literal
 
 from pydantic import ConfigDict, Field, NonNegativeFloat, NonNegativeInt, PositiveInt, TypeAdapter
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
+from cellcolor.data.proof_wording import in_words
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, parse_json, read_text, take_body, validate
 from cellcolor.files.validation import settle
@@ -124,7 +125,7 @@ class InstanceReference:
         settle(self)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Solution:
     """A solver's answer, never stronger than its proof.
 
@@ -194,6 +195,12 @@ class Solution:
         if self.status != "unknown" and missing:
             raise InputError(None, missing[0], f"must not be null in a result {self.status!r}")
 
+    def __str__(self) -> str:
+        return in_words(self)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"
+
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
         document: dict[str, Any] = {
@@ -247,7 +254,7 @@ class Solution:
         return validate(_ADAPTER, body)
 
     @classmethod
-    def read(cls, path: Path) -> Solution:
+    def read(cls, path: str | PathLike[str]) -> Solution:
         """A solution from a file; of a file with schemes, its first line.
 
         Raises:
@@ -264,7 +271,7 @@ class Solution:
 _ADAPTER = TypeAdapter(Solution)
 
 
-def read_schemes(path: Path) -> Iterator[Division]:
+def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
     """The schemes that follow the solution in a file of JSON Lines; none in any other file.
 
     Raises:

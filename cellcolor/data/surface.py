@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from functools import cached_property
-from pathlib import Path
+from os import PathLike
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter
 
+from cellcolor.data.comparing import same_members
 from cellcolor.data.mesh import directed_edges
+from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_document, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
@@ -43,8 +45,12 @@ class Crack:
         for name, content in zip(("i", "j", "colors"), ordered, strict=True):
             object.__setattr__(self, name, content)
 
+    def __str__(self) -> str:
+        numbers = "color" if len(self.colors) == 1 else "colors"
+        return f"crack between vertices {self.i} and {self.j}: {numbers} {listed(self.colors)}"
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, eq=False, repr=False)
 class LabelledSurface:
     """What a front end produces: where the surface is, and which colors reach each point.
 
@@ -107,6 +113,31 @@ class LabelledSurface:
         _ = self.left_of  # refuses what is not an oriented 2-manifold
         self._check_cracks()
         self._check_given_up()
+
+    def __eq__(self, other: object) -> bool:
+        return same_members(self, other) if isinstance(other, LabelledSurface) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.sha256)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Made anew, so that the arrays cannot be changed there either, and without caches.
+        return type(self), tuple(getattr(self, member.name) for member in fields(self))
+
+    def __str__(self) -> str:
+        unreachable = sum(not colors for colors in self.vertex_colors) - len(self.given_up)
+        parts = [
+            count(len(self.vertices), "vertex", "vertices"),
+            count(len(self.faces), "triangle"),
+            count(len(self.colors), "color"),
+            count(len(self.cracks), "crack"),
+        ]
+        parts += [f"{unreachable} unreachable"] if unreachable else []
+        parts += [f"{len(self.given_up)} given up"] if self.given_up else []
+        return f"{self.name}: {', '.join(parts)}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
 
     def _check_colors(self) -> None:
         for vertex, colors in enumerate(self.vertex_colors):
@@ -204,7 +235,7 @@ class LabelledSurface:
         )
 
     @classmethod
-    def read(cls, path: Path) -> LabelledSurface:
+    def read(cls, path: str | PathLike[str]) -> LabelledSurface:
         """A surface from a file.
 
         Raises:

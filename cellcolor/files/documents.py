@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from os import PathLike
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -49,23 +50,23 @@ def parse_json(text: str) -> dict[str, Any]:
     return document
 
 
-def read_text(path: Path) -> str:
+def read_text(path: str | PathLike[str]) -> str:
     """A file's text.
 
     Raises:
         InputError: the file is missing, unreadable or not UTF-8.
     """
     try:
-        return path.read_text(encoding="utf-8")
+        return Path(path).read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise InputError(str(path), None, "not UTF-8 text") from error
     except OSError as error:
         raise InputError(str(path), None, error.strerror or "cannot be read") from error
-    except ValueError as error:  # a name with a zero character
+    except (TypeError, ValueError) as error:  # no path at all; a name with a zero character
         raise InputError(str(path), None, "is no name of a file") from error
 
 
-def read_document(path: Path) -> dict[str, Any]:
+def read_document(path: str | PathLike[str]) -> dict[str, Any]:
     """The JSON object in a file.
 
     Raises:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 import cellcolor
 from cellcolor.arrays import Array, Mask
+from cellcolor.data.comparing import same_members
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
@@ -51,7 +52,7 @@ Progress = Callable[[str], None]
 """Told the name of each stage as it begins."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False, repr=False)
 class BuildResult:
     """A labelled surface and all that was found on the way to it.
 
@@ -72,6 +73,17 @@ class BuildResult:
     reasons: NDArray[np.uint8]
     node_color: NDArray[np.int64]
     report: BuildReport
+
+    def __eq__(self, other: object) -> bool:
+        return same_members(self, other) if isinstance(other, BuildResult) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # arrays that can be changed
+
+    def __str__(self) -> str:
+        return f"{self.surface}\n{self.report}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.surface}>"
 
 
 def build_surface(

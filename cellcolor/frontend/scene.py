@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 import tomllib
-from pathlib import Path
+from os import PathLike
 from typing import Annotated, Literal, Self, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, ValidationError, model_validator
@@ -250,7 +250,7 @@ class Setup(_Table):
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
-def load_scene(file: Path) -> Scene:
+def load_scene(file: str | PathLike[str]) -> Scene:
     """Read a scene file.
 
     Raises:
@@ -260,12 +260,12 @@ def load_scene(file: Path) -> Scene:
     return _load(file, Scene)
 
 
-def load_setup(file: Path) -> Setup:
+def load_setup(file: str | PathLike[str]) -> Setup:
     """Read a setup file; raises like :func:`load_scene`."""
     return _load(file, Setup)
 
 
-def _load(file: Path, model: type[_Model]) -> _Model:
+def _load(file: str | PathLike[str], model: type[_Model]) -> _Model:
     text = read_text(file)
     if _LONG_KEY.search(text):  # tomllib takes memory with the square of a key's parts
         raise InputError(str(file), None, "not usable TOML: a key of more than 50 parts")

@@ -1,0 +1,240 @@
+"""Values compare, hash, pickle and print, whatever they hold."""
+
+from __future__ import annotations
+
+import copy
+import json
+import pickle
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from documents import INSTANCE, PLAN, SOLUTION, SURFACE
+from hypothesis import given, settings
+from library import INSTANCES, PAPER
+from meshes import surfaces
+
+from cellcolor.data.bound import Bound
+from cellcolor.data.coverage import Coverage
+from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.errors import BeatenBound, InputError
+from cellcolor.oracle import ProvenRange, Verdict
+
+VALUES: list[Any] = [
+    LabelledSurface.from_document(SURFACE),
+    Instance.from_document(INSTANCE | {"meta": {"free": [1, {"deep": None}]}}),
+    Solution.from_document(SOLUTION),
+    replace(Solution.from_document(SOLUTION), bounds=(Bound("own", 1, "surface", {"a": [1]}),)),
+    Plan.from_document(PLAN),
+    Cell(0, (1, 0), ((1, -2),), 0.5),
+    Edge(3, OUTSIDE, 0),
+    Crack(5, 4, (1,)),
+    Coverage(0.5, 0.25, 0.0),
+    ProvenRange(2, 4),
+    Verdict((), 3, ProvenRange(2, 4)),
+]
+
+
+@pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
+def test_a_copy_is_equal_and_hashes_alike(value: Any) -> None:
+    for other in (pickle.loads(pickle.dumps(value)), copy.deepcopy(value)):
+        assert other == value
+        assert hash(other) == hash(value)
+        assert str(other) == str(value)
+        assert repr(other) == repr(value)
+    for stranger in (None, 1, "text", *VALUES):
+        assert (value == stranger) is (value is stranger)
+
+
+@given(surfaces())
+@settings(max_examples=40, deadline=None)
+def test_surfaces_are_equal_where_all_members_are(surface: LabelledSurface) -> None:
+    """Surfaces that differ anywhere are not equal, and no comparison raises."""
+    _ = surface.sha256  # a cached property is no member
+    same = LabelledSurface.from_document(json.loads(surface.to_json()))
+    assert surface == same and hash(surface) == hash(same)
+    moved = surface.vertices.copy()
+    moved[0, 2] += 1.0
+    others = [
+        replace(surface, vertices=moved),
+        replace(surface, name=surface.name + "'"),
+        replace(surface, faces=surface.faces[:, [0, 2, 1]]),
+        replace(surface, meta={"another": True}),
+    ]
+    assert all(other != surface for other in others)
+
+
+def test_arrays_cannot_be_changed_after_unpickling() -> None:
+    surface = pickle.loads(pickle.dumps(VALUES[0]))
+    with pytest.raises(ValueError, match="read-only"):
+        surface.vertices[0, 0] = 1.0
+
+
+def test_a_solution_of_version_1_still_finds_its_instance_after_pickling() -> None:
+    """The fingerprint of the old file is kept apart from the members."""
+    file = Path(__file__).parents[1] / "files" / "version_1" / "foreign.json"
+    instance = Instance.read(file)
+    again = pickle.loads(pickle.dumps(instance))
+    assert again.sha256_of_version_1 == instance.sha256_of_version_1
+    assert again.sha256_of_version_1 != replace(instance).sha256_of_version_1  # made anew
+
+
+@pytest.mark.parametrize(
+    "error",
+    [InputError("file", "field", "message"), InputError(None, None, "m"), BeatenBound("x", 1, 2)],
+    ids=str,
+)
+def test_errors_pickle(error: Exception) -> None:
+    """A process pool hands them over this way."""
+    again = pickle.loads(pickle.dumps(error))
+    assert type(again) is type(error)
+    assert str(again) == str(error)
+    assert vars(again) == vars(error)
+
+
+def test_nothing_dumps_its_content() -> None:
+    """A representation is a line, however large the value is."""
+    surface = LabelledSurface.read(INSTANCES / "scenes" / "wok.surface.json")
+    instance = Instance.read(INSTANCES / "scenes" / "wok.json")
+    plan = Plan([next(iter(colors), None) for colors in surface.vertex_colors])
+    for value in (surface, instance, plan, Solution.from_document(SOLUTION)):
+        assert len(repr(value)) < 200 and "\n" not in repr(value)
+        assert type(value).__name__ in repr(value)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (ProvenRange(2, 2), "exactly 2 segments"),
+        (ProvenRange(1, 1), "exactly 1 segment"),
+        (ProvenRange(2, 4), "between 2 and 4 segments"),
+        (
+            Verdict((), 2, ProvenRange(2, 2)),
+            "2 segments, 1 lift-off, optimal: no division of the surface has fewer",
+        ),
+        (
+            Verdict((), 1, ProvenRange(1, 1)),
+            "1 segment, 0 lift-offs, optimal: no division of the surface has fewer",
+        ),
+        (
+            Verdict((), 5, ProvenRange(2, 3)),
+            "5 segments, 4 lift-offs, 2 fewer are proved to be enough",
+        ),
+        (
+            Verdict((), 3, ProvenRange(2, 4)),
+            "3 segments, 2 lift-offs, not known to be optimal; "
+            "the fewest are between 2 and 4 segments",
+        ),
+        (Verdict(("a: b", "c: d"), None, None), "not valid: a: b (and 1 other problem)"),
+        (Verdict(("a: b",), None, None), "not valid: a: b"),
+        (Cell(0, (1, 0), ((1, -2),)), "cell 0: colors 0 and 1, 2 darts on 1 loop"),
+        (Cell(0, (4,), ((1,), (-2,)), 0.5), "cell 0: color 4, 2 darts on 2 loops, 0.5 m²"),
+        (Edge(3, OUTSIDE, 0), "edge 3: the outside on its left, cell 0 on its right"),
+        (
+            Edge(3, 1, 0, (), 0.25),
+            "edge 3: cell 1 on its left, cell 0 on its right, joinable colors: none, 0.25 m",
+        ),
+        (Crack(5, 4, (1, 0, 2)), "crack between vertices 4 and 5: colors 0, 1 and 2"),
+        (
+            Coverage(0.5, 0.25, 0.05),
+            "70.0 % of 0.5 m² can be covered, 25.0 % is unreachable, 5.0 % given up",
+        ),
+        (Plan((0, None, 2)), "plan for 3 vertices, 2 of them painted, in 2 colors"),
+    ],
+    ids=str,
+)
+def test_values_say_what_they_are(value: object, text: str) -> None:
+    assert str(value) == text
+
+
+@pytest.mark.parametrize(
+    ("changes", "text"),
+    [
+        (
+            {"surface_lower_bound": 2, "proved_for_surface": True},
+            "2 segments, 1 lift-off, optimal: proved for any division of the surface",
+        ),
+        (
+            {"surface_lower_bound": 1, "proved_for_surface": False},
+            "2 segments, 1 lift-off, optimal in the search space paper; "
+            "any division of the surface has at least 1",
+        ),
+        (
+            {
+                "status": "feasible",
+                "lower_bound": 1,
+                "surface_lower_bound": 1,
+                "proved_for_surface": False,
+            },
+            "2 segments, 1 lift-off, not proved to be the fewest: at least 1 in the search "
+            "space paper; any division of the surface has at least 1",
+        ),
+        (
+            {
+                "status": "unknown",
+                "segments": None,
+                "lift_offs": None,
+                "cells": None,
+                "lower_bound": 1,
+                "surface_lower_bound": 1,
+                "proved_for_surface": False,
+            },
+            "no division found; at least 1 segment",
+        ),
+    ],
+    ids=["proved", "paper", "feasible", "unknown"],
+)
+def test_a_solution_says_no_more_than_is_proved(changes: dict[str, Any], text: str) -> None:
+    found = Solution.from_document(SOLUTION)
+    solution = replace(
+        found,
+        search_space="paper",
+        strands=1,
+        status="optimal",
+        segments=2,
+        lift_offs=1,
+        lower_bound=2,
+        bounds=None,
+        surface_lower_bound=changes["surface_lower_bound"],
+        proved_for_surface=changes["proved_for_surface"],
+    )
+    solution = replace(solution, **changes)
+    assert str(solution) == text
+
+
+def test_every_kind_of_bound_for_the_surface_has_its_reason() -> None:
+    """Those that docs/formats.md lists; a kind that is not known gives no reason."""
+    found = replace(
+        Solution.from_document(SOLUTION),
+        segments=2,
+        lift_offs=1,
+        status="optimal",
+        lower_bound=2,
+        surface_lower_bound=2,
+        proved_for_surface=True,
+    )
+    for kind in ("strangers", "cover", "conflicts", "crossings"):
+        bounds = (Bound("other", 1, "surface"), Bound(kind, 2, "surface"))
+        assert ", because " in str(replace(found, bounds=bounds))
+    assert "because" not in str(replace(found, bounds=(Bound("own", 2, "surface"),)))
+    assert "because" not in str(replace(found, bounds=(Bound("model", 2, "strands"),)))
+
+
+def test_paths_are_texts_or_paths(tmp_path: Path) -> None:
+    file = PAPER / "ring.json"
+    assert Instance.read(str(file)) == Instance.read(file)
+    surface = PAPER / "ring.surface.json"
+    assert LabelledSurface.read(str(surface)) == LabelledSurface.read(surface)
+    for kind, content in ((Solution, SOLUTION), (Plan, PLAN)):
+        value: Any = kind.from_document(content)
+        written = tmp_path / f"{kind.__name__}.json"
+        written.write_text(value.to_json(), encoding="utf-8")
+        assert kind.read(str(written)) == kind.read(written) == value
+    with pytest.raises(InputError, match="no such file"):
+        Instance.read("no such file")
+    with pytest.raises(InputError, match="5: is no name of a file"):
+        Instance.read(5)  # type: ignore[arg-type]
