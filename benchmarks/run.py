@@ -27,7 +27,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, hub_grid
-from cellcolor.lab.peers import measure_clingo
 from cellcolor.lab.races import Run, max_live_darts, measure
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -36,7 +35,6 @@ ROOT = Path(__file__).resolve().parents[1]
 SCENES = sorted((ROOT / "instances/scenes/feasibility").glob("*.surface.json"))
 BLOBS = sorted((ROOT / "instances/random").glob("blobs_*.surface.json"))
 HUBS = sorted((ROOT / "instances/random").glob("hub_*.json"))
-MODEL = ROOT / "models/constraints/coloring.lp"
 
 BLOB_SEEDS = 40
 BLOB_CELLS = range(30, 49)
@@ -178,10 +176,7 @@ def grids(_: int) -> Rows:
     yield ["hubs × petals a side", "cells", "darts", "minimum", "cp-sat s", "clingo s"]
     for rows, columns, side in GRIDS:
         instance = hub_grid(0, rows, columns, GRID_COLORS, side)
-        runs = [
-            measure(instance, "cp-sat", GRID_LIMIT),
-            measure_clingo(instance, MODEL, GRID_LIMIT),
-        ]
+        runs = [measure(instance, solver, GRID_LIMIT) for solver in ("cp-sat", "clingo")]
         proved = {run.segments for run in runs if run.optimal}
         assert len(proved) < 2, (instance.name, proved)
         minimum = str(proved.pop()) if proved else "open"

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import cellcolor as package
+from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
 
 if TYPE_CHECKING:
     from cellcolor.data.solution import SearchSpace
@@ -28,6 +29,14 @@ class _Seconds(click.FloatRange):
         if not math.isfinite(seconds):
             self.fail(f"{value} is not a number of seconds.", param, ctx)
         return seconds
+
+
+def _solver_name(_context: click.Context, _option: click.Parameter, value: str) -> str:
+    """Refuse a solver that nobody has registered; none is imported for that."""
+    known = solver_names()
+    if value not in known:
+        raise click.BadParameter(f"{value!r} is not one of {', '.join(known)}.")
+    return value
 
 
 class _Commands(click.Group):
@@ -90,10 +99,12 @@ def build(source: Path, output: Path) -> int:
 )
 @click.option(
     "--solver",
-    type=click.Choice(["cp-sat", "dfs"]),
-    default="cp-sat",
+    metavar="NAME",
+    callback=_solver_name,
+    default=DEFAULT,
     show_default=True,
-    help="dfs: the paper's depth-first search, for small instances.",
+    help=f"{', '.join(OWN_NAMES)}, or what another package registers. {REFERENCE} is the paper's "
+    "depth-first search, for small instances.",
 )
 @click.option(
     "--search-space",
@@ -152,8 +163,6 @@ def solve(
     if every and search_space == "surface":
         raise click.UsageError("--all goes with --search-space paper: schemes are defined there")
 
-    if solver != "cp-sat" and (fewest_cuts or warm_start):
-        raise click.UsageError("--fewest-cuts and --warm-start go with --solver cp-sat")
     if warm_start is not None and len(files) > 1:
         raise click.UsageError("--warm-start goes with a single file")
 

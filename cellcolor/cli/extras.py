@@ -12,6 +12,7 @@ DISTRIBUTION = "fewest-lift-offs"
 """What to install; ``cellcolor`` on the Python Package Index is somebody else's program."""
 
 _EXTRAS = {
+    "clingo": "peers",
     "matplotlib": "viz",
     "mpl_toolkits": "viz",
     "plotly": "viz",

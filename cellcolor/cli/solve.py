@@ -18,6 +18,7 @@ import click
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.known_results import contradictions
 from cellcolor.cli.exits import Exit, worst
+from cellcolor.cli.extras import extras_for
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
@@ -76,6 +77,7 @@ class Request:
 def solve_files(request: Request) -> Exit:
     """Solve every file; a bad one does not stop the others."""
     targets = _targets(request)
+    _check_able(request)
     _warn_of_workers(request.options.workers)
     with apart_from(request.output):
         return _solve_files(request, targets)
@@ -130,6 +132,19 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
     if len(request.files) > 1 and not request.as_json:
         print_overview(solved)
     return worst(codes)
+
+
+def _check_able(request: Request) -> None:
+    """Refuse at once what the solver cannot do for any file.
+
+    What every solver can do is not asked about: bad input has to import no solver.
+    """
+    space, cuts = request.options.search_space, request.options.fewest_cuts
+    start = request.warm_start is not None
+    if request.every or start or cuts or space != "paper":
+        from cellcolor.solvers.checked import check_able
+
+        check_able(request.solver, request.options, start=start, schemes=request.every)
 
 
 def _warn_of_workers(workers: int | None) -> None:
@@ -196,13 +211,13 @@ def _solve(
     options: Options,
 ) -> Solution:
     """Solve one instance and write what was found."""
-    from cellcolor.solvers.checked import solve
+    from cellcolor.solvers.checked import check_able_to_list, solve
 
-    if request.every and request.solver == "dfs":
-        _refuse_schemes(instance)
+    if request.every:
+        check_able_to_list(request.solver, instance)
     if request.warm_start is not None:
         options = replace(options, start=_start(instance, request.warm_start, options))
-    with progress_of(file) as report, end_the_search():
+    with progress_of(file) as report, end_the_search(), extras_for(file):
         solution = solve(instance, options, request.solver, report)
     if not request.every:
         if target is not None:
@@ -222,17 +237,6 @@ def _solve(
             output = Output(target, _SOLUTION, chain([head.encode()], spool))
             write([output], _inputs(request))
     return solution
-
-
-def _refuse_schemes(instance: Instance) -> None:
-    for cell in instance.cells:
-        live = sum(any(map(instance.joinable, loop)) for loop in cell.loops)
-        if live > 1:
-            raise InputError(
-                None,
-                f"cells[{cell.id}].loops",
-                f"--all with --solver dfs needs cells with one live loop, this one has {live}",
-            )
 
 
 def _make_folder(target: Path) -> None:

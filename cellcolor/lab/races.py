@@ -1,4 +1,4 @@
-"""The reference solver against CP-SAT, each solve in a process of its own."""
+"""Races between solvers, each solve in a process of its own."""
 
 from __future__ import annotations
 
@@ -14,9 +14,8 @@ from cellcolor.errors import CellcolorError, Disagreement
 from cellcolor.files.documents import parse_json
 from cellcolor.solvers.interface import Options
 
-__all__ = ["SOLVERS", "Run", "max_live_darts", "measure", "race", "run_apart"]
+__all__ = ["Run", "max_live_darts", "measure", "race"]
 
-SOLVERS = ("dfs", "cp-sat")
 _GRACE = 60.0
 """Seconds beyond its limit after which a process counts as not coming back."""
 
@@ -47,25 +46,15 @@ def max_live_darts(instance: Instance) -> int:
 def measure(instance: Instance, solver: str, time_limit: float) -> Run:
     """Solve an instance in a new process, in the search space ``paper``.
 
+    Args:
+        instance: what to solve.
+        solver: the name of any registered solver.
+        time_limit: seconds; a process that overruns it by far counts as not coming back.
+
     Raises:
         CellcolorError: the process failed; with the last line that it printed.
     """
     command = [sys.executable, "-m", "cellcolor.lab.races", solver, str(time_limit)]
-    return run_apart(solver, command, instance, time_limit)
-
-
-def run_apart(solver: str, command: Sequence[str], instance: Instance, time_limit: float) -> Run:
-    """Run a command that reads an instance and prints a :class:`Run` as JSON.
-
-    Args:
-        solver: its name, for errors.
-        command: what to run; it keeps to the time limit itself.
-        instance: its standard input.
-        time_limit: seconds; a command that overruns it by far counts as not coming back.
-
-    Raises:
-        CellcolorError: the process failed; with the last line that it printed.
-    """
     try:
         done = subprocess.run(
             command,
@@ -83,14 +72,14 @@ def run_apart(solver: str, command: Sequence[str], instance: Instance, time_limi
     return Run(**json.loads(done.stdout))
 
 
-def race(instance: Instance, time_limit: float) -> dict[str, Run]:
-    """Every solver's run on one instance.
+def race(instance: Instance, solvers: Sequence[str], time_limit: float) -> dict[str, Run]:
+    """The runs of some solvers on one instance, one after the other.
 
     Raises:
         Disagreement: two proved minima differ.
         CellcolorError: a solver failed.
     """
-    runs = {solver: measure(instance, solver, time_limit) for solver in SOLVERS}
+    runs = {solver: measure(instance, solver, time_limit) for solver in solvers}
     minima = {solver: run.segments for solver, run in runs.items() if run.optimal}
     if len(set(minima.values())) > 1:
         claims = ", ".join(f"{solver} {segments}" for solver, segments in minima.items())

@@ -12,45 +12,59 @@ from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
 from cellcolor.errors import InputError, RefusedResult
-from cellcolor.solvers.interface import Answer, OnProgress, Options, Solver
+from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver
+from cellcolor.solvers.registry import DEFAULT, make_solver
 
 __all__ = [
-    "CONTENDERS",
-    "SOLVERS",
+    "check_able",
+    "check_able_to_list",
     "enumerate_schemes",
-    "make_solver",
     "solve",
 ]
 
-SOLVERS = ("cp-sat", "dfs")
-"""The names of the solvers."""
 
-CONTENDERS = (*SOLVERS, "cp-sat-model")
-"""What is held to each other: also the full CP-SAT model without plans, which settle most instances
-before it is built."""
+def check_able(name: str, options: Options, *, start: bool = False, schemes: bool = False) -> None:
+    """Refuse what a solver does not declare that it can do.
 
-
-def make_solver(name: str) -> Solver:
-    """The solver of that name.
+    Args:
+        name: of the solver.
+        options: what it is asked for.
+        start: whether it is to start from a division, be it in the options yet or not.
+        schemes: whether it is to list all optimal schemes.
 
     Raises:
-        KeyError: there is none.
+        InputError: there is no such solver, or it is not able to.
     """
-    if name in ("cp-sat", "cp-sat-model"):
-        from cellcolor.solvers.cpsat import CpSatSolver  # imports ortools
+    able = make_solver(name).abilities
+    for field, asked, can in (
+        ("start", start or options.start is not None, able.start),
+        ("fewest_cuts", options.fewest_cuts, able.fewest_cuts),
+        ("schemes", schemes, able.optimal_schemes),
+    ):
+        if asked and not can:
+            raise InputError(None, field, f"is more than the solver {name} is able to do")
+    if options.search_space not in able.search_spaces:
+        spaces = " and ".join(able.search_spaces)
+        message = f"is {options.search_space}, the solver {name} searches {spaces}"
+        raise InputError(None, "search_space", message)
 
-        return CpSatSolver(plans=name == "cp-sat")
-    if name == "dfs":
-        from cellcolor.solvers.dfs import ReferenceSolver
 
-        return ReferenceSolver()
-    raise KeyError(name)
+def check_able_to_list(name: str, instance: Instance) -> None:
+    """Refuse an instance whose optimal schemes a solver does not list.
+
+    Raises:
+        InputError: there is no such solver, or a cell has several live loops and that is more
+            than it is able to do.
+    """
+    able = make_solver(name).abilities
+    if not able.schemes_of_several_loops:
+        _check_loops(name, instance, "lists optimal schemes")
 
 
 def solve(
     instance: Instance,
     options: Options,
-    solver: str = "cp-sat",
+    solver: str = DEFAULT,
     progress: OnProgress | None = None,
 ) -> Solution:
     """Color an instance with the fewest segments.
@@ -58,21 +72,21 @@ def solve(
     Args:
         instance: the topological graph.
         options: search space, limits, seed.
-        solver: one of ``CONTENDERS``.
+        solver: a name that the registry has.
         progress: called with the best so far and the lower bound.
 
     Returns:
         The solution, held against the instance by the checker.
 
     Raises:
-        InputError: an option is of CP-SAT only, and the solver is another; or there are too many
-            strands.
+        InputError: there is no such solver, or it is not able to do what is asked; or there are
+            too many strands.
         RefusedResult: the checker refuses what the solver found.
     """
-    if solver == "dfs":
-        for name, asked in (("start", options.start), ("fewest_cuts", options.fewest_cuts)):
-            if asked:
-                raise InputError(None, name, "goes with the solver cp-sat")
+    check_able(solver, options)
+    chosen = make_solver(solver)
+    if not chosen.abilities.several_loops:
+        _check_loops(solver, instance, "divides cells")
     live = sum(bool(instance.joinable(edge.id)) for edge in instance.edges)
     if 2 * live * options.strands > MOST_DARTS:
         raise InputError(
@@ -81,7 +95,6 @@ def solve(
             f"{options.strands} for each of {live} live edges are too many; "
             f"they may have {MOST_DARTS} darts together",
         )
-    chosen = make_solver(solver)
     start = time.monotonic()
     answer = chosen.minimize(instance, options, progress)
     if instance.nothing_to_cover:
@@ -129,16 +142,23 @@ def enumerate_schemes(
     Args:
         instance: the topological graph.
         options: time limit and seed; the search space is ``paper``.
-        solver: one of ``SOLVERS``.
+        solver: a name that the registry has.
         segments: the minimum.
 
     Raises:
+        InputError: there is no such solver, or it lists no schemes, or none of this instance.
         OutOfTime: the time limit came first.
         TooLarge: the model would not fit into memory.
         RefusedResult: the checker refuses what the solver found.
     """
+    check_able(solver, options, schemes=True)
+    check_able_to_list(solver, instance)
+    chosen = make_solver(solver)
+    if not isinstance(chosen, SchemeSolver):
+        message = f"{solver} declares that it lists optimal schemes, and has no way to do so"
+        raise InputError(None, "solver", message)
     found = False
-    for division in make_solver(solver).optimal_schemes(instance, options, segments):
+    for division in chosen.optimal_schemes(instance, options, segments):
         found = True
         report = check_scheme(instance, division)
         _insist(report, solver)
@@ -148,6 +168,17 @@ def enumerate_schemes(
         yield division
     if not found:
         raise RefusedResult(f"{solver} found no scheme with {segments} segments, the minimum")
+
+
+def _check_loops(name: str, instance: Instance, does: str) -> None:
+    for cell in instance.cells:
+        live = sum(any(map(instance.joinable, loop)) for loop in cell.loops)
+        if live > 1:
+            raise InputError(
+                None,
+                f"cells[{cell.id}].loops",
+                f"the solver {name} {does} with one live loop only, this one has {live}",
+            )
 
 
 def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Annotated, Protocol, cast
+from typing import Annotated, Protocol, cast, runtime_checkable
 
 from annotated_types import Ge, Le
 
@@ -49,9 +49,9 @@ class Options:
         deadline: when everything has to end.
         workers: CP-SAT's search workers, at most 1000, None for ``PORTFOLIO``.
         seed: of everything random.
-        start: a division to start from (CP-SAT only).
+        start: a division to start from, for solvers that are able to.
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
-            paths (CP-SAT only).
+            paths, for solvers that are able to.
 
     Raises:
         InputError: an option is out of its range, or strands are asked for in ``paper``.
@@ -100,15 +100,46 @@ class Answer:
         return greatest(self.bounds, "strands")
 
 
+@dataclass(frozen=True, slots=True)
+class Abilities:
+    """What a solver declares that it can do; it is asked for nothing else.
+
+    The least that every solver does is to divide cells with one live loop (one border loop with
+    edges that can be joined) in the search space ``paper``.
+
+    Attributes:
+        search_spaces: what it can search.
+        several_loops: divides cells with several live loops as well.
+        optimal_schemes: lists all optimal schemes: it is a :class:`SchemeSolver`.
+        schemes_of_several_loops: does so even where cells have several live loops.
+        start: can start from a division (``Options.start``).
+        fewest_cuts: can look for the fewest cutting paths (``Options.fewest_cuts``).
+    """
+
+    search_spaces: tuple[SearchSpace, ...] = ("paper",)
+    several_loops: bool = False
+    optimal_schemes: bool = False
+    schemes_of_several_loops: bool = False
+    start: bool = False
+    fewest_cuts: bool = False
+
+
 class Solver(Protocol):
     """One way to solve an instance."""
 
-    name: str
+    @property
+    def abilities(self) -> Abilities:
+        """What it can do."""
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
         """A division with the fewest segments, or the best found before the deadline."""
+
+
+@runtime_checkable
+class SchemeSolver(Solver, Protocol):
+    """A solver that lists all optimal schemes."""
 
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int

@@ -13,10 +13,15 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import Disagreement, TooLarge
 from cellcolor.lab.campaign.cases import live_loops
 from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
-from cellcolor.solvers.checked import CONTENDERS, SOLVERS, enumerate_schemes, solve
+from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
+from cellcolor.solvers.registry import DEFAULT, REFERENCE
 
 __all__ = ["Finding", "MeshFinding", "compare_on_mesh", "compare_solvers", "complaint"]
+
+CONTENDERS = (DEFAULT, REFERENCE, "cp-sat-model")
+"""Whose minima are compared: also the full CP-SAT model without plans, which settle most instances
+before it is built."""
 
 MOST_SCHEMES = 3000
 """Sets of optimal schemes that are larger are not compared."""
@@ -81,7 +86,7 @@ def compare_solvers(instance: Instance, time_limit: float) -> Finding:
     if live_loops(instance) > 1:
         return Finding(minimum, None, None)
     found: list[dict[SchemeKey, Division]] = []
-    for name in SOLVERS:
+    for name in (DEFAULT, REFERENCE):
         schemes = _schemes(instance, name, minimum, time_limit)
         if schemes is None:
             return Finding(minimum, None, None)
@@ -89,9 +94,9 @@ def compare_solvers(instance: Instance, time_limit: float) -> Finding:
     first, second = found
     if first.keys() != second.keys():
         raise Disagreement(
-            f"{SOLVERS[0]} lists {len(first.keys() - second.keys())} optimal schemes that "
-            f"{SOLVERS[1]} does not, {SOLVERS[1]} {len(second.keys() - first.keys())} that "
-            f"{SOLVERS[0]} does not"
+            f"{DEFAULT} lists {len(first.keys() - second.keys())} optimal schemes that "
+            f"{REFERENCE} does not, {REFERENCE} {len(second.keys() - first.keys())} that "
+            f"{DEFAULT} does not"
         )
     cut = all(any(len(cell.subcells) > 1 for cell in division) for division in first.values())
     return Finding(minimum, len(first), cut)

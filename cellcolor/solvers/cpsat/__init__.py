@@ -1,5 +1,5 @@
 """Minimum-segment coloring as a CP-SAT model, sub-cell cutting paths included."""
 
-from cellcolor.solvers.cpsat.solver import CpSatSolver
+from cellcolor.solvers.cpsat.solver import CpSatSolver, model_alone
 
-__all__ = ["CpSatSolver"]
+__all__ = ["CpSatSolver", "model_alone"]

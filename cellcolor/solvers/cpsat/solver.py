@@ -27,9 +27,9 @@ from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import live_loops, seam_places, split
 from cellcolor.solvers.cpsat.schemes.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.search import PartSearch
-from cellcolor.solvers.interface import Answer, OnProgress, Options, Start
+from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
-__all__ = ["CpSatSolver"]
+__all__ = ["CpSatSolver", "model_alone"]
 
 RESERVES = 4
 """Times what it takes to put a division together: kept back for what follows the search."""
@@ -44,8 +44,16 @@ class CpSatSolver:
         plans: False leaves everything to the model.
     """
 
+    abilities = Abilities(
+        search_spaces=("paper", "surface"),
+        several_loops=True,
+        optimal_schemes=True,
+        schemes_of_several_loops=True,
+        start=True,
+        fewest_cuts=True,
+    )
+
     def __init__(self, plans: bool = True) -> None:
-        self.name = "cp-sat" if plans else "cp-sat-model"
         self._plans = plans
 
     def minimize(
@@ -64,6 +72,11 @@ class CpSatSolver:
     ) -> Iterator[Division]:
         """Every scheme with the given minimum, once."""
         return optimal_schemes(instance, options, segments)
+
+
+def model_alone() -> CpSatSolver:
+    """The full model without the plans that settle most instances before it is built."""
+    return CpSatSolver(plans=False)
 
 
 class _Search:

@@ -15,7 +15,7 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.dfs.cell_schemes import CellScheme
 from cellcolor.solvers.dfs.graph import GraphCell, Graphs
 from cellcolor.solvers.dfs.search import Search
-from cellcolor.solvers.interface import Answer, OnProgress, Options
+from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
 __all__ = ["ReferenceSolver"]
 
@@ -37,7 +37,9 @@ class ReferenceSolver:
     It is meant to be read beside the paper and to judge faster solvers on small instances.
     """
 
-    name = "dfs"
+    abilities = Abilities(
+        search_spaces=("paper", "surface"), several_loops=True, optimal_schemes=True
+    )
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None

@@ -7,16 +7,17 @@ from pathlib import Path
 import pytest
 from library import PAPER
 
-from cellcolor.data.instance import Instance
-from cellcolor.errors import CellcolorError, InputError
+from cellcolor.cli.search_end import Interrupted
+from cellcolor.data.instance import Cell, Instance
+from cellcolor.deadline import Deadline
+from cellcolor.errors import InputError, TooLarge
 from cellcolor.lab.campaign.cases import live_loops
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, planar_graph
-from cellcolor.lab.peers import asp_facts, measure_clingo
-from cellcolor.lab.races import Run
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.clingo import asp_facts
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.interface import Options
 
-MODEL = PAPER.parents[1] / "models" / "constraints" / "coloring.lp"
 FIGURES = sorted(
     path
     for path in PAPER.glob("*.json")
@@ -25,10 +26,11 @@ FIGURES = sorted(
 
 
 def clingo_minimum(instance: Instance) -> int:
+    """Of a division that the checker has seen."""
     pytest.importorskip("clingo")
-    run = measure_clingo(instance, MODEL, 60.0)
-    assert run.optimal and run.segments is not None
-    return run.segments
+    solution = solve(instance, Options(deadline=Deadline.after(60.0)), "clingo")
+    assert solution.status == "optimal" and solution.segments is not None
+    return solution.segments
 
 
 def test_facts_are_the_live_graph() -> None:
@@ -56,13 +58,22 @@ def test_facts_are_the_live_graph() -> None:
 
 
 def test_cells_with_several_loops_are_refused() -> None:
-    with pytest.raises(InputError, match="one live loop, this one has 2"):
-        asp_facts(Instance.read(PAPER / "annulus.json"))
+    with pytest.raises(InputError, match="one live loop only, this one has 2"):
+        solve(Instance.read(PAPER / "annulus.json"), Options(), "clingo")
 
 
-def test_a_failing_process_is_an_error(tmp_path: Path) -> None:
-    with pytest.raises(CellcolorError, match="clingo failed"):
-        measure_clingo(planar_graph(0, 2, 2, 2), tmp_path / "missing.lp", 5.0)
+def test_models_that_would_not_be_written_in_time_are_refused() -> None:
+    """200 darts of one cell: 200 choose 4 pairs of chords."""
+    with pytest.raises(TooLarge, match="64684950 pairs"):
+        solve(hub(0, 200, 4), Options(), "clingo")
+
+
+@pytest.mark.parametrize("count", [0, 1])
+def test_without_edges(count: int) -> None:
+    pytest.importorskip("clingo")
+    cells = tuple(Cell(number, (0,), ()) for number in range(count))
+    solution = solve(Instance("no edges", ("c",), cells, ()), Options(), "clingo")
+    assert (solution.status, solution.segments) == ("optimal", count)
 
 
 @pytest.mark.parametrize("path", FIGURES, ids=lambda path: path.stem)
@@ -92,5 +103,24 @@ def test_hubs() -> None:
 
 def test_no_time_is_no_proof() -> None:
     pytest.importorskip("clingo")
-    run = measure_clingo(hub(0, 40, 4), MODEL, 0.01)
-    assert isinstance(run, Run) and not run.optimal
+    solution = solve(hub(0, 40, 4), Options(deadline=Deadline.after(0.01)), "clingo")
+    assert solution.status != "optimal"
+
+
+def test_interrupts_end_the_search_with_the_best(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A signal that stands for the end of the time, while clingo is waited for."""
+    clingo = pytest.importorskip("clingo")
+    asked = []
+    wait = clingo.SolveHandle.wait
+
+    def interrupted(handle: object, timeout: float) -> bool:
+        asked.append(timeout)
+        if len(asked) > 5:
+            raise Interrupted("interrupted")
+        return bool(wait(handle, timeout))
+
+    monkeypatch.setattr(clingo.SolveHandle, "wait", interrupted)
+    grid = hub_grid(0, 5, 5, 4)
+    solution = solve(grid, Options(), "clingo")
+    assert len(asked) == 6
+    assert solution.status != "optimal"
