@@ -144,7 +144,10 @@ def _check_able(request: Request) -> None:
     if request.every or start or cuts or space != "paper":
         from cellcolor.solvers.checked import check_able
 
-        check_able(request.solver, request.options, start=start, schemes=request.every)
+        try:
+            check_able(request.solver, request.options, start=start, schemes=request.every)
+        except InputError as error:
+            raise click.UsageError(str(error)) from error
 
 
 def _warn_of_workers(workers: int | None) -> None:
