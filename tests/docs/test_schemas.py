@@ -1,0 +1,165 @@
+"""The JSON Schemas: as the classes have it, and never stricter than the reader."""
+
+from __future__ import annotations
+
+import copy
+import importlib.util
+import json
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import INSTANCES, PAPER
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution, scheme_line
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.errors import InputError
+from cellcolor.solvers.checked import enumerate_schemes, solve
+from cellcolor.solvers.interface import Options
+
+jsonschema = pytest.importorskip("jsonschema")
+
+FOLDER = Path(__file__).parents[2] / "docs" / "schemas"
+SPEC = importlib.util.spec_from_file_location("write_schemas", FOLDER / "write.py")
+assert SPEC is not None and SPEC.loader is not None
+WRITE = importlib.util.module_from_spec(SPEC)
+sys.modules[SPEC.name] = WRITE  # where its dataclasses look for themselves
+SPEC.loader.exec_module(WRITE)
+FILES = sorted(WRITE.FORMATS)
+SHIPPED = sorted(INSTANCES.rglob("*.json"))
+
+Document = dict[str, Any]
+
+
+@cache
+def validator(file: str) -> Any:
+    text = (FOLDER / f"{file}.schema.json").read_text(encoding="utf-8")
+    return jsonschema.Draft202012Validator(json.loads(text))
+
+
+def schema_of(document: Document) -> Any:
+    """The schema for a document's format, whatever the document says of its version."""
+    name = str(document["format"]).removeprefix("cellcolor/")
+    return validator(next(file for file in FILES if file.rpartition("-")[0] == name))
+
+
+def written() -> list[Document]:
+    """One document of each format, as this package writes it, with the optional members."""
+    instance = Instance.read(PAPER / "split-cell.json")
+    surface = LabelledSurface.read(PAPER / "crack-partial.surface.json")
+    paper = solve(instance, Options(fewest_cuts=True))
+    strands = solve(Instance.read(PAPER / "annulus.json"), Options("surface"))
+    schemes = enumerate_schemes(instance, Options(), "dfs", paper.segments or 0)
+    plan = Plan(tuple(min(colors, default=None) for colors in surface.vertex_colors))
+    texts = [surface.to_json(), decompose(surface, "x.json").to_json(), instance.to_json()]
+    texts += [paper.to_json(), strands.to_json(), scheme_line(next(schemes)), plan.to_json()]
+    return [json.loads(text) for text in texts]
+
+
+WRITTEN = written()
+
+
+def test_there_is_no_other_schema() -> None:
+    stored = sorted(path.name.removesuffix(".schema.json") for path in FOLDER.glob("*.json"))
+    assert stored == FILES
+    page = (FOLDER / "README.md").read_text(encoding="utf-8")
+    assert all(f"({file}.schema.json)" in page for file in FILES)
+
+
+@pytest.mark.parametrize("file", FILES)
+def test_stored_as_generated(file: str) -> None:
+    stored = json.loads((FOLDER / f"{file}.schema.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(stored)
+    generated = json.loads(WRITE.schema_text(file))
+    assert stored == generated, "out of date: run  python docs/schemas/write.py"
+
+
+@pytest.mark.parametrize("document", WRITTEN, ids=lambda document: document["format"])
+def test_what_is_written_is_valid(document: Document) -> None:
+    schema_of(document).validate(document)
+
+
+def test_every_format_is_written_here() -> None:
+    assert {document["format"] for document in WRITTEN} == {f.name for f in WRITE.FORMATS.values()}
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.name)
+def test_shipped_instances_are_valid(path: Path) -> None:
+    document = json.loads(path.read_text(encoding="utf-8"))
+    schema_of(document).validate(document)
+
+
+def read(document: Document) -> None:
+    """Read one document as its file would be."""
+    readers: dict[str, Callable[[Document], object]] = {
+        "cellcolor/labelled-surface": LabelledSurface.from_document,
+        "cellcolor/instance": Instance.from_document,
+        "cellcolor/solution": Solution.from_document,
+        "cellcolor/plan": Plan.from_document,
+    }
+    readers[document["format"]](document)
+
+
+def places(value: Any, place: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
+    """The place of everything in a document."""
+    found = []
+    for key in value if isinstance(value, dict) else range(len(value)):
+        found.append((*place, key))
+        if isinstance(value[key], dict | list):
+            found += places(value[key], (*place, key))
+    return found
+
+
+@st.composite
+def changed(draw: st.DrawFn) -> Document:
+    """A document that is written here with one member changed, added or left out."""
+    whole = [document for document in WRITTEN if document["format"] != "cellcolor/scheme"]
+    document = copy.deepcopy(draw(st.sampled_from(whole)))
+    *outer, last = draw(st.sampled_from([p for p in places(document) if p != ("format",)]))
+    holder = document
+    for key in outer:
+        holder = holder[key]
+    values = [None, -1, 0, 1, 2, 0.5, True, "", "x", [], [0], [1, 1], [[0]], {}, {"x": 1}]
+    change = draw(st.sampled_from(["value", "less", "more"]))
+    if change == "value":
+        holder[last] = copy.deepcopy(draw(st.sampled_from(values)))
+    elif change == "less":
+        del holder[last]
+    elif isinstance(holder, dict):
+        holder["other"] = draw(st.sampled_from(values))
+    else:
+        holder.append(copy.deepcopy(draw(st.sampled_from(values))))
+    return document
+
+
+@settings(max_examples=400, deadline=None)
+@given(changed())
+def test_never_stricter_than_the_reader(document: Document) -> None:
+    try:
+        read(copy.deepcopy(document))
+    except InputError:
+        return
+    if document["version"] == 1:
+        return  # read still, and not what the schemas are of
+    schema_of(document).validate(document)
+
+
+@pytest.mark.parametrize("document", WRITTEN, ids=lambda document: document["format"])
+def test_what_both_refuse(document: Document) -> None:
+    """Unknown members, another version, a missing member, a name that is a number."""
+    schema = schema_of(document)
+    faulty = [document | {"other": 1}, document | {"format": "cellcolor/x"}]
+    if "version" in document:
+        faulty += [document | {"version": 3}, {k: v for k, v in document.items() if k != "version"}]
+    if "name" in document:
+        faulty.append(document | {"name": 7})
+    for one in faulty:
+        assert not schema.is_valid(one)
