@@ -27,7 +27,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, hub_grid
-from cellcolor.lab.races import Run, max_live_darts, measure
+from cellcolor.lab.races import Run, measure
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
@@ -67,7 +67,7 @@ def whole_command(file: Path, space: str, repeat: int) -> list[str]:
         solution = json.loads(done.stdout)
         solves.append(solution["seconds"])
     graph = read(file)
-    sizes = [str(len(graph.cells)), str(max_live_darts(graph))]
+    sizes = [str(len(graph.cells)), str(graph.most_live_darts)]
     answer = f"{solution['segments']} ({solution['status']})"
     whole, alone = median(wholes), median(solves)
     return [*sizes, answer, f"{whole:.2f}", f"{alone:.2f}", f"{max(solves):.2f}"]
@@ -180,7 +180,7 @@ def grids(_: int) -> Rows:
         proved = {run.segments for run in runs if run.optimal}
         assert len(proved) < 2, (instance.name, proved)
         minimum = str(proved.pop()) if proved else "open"
-        sizes = [str(len(instance.cells)), str(max_live_darts(instance))]
+        sizes = [str(len(instance.cells)), str(instance.most_live_darts)]
         yield [f"{rows} × {columns} × {side}", *sizes, minimum, *map(spent, runs)]
 
 
@@ -218,7 +218,7 @@ def _speed_up(by_cells: dict[int, list[Instance]]) -> Rows:
 
 def _compare(instance: Instance) -> tuple[int, Run, Run]:
     slow, fast = (measure(instance, solver, SPEED_UP_LIMIT) for solver in ("dfs", "cp-sat"))
-    return max_live_darts(instance), slow, fast
+    return instance.most_live_darts, slow, fast
 
 
 def _ratio(slow: Run, fast: Run) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import networkx as nx
 
-from cellcolor.checker.dart_lists import Strand, strand_of, twin
+from cellcolor.data.darts import Strand, strand_of, twin
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import CellDivision, Division, Seam
 

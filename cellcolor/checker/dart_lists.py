@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import DartName, Seam
-
-Strand = tuple[int, int]
-"""A dart and its strand, strands counted from 1 along the positive dart."""
+from cellcolor.data.solution import Seam
 
 
 class BadSeams(Exception):
@@ -22,16 +20,6 @@ class TooManyDarts(Exception):
 MOST_DARTS = 500_000
 """Live darts, strands counted; they take up to 3 kB each (10,000 cells with 4 strands an edge have
 a quarter million)."""
-
-
-def strand_of(name: DartName) -> Strand:
-    """A dart as a solution writes it; without strands it is its edge's only one."""
-    return (name, 1) if isinstance(name, int) else name
-
-
-def twin(strand: Strand) -> Strand:
-    """The other side of the same strand."""
-    return -strand[0], strand[1]
 
 
 def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[list[Strand]]:

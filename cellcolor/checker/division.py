@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import networkx as nx
 
 from cellcolor.checker.claimed_numbers import number_problems
-from cellcolor.checker.dart_lists import BadSeams, Strand, TooManyDarts, live_lists, strand_of, twin
+from cellcolor.checker.dart_lists import BadSeams, TooManyDarts, live_lists
 from cellcolor.checker.drawable import can_be_drawn
 from cellcolor.checker.scheme_rules import (
     Joinable,
@@ -20,6 +20,7 @@ from cellcolor.checker.scheme_rules import (
     unavoidable_join,
 )
 from cellcolor.checker.several_loops import PaintedLoops, on_loops, unavoidable_join_on_loops
+from cellcolor.data.darts import Strand, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam, Solution
 
@@ -108,11 +109,7 @@ def check_scheme(instance: Instance, division: Division) -> Report:
         instance: the topological graph.
         division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
     """
-    live = [
-        [loop for loop in cell.loops if any(map(instance.joinable, loop))]
-        for cell in instance.cells
-    ]
-    if all(len(loops) < 2 for loops in live):
+    if instance.most_live_loops < 2:
         return check_division(instance, division)
     if [cell.id for cell in division] != [cell.id for cell in instance.cells]:
         return Report(
@@ -123,8 +120,8 @@ def check_scheme(instance: Instance, division: Division) -> Report:
         return frozenset(instance.joinable(strand[0]))
 
     problems: list[str] = []
-    for cell, loops in zip(division, live, strict=True):
-        darts = [(dart, 1) for loop in loops for dart in loop if instance.joinable(dart)]
+    for cell, loops in zip(division, instance.live_loops, strict=True):
+        darts = [(dart, 1) for loop in loops for dart in loop]
         problems += _cell_problems(instance, cell, darts)
     if not problems:
         cells = on_loops(instance, division, (), 1)

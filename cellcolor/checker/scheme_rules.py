@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import networkx as nx
 
-from cellcolor.checker.dart_lists import Strand, twin
+from cellcolor.data.darts import Strand, twin
 
 Joinable = Callable[[Strand], frozenset[int]]
 

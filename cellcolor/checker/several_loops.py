@@ -9,8 +9,9 @@ from itertools import combinations
 import networkx as nx
 
 from cellcolor.checker.cutting_paths import whole_subcells
-from cellcolor.checker.dart_lists import Strand, strands_along
+from cellcolor.checker.dart_lists import strands_along
 from cellcolor.checker.scheme_rules import Joinable, Painted, unavoidable_join
+from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 
@@ -62,18 +63,12 @@ def on_loops(
         block_of = {dart: number for number, (_, darts) in enumerate(subcells) for dart in darts}
         colors = [color for color, _ in subcells]
         loops = [
-            [
-                strand
-                for dart in loop
-                if instance.joinable(dart)
-                for strand in strands_along(dart, strands)
-            ]
-            for loop in cell.loops
+            [strand for dart in loop for strand in strands_along(dart, strands)]
+            for loop in instance.live_loops[cell.id]
         ]
         painted = tuple(
             Painted(loop, {dart: block_of[dart] for dart in loop if dart in block_of}, colors)
             for loop in loops
-            if loop
         )
         if painted:
             found.append(PaintedLoops(cell.id, painted))

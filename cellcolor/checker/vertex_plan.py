@@ -49,13 +49,12 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
             problems.append(f"{where}: color {color} does not reach this vertex")
     if problems:
         return PlanReport(tuple(problems), None)
-    cracked = {(crack.i, crack.j): crack.colors for crack in surface.cracks}
     graph: nx.Graph[int] = nx.Graph()
     graph.add_nodes_from(v for v, color in enumerate(plan.vertex_colors) if color is not None)
     for a, b in surface.left_of:
         color = plan.vertex_colors[a]
         if color is None or color != plan.vertex_colors[b]:
             continue
-        if color not in cracked.get((min(a, b), max(a, b)), ()):
+        if color not in surface.cracked(a, b):
             graph.add_edge(a, b)
     return PlanReport((), nx.number_connected_components(graph))

@@ -14,7 +14,7 @@ from cellcolor.cli.progress import progress_of
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain, shown
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.lab.races import Run, max_live_darts, race
+from cellcolor.lab.races import Run, race
 from cellcolor.solvers.registry import DEFAULT, REFERENCE
 
 _SOLVERS = (REFERENCE, DEFAULT)
@@ -47,7 +47,7 @@ def bench_files(files: Sequence[Path], time_limit: float) -> Exit:
         table.add_row(
             shown(file),
             str(len(instance.cells)),
-            str(max_live_darts(instance)),
+            str(instance.most_live_darts),
             _minimum(runs),
             *(_seconds(runs[solver]) for solver in _SOLVERS),
             _ratio(runs),

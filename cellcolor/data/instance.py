@@ -2,94 +2,36 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import pairwise
 from os import PathLike
 from typing import Any
 
-from pydantic import ConfigDict, NonNegativeFloat, NonNegativeInt, TypeAdapter
+from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge, check_graph, shared_colors
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.wording import count, listed
+from cellcolor.data.version_1 import fingerprint_of_version_1
+from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_document, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, settle
 
+__all__ = [
+    "FORMAT",
+    "OUTSIDE",
+    "Cell",
+    "Edge",
+    "Instance",
+    "KnownResult",
+    "KnownResults",
+    "SurfaceReference",
+]
+
 FORMAT = "cellcolor/instance"
-OUTSIDE = -1
-"""The index of everything that no configuration reaches, and of what lies beyond the mesh."""
-
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """A connected part of the surface whose points have the same available colors.
-
-    Attributes:
-        id: position in ``Instance.cells``.
-        colors: ids of the available colors, ascending, at least one.
-        loops: border loops as cyclic lists of darts, the cell on the left.
-        area: square metres, if known.
-    """
-
-    __pydantic_config__ = _STRICT
-
-    id: int
-    colors: tuple[int, ...]
-    loops: tuple[tuple[int, ...], ...]
-    area: NonNegativeFloat | None = None
-
-    def __post_init__(self) -> None:
-        settle(self)
-        object.__setattr__(self, "colors", tuple(sorted(self.colors)))
-
-    def __str__(self) -> str:
-        numbers = "color" if len(self.colors) == 1 else "colors"
-        size = "" if self.area is None else f", {self.area:.4g} m²"
-        return (
-            f"cell {self.id}: {numbers} {listed(self.colors)}, "
-            f"{count(sum(map(len, self.loops)), 'dart')} on {count(len(self.loops), 'loop')}{size}"
-        )
-
-
-@dataclass(frozen=True, slots=True)
-class Edge:
-    """A topological edge: a maximal border curve between the same two areas.
-
-    Attributes:
-        id: positive; ``+id`` is its dart in the cell on the left, ``-id`` on the right.
-        left: cell on the left, or ``OUTSIDE``.
-        right: cell on the right, or ``OUTSIDE``.
-        colors: the joinable colors, ascending, where they are fewer than the two cells share; None
-            else.
-        length: metres, if known.
-    """
-
-    __pydantic_config__ = _STRICT
-
-    id: int
-    left: int
-    right: int
-    colors: tuple[int, ...] | None = None
-    length: NonNegativeFloat | None = None
-
-    def __post_init__(self) -> None:
-        settle(self)
-        if self.colors is not None:
-            object.__setattr__(self, "colors", tuple(sorted(self.colors)))
-
-    def __str__(self) -> str:
-        left, right = (
-            "the outside" if cell == OUTSIDE else f"cell {cell}" for cell in (self.left, self.right)
-        )
-        size = "" if self.length is None else f", {self.length:.4g} m"
-        few = "" if self.colors is None else f", joinable colors: {listed(self.colors)}"
-        return f"edge {self.id}: {left} on its left, {right} on its right{few}{size}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,9 +113,7 @@ class Instance:
         settle(self)
         if self.meta is not None:
             object.__setattr__(self, "meta", json_content(self.meta, "meta"))
-        self._check_cells()
-        self._check_edges()
-        self._check_darts()
+        check_graph(self.cells, self.edges, len(self.colors))
         if self.surface is not None:
             for vertex, cell in enumerate(self.surface.vertex_cell):
                 if not OUTSIDE <= cell < len(self.cells):
@@ -190,80 +130,6 @@ class Instance:
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self}>"
 
-    def _check_cells(self) -> None:
-        for position, cell in enumerate(self.cells):
-            where = f"cells[{position}]"
-            if cell.id != position:
-                raise InputError(
-                    None, f"{where}.id", f"cell ids are 0, 1, 2, … in this order; is {cell.id}"
-                )
-            if not cell.colors:
-                raise InputError(None, f"{where}.colors", f"cell {cell.id} has no color")
-            _check_colors(cell.colors, len(self.colors), f"{where}.colors")
-            for number, loop in enumerate(cell.loops):
-                if not loop:
-                    raise InputError(None, f"{where}.loops[{number}]", "a loop without darts")
-
-    def _check_edges(self) -> None:
-        seen: set[int] = set()
-        for position, edge in enumerate(self.edges):
-            where = f"edges[{position}]"
-            if edge.id < 1:
-                raise InputError(None, f"{where}.id", f"must be positive, is {edge.id}")
-            if edge.id in seen:
-                raise InputError(None, f"{where}.id", f"edge {edge.id} stands twice")
-            seen.add(edge.id)
-            for side, cell in (("left", edge.left), ("right", edge.right)):
-                if not OUTSIDE <= cell < len(self.cells):
-                    raise InputError(None, f"{where}.{side}", f"no cell {cell} in this instance")
-            if edge.left == OUTSIDE and edge.right == OUTSIDE:
-                raise InputError(None, where, f"edge {edge.id} has -1 on both sides")
-            if edge.colors is not None:
-                _check_colors(edge.colors, len(self.colors), f"{where}.colors")
-                surplus = set(edge.colors) - self._shared(edge)
-                if surplus:
-                    raise InputError(
-                        None,
-                        f"{where}.colors",
-                        f"color {min(surplus)} is not shared by cells {edge.left} and {edge.right}",
-                    )
-
-    def _check_darts(self) -> None:
-        owner = {edge.id: edge.left for edge in self.edges}
-        owner |= {-edge.id: edge.right for edge in self.edges}
-        seen: set[int] = set()
-        for cell in self.cells:
-            for number, loop in enumerate(cell.loops):
-                for place, dart in enumerate(loop):
-                    where = f"cells[{cell.id}].loops[{number}][{place}]"
-                    if dart not in owner:
-                        raise InputError(None, where, f"dart {dart} belongs to no edge")
-                    if owner[dart] != cell.id:
-                        side = "left" if dart > 0 else "right"
-                        raise InputError(
-                            None,
-                            where,
-                            f"dart {dart} is not cell {cell.id}'s: edge {abs(dart)} has "
-                            f"{owner[dart]} on its {side}, so this loop does not close",
-                        )
-                    if dart in seen:
-                        raise InputError(None, where, f"dart {dart} stands twice")
-                    seen.add(dart)
-        for position, edge in enumerate(self.edges):
-            for dart in (edge.id, -edge.id):
-                if owner[dart] != OUTSIDE and dart not in seen:
-                    raise InputError(
-                        None,
-                        f"edges[{position}]",
-                        f"dart {dart} is missing from the loops of cell {owner[dart]}, "
-                        "so they do not close",
-                    )
-
-    def _shared(self, edge: Edge) -> set[int]:
-        if OUTSIDE in (edge.left, edge.right):
-            return set()
-        return set(self.cells[edge.left].colors) & set(self.cells[edge.right].colors)
-
     @cached_property
     def _edge_by_id(self) -> dict[int, Edge]:
         return {edge.id: edge for edge in self.edges}
@@ -271,7 +137,9 @@ class Instance:
     @cached_property
     def _joinable(self) -> dict[int, tuple[int, ...]]:
         return {
-            edge.id: tuple(sorted(self._shared(edge))) if edge.colors is None else edge.colors
+            edge.id: tuple(sorted(shared_colors(self.cells, edge)))
+            if edge.colors is None
+            else edge.colors
             for edge in self.edges
         }
 
@@ -287,6 +155,33 @@ class Instance:
         """The cell on the other side of a dart, or ``OUTSIDE``."""
         edge = self.edge(dart)
         return edge.right if dart > 0 else edge.left
+
+    @cached_property
+    def live_edges(self) -> tuple[int, ...]:
+        """The ids of the live edges, which some color may continue across, in their order."""
+        return tuple(edge.id for edge in self.edges if self.joinable(edge.id))
+
+    @cached_property
+    def live_loops(self) -> tuple[tuple[tuple[int, ...], ...], ...]:
+        """Of each cell the loops with live darts, each without its dead darts, in cyclic order."""
+        return tuple(
+            tuple(
+                live
+                for loop in cell.loops
+                if (live := tuple(dart for dart in loop if self.joinable(dart)))
+            )
+            for cell in self.cells
+        )
+
+    @property
+    def most_live_darts(self) -> int:
+        """The most live darts that a cell has; 0 without cells. It makes an instance hard."""
+        return max((sum(map(len, loops)) for loops in self.live_loops), default=0)
+
+    @property
+    def most_live_loops(self) -> int:
+        """The most loops with live darts that a cell has; 0 without cells."""
+        return max(map(len, self.live_loops), default=0)
 
     @property
     def nothing_to_cover(self) -> bool:
@@ -357,7 +252,7 @@ class Instance:
     @cached_property
     def sha256_of_version_1(self) -> str:
         """Fingerprint of this instance in a solution of version 1: that of the whole file."""
-        return _sha256_of_version_1(self._body())
+        return fingerprint_of_version_1(self._body())
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:
@@ -366,7 +261,7 @@ class Instance:
         instance = validate(_ADAPTER, body)
         if document["version"] == 1:
             # The old fingerprint depends on the order of colors, which an instance does not keep.
-            instance.__dict__["sha256_of_version_1"] = _sha256_of_version_1(body)
+            instance.__dict__["sha256_of_version_1"] = fingerprint_of_version_1(body)
         return instance
 
     @classmethod
@@ -390,43 +285,5 @@ def _from_smallest(loops: Sequence[tuple[int, ...]]) -> list[tuple[tuple[int, ..
     return [(loop, loop.index(min(loop))) for loop in loops]
 
 
-def _sha256_of_version_1(body: dict[str, Any]) -> str:
-    """SHA-256 of the text that was written for an instance when there was only version 1."""
-
-    def part(element: dict[str, Any], names: Sequence[str], measure: str = "") -> dict[str, Any]:
-        taken = {name: element[name] for name in names if element.get(name) is not None}
-        size = element.get(measure)
-        return taken | ({} if size is None else {measure: float(size)})
-
-    document: dict[str, Any] = {"format": FORMAT, "version": 1}
-    document |= {"name": body["name"], "colors": body["colors"]}
-    document["cells"] = [part(c, ("id", "colors", "loops"), "area") for c in body["cells"]]
-    document["edges"] = [
-        part(e, ("id", "left", "right", "colors"), "length") for e in body["edges"]
-    ]
-    if body.get("meta") is not None:
-        document["meta"] = body["meta"]
-    if body.get("surface") is not None:
-        document["surface"] = part(body["surface"], ("path", "vertex_cell"))
-    if body.get("known") is not None:
-        document["known"] = {
-            space: part(body["known"][space], ("segments", "schemes"))
-            for space in ("paper", "surface")
-            if body["known"].get(space) is not None
-        }
-    text = dump_lines(document, frozenset({"cells", "edges"}))
-    return hashlib.sha256(text.encode()).hexdigest()
-
-
 def _given(document: dict[str, Any], **optional: object) -> dict[str, Any]:
     return document | {name: value for name, value in optional.items() if value is not None}
-
-
-def _check_colors(colors: Sequence[int], count: int, where: str) -> None:
-    """Refuse what is no set of colors; they are in order by now, so no place is named."""
-    for color in colors:
-        if not 0 <= color < count:
-            raise InputError(None, where, f"unknown color {color}")
-    for color, following in pairwise(colors):
-        if color == following:
-            raise InputError(None, where, f"color {color} stands twice")

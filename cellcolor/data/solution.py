@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Annotated, Any, Literal
 
+from networkx.utils import UnionFind
 from pydantic import ConfigDict, Field, NonNegativeFloat, NonNegativeInt, PositiveInt, TypeAdapter
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
+from cellcolor.data.darts import DartName, twin
 from cellcolor.data.proof_wording import in_words
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, parse_json, read_text, take_body, validate
@@ -24,8 +26,6 @@ _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 SearchSpace = Literal["paper", "surface"]
 Status = Literal["optimal", "feasible", "unknown"]
-DartName = int | tuple[int, int]
-"""A dart ``±e``, or ``(±e, strand)`` with strands numbered from 1 along ``+e``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -342,24 +342,16 @@ def number_segments(
     flat = [
         (cell, color, tuple(darts)) for cell, subs in enumerate(blocks) for color, darts in subs
     ]
-    parent = list(range(len(flat)))
-
-    def root(node: int) -> int:
-        while parent[node] != node:
-            parent[node] = parent[parent[node]]
-            node = parent[node]
-        return node
-
+    segments: UnionFind[int] = UnionFind(range(len(flat)))
     holder: dict[DartName, int] = {}
     for node, (_, _, darts) in enumerate(flat):
         for dart in darts:
-            twin = -dart if isinstance(dart, int) else (-dart[0], dart[1])
-            if twin in holder:
-                parent[root(node)] = root(holder[twin])
+            if twin(dart) in holder:
+                segments.union(node, holder[twin(dart)])
             holder[dart] = node
     numbers: dict[int, int] = {}
     division: list[list[SubCell]] = [[] for _ in blocks]
     for node, (cell, color, darts) in enumerate(flat):
-        segment = numbers.setdefault(root(node), len(numbers))
+        segment = numbers.setdefault(segments[node], len(numbers))
         division[cell].append(SubCell(color, darts, segment))
     return tuple(CellDivision(cell, tuple(subs)) for cell, subs in enumerate(division))

@@ -186,6 +186,25 @@ class LabelledSurface:
         return directed_edges(self.faces, len(self.vertices))
 
     @cached_property
+    def vertex_areas(self) -> NDArray[np.float64]:
+        """Square metres (n,) that each vertex owns: a third of each of its triangles."""
+        corners = self.vertices[self.faces]
+        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        thirds = np.repeat(np.linalg.norm(doubled, axis=1) / 6.0, 3)
+        areas = np.bincount(self.faces.ravel(), thirds, len(self.vertices)).astype(np.float64)
+        areas.setflags(write=False)
+        return areas
+
+    @cached_property
+    def crack_colors(self) -> dict[tuple[int, int], frozenset[int]]:
+        """``{(i, j): colors}`` with i < j: what is not continuous along each mesh edge's crack."""
+        return {(crack.i, crack.j): frozenset(crack.colors) for crack in self.cracks}
+
+    def cracked(self, a: int, b: int) -> frozenset[int]:
+        """The colors that are not continuous along a mesh edge, given either way round."""
+        return self.crack_colors.get((a, b) if a < b else (b, a), frozenset())
+
+    @cached_property
     def sha256(self) -> str:
         """Fingerprint of what an instance is made of (docs/formats.md); no names, no ``meta``."""
         first = self.faces.argmin(axis=1)[:, None]

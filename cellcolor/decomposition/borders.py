@@ -62,7 +62,7 @@ class Borders:
 
     Args:
         mesh: the mesh, its holes closed.
-        area: the area of each vertex, virtual ones included; ``OUTSIDE`` where unreachable.
+        cell_of: the cell of each vertex, virtual ones included; ``OUTSIDE`` where unreachable.
         joinable: the colors that may continue across a mesh edge, given either way round.
         cracked: whether any color is cracked along a mesh edge, given either way round.
     """
@@ -70,15 +70,15 @@ class Borders:
     def __init__(
         self,
         mesh: ClosedMesh,
-        area: list[int],
+        cell_of: list[int],
         joinable: Callable[[int, int], frozenset[int]],
         cracked: Callable[[int, int], bool],
     ) -> None:
         self._mesh = mesh
-        self._area = area
+        self._cell_of = cell_of
         self._joinable = joinable
         self.steps: set[Step] = {
-            (a, b) for a, b in mesh.third if area[a] != area[b] or cracked(a, b)
+            (a, b) for a, b in mesh.third if cell_of[a] != cell_of[b] or cracked(a, b)
         }
 
     def following(self, step: Step) -> Step:
@@ -100,7 +100,7 @@ class Borders:
 
     def _kind(self, step: Step) -> tuple[int, int, frozenset[int]]:
         u, v = step
-        return self._area[u], self._area[v], self._joinable(u, v)
+        return self._cell_of[u], self._cell_of[v], self._joinable(u, v)
 
     def curves(self, deadline: Deadline = NEVER) -> list[Curve]:
         """The topological edges, each with an area other than ``OUTSIDE`` on its left.
@@ -114,7 +114,7 @@ class Borders:
         starts = sorted(self.steps)
         corners = [step for step in deadline.watch(starts) if self.ends_in_corner(step[::-1])]
         for first in deadline.watch(corners + starts):
-            if first in done or self._area[first[0]] == OUTSIDE:
+            if first in done or self._cell_of[first[0]] == OUTSIDE:
                 continue
             steps = [first]
             while not self.ends_in_corner(steps[-1]):

@@ -12,7 +12,7 @@ from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, SurfaceRefere
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
-from cellcolor.decomposition.coverage import coverage_of, vertex_areas
+from cellcolor.decomposition.coverage import coverage_of
 from cellcolor.errors import InputError
 
 
@@ -35,24 +35,20 @@ def decompose(
     """
     deadline.check()
     mesh = ClosedMesh(surface)
-    cracks = {(c.i, c.j): frozenset(c.colors) for c in surface.cracks}
     sets = [frozenset(colors) for colors in surface.vertex_colors]
     sets += [frozenset()] * (mesh.vertex_count - mesh.real_count)
 
-    def crack(a: int, b: int) -> frozenset[int]:
-        return cracks.get((a, b) if a < b else (b, a), frozenset())
-
     def joinable(a: int, b: int) -> frozenset[int]:
-        return (sets[a] & sets[b]) - crack(a, b)
+        return (sets[a] & sets[b]) - surface.cracked(a, b)
 
-    area, firsts = _cells(surface, mesh, cracks, deadline)
-    borders = Borders(mesh, area, joinable, lambda a, b: bool(crack(a, b)))
+    cell_of, firsts = _cells(surface, mesh, deadline)
+    borders = Borders(mesh, cell_of, joinable, lambda a, b: bool(surface.cracked(a, b)))
     curves = borders.curves(deadline)
-    loops = _loops(borders, curves, area, deadline)
-    _check_planar(surface, area, firsts, borders, loops, deadline)
+    loops = _loops(borders, curves, cell_of, deadline)
+    _check_planar(surface, cell_of, firsts, borders, loops, deadline)
 
     measure = _DualMeasure(surface, mesh)
-    areas = measure.areas(area)
+    areas = measure.areas(cell_of)
     cells = tuple(
         Cell(number, surface.vertex_colors[first], loops.get(number, ()), areas[number])
         for number, first in enumerate(firsts)
@@ -63,11 +59,11 @@ def decompose(
         left, right = curve.steps[0]
         shared, joined = sets[left] & sets[right], joinable(left, right)
         colors = None if shared == joined else tuple(sorted(joined))
-        edges.append(Edge(number, area[left], area[right], colors, length))
+        edges.append(Edge(number, cell_of[left], cell_of[right], colors, length))
     deadline.check()
     reference = None
     if path is not None:
-        reference = SurfaceReference(str(path), tuple(area[: mesh.real_count]), surface.sha256)
+        reference = SurfaceReference(str(path), tuple(cell_of[: mesh.real_count]), surface.sha256)
     return Instance(
         surface.name,
         surface.colors,
@@ -82,37 +78,35 @@ def decompose(
 def _cells(
     surface: LabelledSurface,
     mesh: ClosedMesh,
-    cracks: dict[tuple[int, int], frozenset[int]],
     deadline: Deadline,
 ) -> tuple[list[int], list[int]]:
     """The cell of each vertex, and the smallest vertex of each cell.
 
     A cell has equal color sets and is connected over mesh edges without a crack.
     """
-    area = [OUTSIDE] * mesh.vertex_count
+    cell_of = [OUTSIDE] * mesh.vertex_count
     neighbours: list[list[int]] = [[] for _ in range(mesh.real_count)]
     for a, b in deadline.watch(surface.left_of):
-        pair = (a, b) if a < b else (b, a)
-        if surface.vertex_colors[a] == surface.vertex_colors[b] and pair not in cracks:
+        if surface.vertex_colors[a] == surface.vertex_colors[b] and not surface.cracked(a, b):
             neighbours[a].append(b)
             neighbours[b].append(a)
     firsts: list[int] = []
     for vertex, colors in deadline.watch(enumerate(surface.vertex_colors)):
-        if area[vertex] != OUTSIDE or not colors:
+        if cell_of[vertex] != OUTSIDE or not colors:
             continue
-        area[vertex] = count = len(firsts)
+        cell_of[vertex] = count = len(firsts)
         firsts.append(vertex)
         stack = [vertex]
         while stack:
             for neighbour in neighbours[stack.pop()]:
-                if area[neighbour] == OUTSIDE:
-                    area[neighbour] = count
+                if cell_of[neighbour] == OUTSIDE:
+                    cell_of[neighbour] = count
                     stack.append(neighbour)
-    return area, firsts
+    return cell_of, firsts
 
 
 def _loops(
-    borders: Borders, curves: list[Curve], area: list[int], deadline: Deadline
+    borders: Borders, curves: list[Curve], cell_of: list[int], deadline: Deadline
 ) -> dict[int, tuple[tuple[int, ...], ...]]:
     """Each cell's border loops, as cyclic lists of darts with the cell on the left."""
     dart_at: dict[Step, int] = {}
@@ -123,7 +117,7 @@ def _loops(
     loops: dict[int, list[tuple[int, ...]]] = {}
     walked: set[Step] = set()
     for first in deadline.watch(dart_at):
-        cell = area[first[0]]
+        cell = cell_of[first[0]]
         if cell == OUTSIDE or first in walked:
             continue
         darts = []
@@ -141,22 +135,22 @@ def _loops(
 
 def _check_planar(
     surface: LabelledSurface,
-    area: list[int],
+    cell_of: list[int],
     firsts: list[int],
     borders: Borders,
     loops: dict[int, tuple[tuple[int, ...], ...]],
     deadline: Deadline,
 ) -> None:
     """Euler's formula for each cell: a surface of genus g with b border loops has 2 - 2g - b."""
-    characteristic: Counter[int] = Counter(c for c in area if c != OUTSIDE)
+    characteristic: Counter[int] = Counter(c for c in cell_of if c != OUTSIDE)
     for a, b in deadline.watch(surface.left_of):
         # A mesh edge stands here once for each of its triangles: count it at one of them.
-        inner = area[a] == area[b] and (a, b) not in borders.steps
+        inner = cell_of[a] == cell_of[b] and (a, b) not in borders.steps
         if inner and (a < b or (b, a) not in surface.left_of):
-            characteristic[area[a]] -= 1
+            characteristic[cell_of[a]] -= 1
     for a, b, c in deadline.watch(surface.faces.tolist()):
         if not borders.steps.intersection(((a, b), (b, c), (c, a))):
-            characteristic[area[a]] += 1
+            characteristic[cell_of[a]] += 1
     for cell, first in enumerate(firsts):
         handles = 2 - len(loops.get(cell, ())) - characteristic[cell]
         if handles != 0:
@@ -174,12 +168,12 @@ class _DualMeasure:
         self._surface = surface
         self._mesh = mesh
 
-    def areas(self, area: list[int]) -> list[float]:
+    def areas(self, cell_of: list[int]) -> list[float]:
         """Square metres of each cell."""
-        owner = np.array(area[: self._mesh.real_count])
+        owner = np.array(cell_of[: self._mesh.real_count])
         reached = owner != OUTSIDE
-        weights = vertex_areas(self._surface)[reached]
-        sums = np.bincount(owner[reached], weights=weights, minlength=max(area) + 1)
+        weights = self._surface.vertex_areas[reached]
+        sums = np.bincount(owner[reached], weights=weights, minlength=max(cell_of) + 1)
         return [round(float(value), 12) for value in sums]
 
     def lengths(self, curves: list[Curve]) -> list[float]:

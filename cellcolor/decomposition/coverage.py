@@ -3,26 +3,16 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = ["coverage_of", "vertex_areas"]
-
-
-def vertex_areas(surface: LabelledSurface) -> NDArray[np.float64]:
-    """Square metres (n,) of each vertex: a third of each of its triangles."""
-    faces = surface.faces
-    corners = surface.vertices[faces]
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    thirds = np.repeat(np.linalg.norm(normals, axis=1) / 6.0, 3)
-    return np.bincount(faces.ravel(), thirds, len(surface.vertices)).astype(np.float64)
+__all__ = ["coverage_of"]
 
 
 def coverage_of(surface: LabelledSurface) -> Coverage | None:
     """How much of a surface is unreachable or given up; None if it has no area at all."""
-    areas = vertex_areas(surface)
+    areas = surface.vertex_areas
     total = float(areas.sum())
     if not 0 < total < np.inf:
         return None

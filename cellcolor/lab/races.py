@@ -14,7 +14,7 @@ from cellcolor.errors import CellcolorError, Disagreement
 from cellcolor.files.documents import parse_json
 from cellcolor.solvers.interface import Options
 
-__all__ = ["Run", "max_live_darts", "measure", "race"]
+__all__ = ["Run", "measure", "race"]
 
 _GRACE = 60.0
 """Seconds beyond its limit after which a process counts as not coming back."""
@@ -33,14 +33,6 @@ class Run:
     segments: int | None
     optimal: bool
     seconds: float | None
-
-
-def max_live_darts(instance: Instance) -> int:
-    """The live darts of the cell that has most of them: what makes an instance hard."""
-    return max(
-        (sum(bool(instance.joinable(d)) for loop in c.loops for d in loop) for c in instance.cells),
-        default=0,
-    )
 
 
 def measure(instance: Instance, solver: str, time_limit: float) -> Run:

@@ -7,7 +7,7 @@ import numpy as np
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, vertex_areas
+from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass
 from cellcolor.pictures.palette import AREAS, FAINT, GREY, assign
 
 __all__ = ["bare_areas", "bare_labels", "by_cell", "by_color", "color_key", "neighboring", "shares"]
@@ -33,7 +33,7 @@ def by_cell(surface: LabelledSurface, instance: Instance, cells: Labels) -> Surf
     notes = ["Cell: {available colors}, share of the surface."]
     if count > len(AREAS):
         notes.append("Fills repeat: the numbers tell cells apart.")
-    cracks = [(crack.i, crack.j) for crack in surface.cracks]
+    cracks = surface.crack_colors
     title = f"{surface.name}: {count} cells"
     return SurfaceView(
         title, labels, areas, cracks=cracks, notes=(*notes, *color_key(surface.colors))
@@ -53,7 +53,7 @@ def by_color(surface: LabelledSurface, color: int) -> SurfaceView:
         VertexClass(f"other colors only  {share[1]}", AREAS[2]),
         *bare_areas(*share[2:]),
     ]
-    cracks = [(crack.i, crack.j) for crack in surface.cracks if color in crack.colors]
+    cracks = [pair for pair, colors in surface.crack_colors.items() if color in colors]
     note = "Shares of the surface. Cracks are those of this color."
     return SurfaceView(
         f"{surface.name}: color {color}, {name}", labels, areas, cracks=cracks, notes=(note,)
@@ -87,7 +87,7 @@ def color_key(colors: tuple[str, ...]) -> list[str]:
 
 def shares(surface: LabelledSurface, labels: Labels, count: int) -> list[str]:
     """Each class's share of the surface, as text."""
-    owned = vertex_areas(surface.vertices, surface.faces)
+    owned = surface.vertex_areas
     sums = np.bincount(labels, owned, minlength=count)
     whole = float(owned.sum()) or 1.0
     return [percent(value / whole, value / whole) for value in sums]

@@ -12,12 +12,13 @@ from dataclasses import replace
 import networkx as nx
 import numpy as np
 
+from cellcolor.data.darts import DartName, strand_of
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.shares import percent, shares_of
-from cellcolor.data.solution import CellDivision, DartName, Solution
+from cellcolor.data.solution import CellDivision, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Step
-from cellcolor.decomposition.coverage import coverage_of, vertex_areas
+from cellcolor.decomposition.coverage import coverage_of
 from cellcolor.pictures.by_cell_and_color import bare_areas, bare_labels, neighboring, shares
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass
 from cellcolor.pictures.palette import AREAS, assign
@@ -85,14 +86,15 @@ def by_solution(
         f"{surface.name}: {count} segment{'' if count == 1 else 's'}, "
         f"{lift_offs} lift-off{'' if lift_offs == 1 else 's'}"
     )
-    cracks = [(crack.i, crack.j) for crack in surface.cracks]
-    return SurfaceView(title, labels, areas, borders=cells, cracks=cracks, notes=tuple(notes))
+    return SurfaceView(
+        title, labels, areas, borders=cells, cracks=surface.crack_colors, notes=tuple(notes)
+    )
 
 
 def _measured(surface: LabelledSurface, instance: Instance, cells: Labels) -> Instance:
     """The instance with the areas and the coverage that its surface gives it."""
     reached = cells != OUTSIDE
-    areas = vertex_areas(surface)[reached]
+    areas = surface.vertex_areas[reached]
     areas = np.bincount(cells[reached], areas, len(instance.cells))
     own = tuple(
         replace(cell, area=float(area)) for cell, area in zip(instance.cells, areas, strict=True)
@@ -114,15 +116,11 @@ def _curves(surface: LabelledSurface, instance: Instance, cells: Labels) -> Curv
     outside = mesh.vertex_count - mesh.real_count
     area = [*cells.tolist(), *[OUTSIDE] * outside]
     sets = [*map(frozenset, surface.vertex_colors), *[frozenset[int]()] * outside]
-    cracks = {(crack.i, crack.j): frozenset(crack.colors) for crack in surface.cracks}
-
-    def cracked(a: int, b: int) -> frozenset[int]:
-        return cracks.get((min(a, b), max(a, b)), frozenset())
 
     def joinable(a: int, b: int) -> frozenset[int]:
-        return (sets[a] & sets[b]) - cracked(a, b)
+        return (sets[a] & sets[b]) - surface.cracked(a, b)
 
-    curves = Borders(mesh, area, joinable, lambda a, b: bool(cracked(a, b))).curves()
+    curves = Borders(mesh, area, joinable, lambda a, b: bool(surface.cracked(a, b))).curves()
     found = {number: curve.steps for number, curve in enumerate(curves, start=1)}
     if len(found) != len(instance.edges):
         return None
@@ -158,11 +156,10 @@ def _nearest(
         for vertex in sorted(vertices):
             source.setdefault(vertex, sub.segment)
     inside = set(own.tolist())
-    cracks = {(crack.i, crack.j) for crack in surface.cracks}
     graph: nx.Graph[int] = nx.Graph()
     graph.add_nodes_from(own.tolist())
     for a, b in surface.left_of:
-        if a in inside and b in inside and (min(a, b), max(a, b)) not in cracks:
+        if a in inside and b in inside and not surface.cracked(a, b):
             length = float(np.linalg.norm(surface.vertices[a] - surface.vertices[b]))
             graph.add_edge(a, b, weight=length)
     regions = nx.voronoi_cells(graph, set(source), weight="weight")
@@ -172,7 +169,7 @@ def _nearest(
 
 def _along(dart: DartName, strands: int, curves: Curves) -> list[int]:
     """The vertices on a dart's own side of its edge, or of one of its strands; [] for a seam."""
-    name, strand = (dart, 1) if isinstance(dart, int) else dart
+    name, strand = strand_of(dart)
     steps = curves.get(abs(name), ())
     count = len(steps)
     if strands > 1 and count:

@@ -22,7 +22,6 @@ __all__ = [
     "VertexClass",
     "draw_surface",
     "mesh_picture_parts",
-    "vertex_areas",
     "vertex_normals",
 ]
 
@@ -113,14 +112,6 @@ def mesh_picture_parts(
         np.concatenate([faces[whole], after, before]),
         np.concatenate([corner[whole, 0], pieces, pieces]),
     )
-
-
-def vertex_areas(vertices: Array, faces: Labels) -> Array:
-    """The area (n,) of each vertex's dual in m²: a third of each of its triangles."""
-    corners = vertices[faces]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    thirds = np.linalg.norm(doubled, axis=1) / 6
-    return np.bincount(faces.ravel(), np.repeat(thirds, 3), len(vertices)).astype(np.float64)
 
 
 def vertex_normals(vertices: Array, faces: Labels) -> Array:

@@ -87,7 +87,7 @@ def solve(
     chosen = make_solver(solver)
     if not chosen.abilities.several_loops:
         _check_loops(solver, instance, "divides cells")
-    live = sum(bool(instance.joinable(edge.id)) for edge in instance.edges)
+    live = len(instance.live_edges)
     if 2 * live * options.strands > MOST_DARTS:
         raise InputError(
             None,
@@ -171,13 +171,12 @@ def enumerate_schemes(
 
 
 def _check_loops(name: str, instance: Instance, does: str) -> None:
-    for cell in instance.cells:
-        live = sum(any(map(instance.joinable, loop)) for loop in cell.loops)
-        if live > 1:
+    for cell, loops in enumerate(instance.live_loops):
+        if len(loops) > 1:
             raise InputError(
                 None,
-                f"cells[{cell.id}].loops",
-                f"the solver {name} {does} with one live loop only, this one has {live}",
+                f"cells[{cell}].loops",
+                f"the solver {name} {does} with one live loop only, this one has {len(loops)}",
             )
 
 

@@ -27,7 +27,7 @@ from cellcolor.lab.campaign.agreement import (
     compare_on_mesh,
     compare_solvers,
 )
-from cellcolor.lab.campaign.cases import KINDS, draw_case, live_darts, live_loops
+from cellcolor.lab.campaign.cases import KINDS, draw_case
 from cellcolor.lab.campaign.pool import Outcome, Wrong, campaign, examine
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 from cellcolor.lab.campaign.summary import Summary
@@ -42,7 +42,7 @@ EVERY_KIND = len(KINDS)
 
 
 def has_busy_cell(instance: Instance) -> bool:
-    return any(live_darts(instance, cell) >= 3 for cell in instance.cells)
+    return instance.most_live_darts >= 3
 
 
 def boast(
@@ -85,7 +85,7 @@ def test_instances_are_a_function_of_seed_and_number() -> None:
         assert one.instance.to_json() == again.instance.to_json() != other.instance.to_json()
         assert one.kind == KINDS[number]
         several = one.kind == "islands, holes"
-        assert (live_loops(one.instance) > 1) == several
+        assert (one.instance.most_live_loops > 1) == several
 
 
 def test_the_command_on_two_processes() -> None:
@@ -113,7 +113,7 @@ def test_a_wrong_minimum_is_noticed_and_made_small(
     assert small.meta is not None and small.meta["campaign"]["number"] == number
     # Three live darts in one cell, each joinable in one color, are all that it takes.
     assert all(len(small.joinable(edge.id)) == 1 for edge in small.edges)
-    assert len(small.edges) <= 3 and max(live_darts(small, cell) for cell in small.cells) == 3
+    assert len(small.edges) <= 3 and small.most_live_darts == 3
     with pytest.raises(Disagreement):
         compare_solvers(small, 10.0)
     monkeypatch.undo()

@@ -11,7 +11,6 @@ from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, TooLarge
-from cellcolor.lab.campaign.cases import live_loops
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, planar_graph
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.clingo import asp_facts
@@ -21,7 +20,7 @@ from cellcolor.solvers.interface import Options
 FIGURES = sorted(
     path
     for path in PAPER.glob("*.json")
-    if not path.name.endswith(".surface.json") and live_loops(Instance.read(path)) < 2
+    if not path.name.endswith(".surface.json") and Instance.read(path).most_live_loops < 2
 )
 
 

@@ -26,7 +26,7 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.full import add_hint, build, read_painting
+from cellcolor.solvers.cpsat.model.full import add_hint, full_model, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, canonical, division_of, painting_of
 from cellcolor.solvers.cpsat.schemes import enumeration
 from cellcolor.solvers.interface import Options, Start
@@ -43,7 +43,7 @@ def graph_of(instance: Instance, strands: int = 1) -> DartGraph:
 
 def effort(instance: Instance, groups: tuple[Group, ...], limit: float) -> tuple[bool, int]:
     """Whether one worker proves the minimum within so many deterministic seconds; its conflicts."""
-    built = build(graph_of(instance), color_regions(instance), groups)
+    built = full_model(graph_of(instance), color_regions(instance), groups)
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     solver.parameters.random_seed = 0
@@ -54,7 +54,7 @@ def effort(instance: Instance, groups: tuple[Group, ...], limit: float) -> tuple
 def model_minimum(instance: Instance, groups: tuple[Group, ...], strands: int = 1) -> int:
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
-    built = build(graph_of(instance, strands), color_regions(instance), groups)
+    built = full_model(graph_of(instance, strands), color_regions(instance), groups)
     assert solver.solve(built.model) == cp_model.OPTIMAL
     return round(solver.objective_value)
 
@@ -109,7 +109,7 @@ def test_every_defining_group_is_needed(group: str, instance: Instance, segments
 def feasible(instance: Instance, groups: tuple[Group, ...], *links: tuple[int, int]) -> bool:
     """Whether the first darts of cell 0 can be linked like this, the first of a pair pointing."""
     graph = graph_of(instance)
-    built = build(graph, color_regions(instance), groups)
+    built = full_model(graph, color_regions(instance), groups)
     for one, other in links:
         low, high = sorted((graph.lists[0][one], graph.lists[0][other]))
         built.model.add(built.variables.links(low, high)[one > other] == 1)
@@ -162,7 +162,7 @@ def test_strands_are_used_in_turn() -> None:
     instance = petals(RED)
     graph = graph_of(instance, 2)
     for used, expected in (((1,), True), ((2,), False), ((1, 2), False)):
-        built = build(graph, color_regions(instance))
+        built = full_model(graph, color_regions(instance))
         names = {graph.darts[edge].name[1]: edge for edge in graph.edges}
         for strand, edge in names.items():
             built.model.add(built.variables.joined[edge, RED] == (strand in used))
@@ -192,7 +192,7 @@ def test_what_the_model_finds_has_a_scheme(seed: int, cells: int, colors: int) -
     """The painting read off the model, made canonical, is a scheme with no more segments."""
     instance = planar_graph(seed, cells, cells + 4, colors)
     graph = graph_of(instance)
-    built = build(graph, color_regions(instance))
+    built = full_model(graph, color_regions(instance))
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = 1
     # Any division will do, not just the best: sub-cells to be dissolved are more likely then.
@@ -274,7 +274,7 @@ def test_a_start_helps_the_model() -> None:
         best = solve(instance, Options())
         assert best.cells is not None
         graph = graph_of(instance)
-        built = build(graph, color_regions(instance))
+        built = full_model(graph, color_regions(instance))
         add_hint(built, graph, painting_of(graph, best.cells))
         solver = cp_model.CpSolver()
         solver.parameters.num_workers = 1

@@ -11,7 +11,6 @@ from cellcolor.data.solution import Division, SchemeKey, SearchSpace, scheme_key
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import Disagreement, TooLarge
-from cellcolor.lab.campaign.cases import live_loops
 from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
@@ -83,7 +82,7 @@ def compare_solvers(instance: Instance, time_limit: float) -> Finding:
         return Finding(None, None, None)
     minimum = solutions[0].segments
     assert minimum is not None
-    if live_loops(instance) > 1:
+    if instance.most_live_loops > 1:
         return Finding(minimum, None, None)
     found: list[dict[SchemeKey, Division]] = []
     for name in (DEFAULT, REFERENCE):

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, hub_grid, planar_graph
 
-__all__ = ["KINDS", "Case", "draw_case", "live_darts", "live_loops"]
+__all__ = ["KINDS", "Case", "draw_case"]
 
 MOST_CELLS = 10
 MOST_CELL_DARTS = 9
@@ -42,19 +42,6 @@ class Case:
     kind: str
     instance: Instance
     surface: LabelledSurface | None
-
-
-def live_darts(instance: Instance, cell: Cell) -> int:
-    """How many live darts a cell has."""
-    return sum(bool(instance.joinable(dart)) for loop in cell.loops for dart in loop)
-
-
-def live_loops(instance: Instance) -> int:
-    """The most loops with live darts that a cell has."""
-    return max(
-        (sum(any(map(instance.joinable, loop)) for loop in c.loops) for c in instance.cells),
-        default=0,
-    )
 
 
 def _surface(
@@ -105,14 +92,14 @@ _MAKERS: dict[str, tuple[_Maker, Callable[[Instance], bool]]] = {
     "graphs with self-edges": (partial(_graph, self_edges=True), lambda _: True),
     "hubs": (_hub, lambda _: True),
     "grids of hubs": (_hub_grid, lambda _: True),
-    "smooth blobs": (_smooth, lambda instance: live_loops(instance) < 2),
+    "smooth blobs": (_smooth, lambda instance: instance.most_live_loops < 2),
     "thin blobs": (
         lambda rng: _surface(rng, (7, 9), (2, 3), waves=0.5, thin=True),
-        lambda instance: live_loops(instance) < 2,
+        lambda instance: instance.most_live_loops < 2,
     ),
-    "rim": (_rim, lambda instance: live_loops(instance) < 2),
-    "cracks": (_cracks, lambda instance: live_loops(instance) < 2),
-    "islands, holes": (_loops, lambda instance: live_loops(instance) > 1),
+    "rim": (_rim, lambda instance: instance.most_live_loops < 2),
+    "cracks": (_cracks, lambda instance: instance.most_live_loops < 2),
+    "islands, holes": (_loops, lambda instance: instance.most_live_loops > 1),
 }
 KINDS = tuple(_MAKERS)
 """What a campaign takes its instances from, in turn."""
@@ -140,7 +127,7 @@ def draw_case(seed: int, number: int) -> Case:
         most = MOST_CELL_DARTS_WITH_LOOPS if kind == "islands, holes" else MOST_CELL_DARTS
         if (
             2 <= len(instance.cells) <= MOST_CELLS
-            and max(live_darts(instance, cell) for cell in instance.cells) <= most
+            and instance.most_live_darts <= most
             and wanted(instance)
         ):
             return Case(seed, number, kind, instance, surface)

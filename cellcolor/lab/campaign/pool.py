@@ -21,7 +21,7 @@ from cellcolor.lab.campaign.agreement import (
     compare_solvers,
     complaint,
 )
-from cellcolor.lab.campaign.cases import Case, draw_case, live_darts
+from cellcolor.lab.campaign.cases import Case, draw_case
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 
 __all__ = ["Outcome", "Wrong", "campaign"]
@@ -123,7 +123,7 @@ def examine(seed: int, time_limit: float, number: int) -> Outcome:
         number,
         case.kind,
         len(instance.cells),
-        max(live_darts(instance, cell) for cell in instance.cells),
+        instance.most_live_darts,
         finding,
         mesh,
         tuple(wrong),

@@ -25,13 +25,12 @@ def fewest_by_vertices(surface: LabelledSurface, most_states: int) -> int | None
     Returns:
         The minimum, None when given up.
     """
-    cracks = {(crack.i, crack.j): set(crack.colors) for crack in surface.cracks}
     neighbors: dict[int, dict[int, set[int]]] = {
         vertex: {} for vertex, colors in enumerate(surface.vertex_colors) if colors
     }
     for i, j in surface.left_of:
         shared = set(surface.vertex_colors[i]) & set(surface.vertex_colors[j])
-        common = shared - cracks.get((min(i, j), max(i, j)), set())
+        common = shared - surface.cracked(i, j)
         if common:
             neighbors[i][j] = neighbors[j][i] = common
     front: list[int] = []

@@ -42,11 +42,9 @@ def enough_crossings(
         for edge in instance.edges
         if instance.joinable(edge.id)
     }
-    borders: list[list[int]] = []
-    for cell in instance.cells:
-        live = [[abs(d) for d in loop if instance.joinable(d)] for loop in cell.loops]
-        live = [loop for loop in live if loop]
-        borders.append(live[0] if len(live) == 1 else [])
+    borders = [
+        [abs(dart) for dart in loops[0]] if len(loops) == 1 else [] for loops in instance.live_loops
+    ]
     changed = True
     while changed:
         changed = False

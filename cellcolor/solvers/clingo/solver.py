@@ -99,8 +99,7 @@ def asp_facts(instance: Instance) -> str:
     crossings = 0
     for cell in instance.cells:
         facts.append(f"cell({cell.id}).")
-        loops = [[dart for dart in loop if instance.joinable(dart)] for loop in cell.loops]
-        live = [loop for loop in loops if loop]
+        live = instance.live_loops[cell.id]
         if len(live) > 1:
             where = f"cells[{cell.id}].loops"
             raise InputError(None, where, f"the model knows one live loop, here are {len(live)}")
@@ -135,7 +134,7 @@ def _division(instance: Instance, symbols: Sequence[Symbol]) -> Division:
     start = {dart: dart for dart in after}  # of the chain that a dart is linked into
     shown: dict[int, tuple[int, int]] = {}  # the first dart and the color of each sub-cell
     for cell in instance.cells:
-        live = [dart for loop in cell.loops for dart in loop if instance.joinable(dart)]
+        live = [dart for loop in instance.live_loops[cell.id] for dart in loop]
         for dart in live:
             if dart in after:
                 start[after[dart]] = start[dart]

@@ -10,10 +10,10 @@ import networkx as nx
 from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
 from cellcolor.data.solution import Seam
 
-__all__ = ["Part", "live_loops", "seam_places", "split"]
+__all__ = ["Part", "seam_places", "split"]
 
-Loops = list[list[list[int]]]
-"""For each cell its loops with live darts, each as these darts."""
+Loops = tuple[tuple[tuple[int, ...], ...], ...]
+"""For each cell its loops with live darts, each as these darts (``Instance.live_loops``)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,19 +35,11 @@ class Part:
     seams: tuple[Seam, ...]
 
 
-def live_loops(instance: Instance) -> Loops:
-    """The loops with live darts of each cell, each as its live darts."""
-    return [
-        [live for loop in cell.loops if (live := [d for d in loop if instance.joinable(d)])]
-        for cell in instance.cells
-    ]
-
-
 def seam_places(instance: Instance, loops: Loops) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops, without strands."""
     seams: list[Seam] = []
     number = max((edge.id for edge in instance.edges), default=0)
-    for cell, (first, *others) in enumerate([found or [[]] for found in loops]):
+    for cell, (first, *others) in enumerate([found or ((),) for found in loops]):
         for loop in others:
             number += 1
             seams.append(Seam(number, cell, first[0], loop[0], 0))
@@ -63,7 +55,7 @@ def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Part]:
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own, one at least.
     """
-    loops = live_loops(instance)
+    loops = instance.live_loops
     seams = seam_places(instance, loops)
     live: dict[int, tuple[int, ...]] = {}
     graph: nx.Graph[int] = nx.Graph()
@@ -93,13 +85,13 @@ def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Part]:
                     instance.name,
                     instance.colors,
                     tuple(
-                        Cell(place, tuple(sorted(colors[cell])), tuple(map(tuple, loops[cell])))
+                        Cell(place, tuple(sorted(colors[cell])), loops[cell])
                         for place, cell in enumerate(cells)
                     ),
                     tuple(edges),
                 ),
                 cells,
-                [loops[cell] for cell in cells],
+                tuple(loops[cell] for cell in cells),
                 tuple(
                     Seam(seam.id, number[cell], seam.from_, seam.to, 0)
                     for cell in cells

@@ -8,6 +8,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from cellcolor.data.bound import Bound
+from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
@@ -15,7 +16,7 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.solvers.bounds.domination import drop_dominated
 from cellcolor.solvers.cpsat.cuts.fewest import FewestCuts
-from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, Strand, dart_graph
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.model.painting import (
     Block,
     Painting,
@@ -24,7 +25,7 @@ from cellcolor.solvers.cpsat.model.painting import (
     painting_of,
 )
 from cellcolor.solvers.cpsat.model_runs import Runner
-from cellcolor.solvers.cpsat.parts import live_loops, seam_places, split
+from cellcolor.solvers.cpsat.parts import seam_places, split
 from cellcolor.solvers.cpsat.schemes.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.search import PartSearch
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
@@ -90,7 +91,7 @@ class _Search:
         self._progress = progress
         self._plans = plans
         self._runner = Runner(options)
-        self._loops = live_loops(instance)
+        self._loops = instance.live_loops
         self._own = tuple(frozenset(cell.colors) for cell in instance.cells)
         self._start: tuple[DartGraph, Painting] | None = None
         self._whole: tuple[DartGraph, Painting] | None = None
@@ -146,7 +147,7 @@ class _Search:
 
     def _cut_least(self, colors: tuple[frozenset[int], ...]) -> None:
         """Of the divisions with the fewest segments, one with the fewest cutting paths."""
-        live = [edge.id for edge in self._instance.edges if self._instance.joinable(edge.id)]
+        live = self._instance.live_edges
         enough = {edge: width for part in self._parts for edge, width in part.widest.items()}
         segments = sum(part.segments for part in self._parts)
         self._fewest = FewestCuts(
@@ -219,8 +220,7 @@ class _Search:
         return graph, canonical(graph, painting)
 
     def _whole_graph(self, seams: Sequence[Seam]) -> DartGraph:
-        live = (edge.id for edge in self._instance.edges if self._instance.joinable(edge.id))
-        strands = dict.fromkeys(live, self._options.strands)
+        strands = dict.fromkeys(self._instance.live_edges, self._options.strands)
         return dart_graph(self._instance, self._own, strands, seams, self._loops)
 
     def _bounds(self) -> tuple[Bound, ...]:

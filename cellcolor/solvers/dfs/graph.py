@@ -10,10 +10,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import log2
 
+from cellcolor.data.darts import DartName, strand_of, twin
 from cellcolor.data.instance import Cell, Instance
-from cellcolor.data.solution import DartName, Seam
+from cellcolor.data.solution import Seam
 
-__all__ = ["GraphCell", "Graphs", "twin"]
+__all__ = ["GraphCell", "Graphs"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,15 +39,6 @@ class GraphCell:
     strand_before: tuple[int, ...]
 
 
-def twin(dart: DartName) -> DartName:
-    """The other side of a dart."""
-    return -dart if isinstance(dart, int) else (-dart[0], dart[1])
-
-
-def _edge_id(dart: DartName) -> int:
-    return dart if isinstance(dart, int) else dart[0]
-
-
 class Graphs:
     """All that the search asks of an instance.
 
@@ -58,12 +50,7 @@ class Graphs:
     def __init__(self, instance: Instance, strands: int) -> None:
         self._instance = instance
         self._strands = strands
-        self._live_loops = {
-            cell.id: [
-                live for loop in cell.loops if (live := [d for d in loop if instance.joinable(d)])
-            ]
-            for cell in instance.cells
-        }
+        self._live_loops = instance.live_loops
         next_id = max((edge.id for edge in instance.edges), default=0) + 1
         self._first_seam: dict[int, int] = {}
         for cell in instance.cells:
@@ -75,7 +62,7 @@ class Graphs:
 
     def cells_with_several_loops(self) -> list[int]:
         """The cells that need seams."""
-        return [cell for cell, loops in self._live_loops.items() if len(loops) > 1]
+        return [cell for cell, loops in enumerate(self._live_loops) if len(loops) > 1]
 
     def parts(self) -> list[list[Cell]]:
         """The cells in groups that no live edge connects, each in the order of the search.
@@ -187,8 +174,8 @@ def _graph_cell(
     place = {name: i for i, name in enumerate(walk)}
     strand_before = []
     for i, name in enumerate(walk):
-        same = i > 0 and _edge_id(walk[i - 1]) == _edge_id(name)
-        strand_before.append(0 if not same else 1 if _edge_id(name) > 0 else -1)
+        same = i > 0 and strand_of(walk[i - 1])[0] == strand_of(name)[0]
+        strand_before.append(0 if not same else 1 if strand_of(name)[0] > 0 else -1)
     return GraphCell(
         cell.id,
         cell.colors,

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from cellcolor.data.darts import DartName, twin
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import DartName, Division
+from cellcolor.data.solution import Division
 from cellcolor.errors import InputError
-from cellcolor.solvers.dfs.graph import twin
 
 __all__ = ["literal_cost"]
 

@@ -10,10 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
-from cellcolor.data.solution import DartName
+from cellcolor.data.darts import DartName, twin
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, DartKnowledge, cell_schemes
-from cellcolor.solvers.dfs.graph import GraphCell, twin
+from cellcolor.solvers.dfs.graph import GraphCell
 from cellcolor.solvers.dfs.segment_counts import SegmentCounts
 from cellcolor.solvers.dfs.zero_darts import zeros_fit
 

@@ -8,8 +8,9 @@ from itertools import islice
 from typing import TypeVar
 
 from cellcolor.data.bound import Bound
+from cellcolor.data.darts import DartName
 from cellcolor.data.instance import Cell, Instance
-from cellcolor.data.solution import DartName, Division, Seam, number_segments
+from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.dfs.cell_schemes import CellScheme

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cellcolor.data.solution import DartName
+from cellcolor.data.darts import DartName, twin
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, zero_colors
-from cellcolor.solvers.dfs.graph import GraphCell, twin
+from cellcolor.solvers.dfs.graph import GraphCell
 
 __all__ = ["zeros_fit"]
 

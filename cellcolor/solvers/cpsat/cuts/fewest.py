@@ -58,11 +58,7 @@ class FewestCuts:
         self._segments = segments
         self._runner = runner
         self._writer = SeamWriter(instance, written, self._solve)
-        self._holed = [
-            cell.id
-            for cell in instance.cells
-            if sum(any(map(instance.joinable, loop)) for loop in cell.loops) > 1
-        ]
+        self._holed = [cell for cell, loops in enumerate(instance.live_loops) if len(loops) > 1]
         self._cuts = 0
         self.bound = 0
         self.best: Seamed | None = None

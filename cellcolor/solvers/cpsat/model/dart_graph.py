@@ -6,12 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import Seam
-from cellcolor.solvers.cpsat.parts import Loops, live_loops, seam_places
-
-Strand = tuple[int, int]
-"""A dart and its strand, strands counted from 1 along the positive dart."""
+from cellcolor.solvers.cpsat.parts import Loops, seam_places
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +87,7 @@ def seams_of(
     most: int | None,
 ) -> tuple[Seam, ...]:
     """Seams from the first live loop of every cell to its other live loops; see ``widened``."""
-    loops = live_loops(instance)
+    loops = instance.live_loops
     return widened(instance, colors, strands, loops, seam_places(instance, loops), most)
 
 
@@ -140,7 +138,7 @@ def dart_graph(
             loops apart.
         loops: the loops of each cell between which its seams run; None for its live ones.
     """
-    loops = live_loops(instance) if loops is None else loops
+    loops = instance.live_loops if loops is None else loops
     found: list[tuple[Strand, int, frozenset[int]]] = []
     lists: list[tuple[tuple[int, ...], ...]] = []
     seams_of: dict[int, list[Seam]] = {}
@@ -183,7 +181,7 @@ def _unseamed(loop: Sequence[int]) -> list[tuple[int, Seam | None]]:
     return [(dart, None) for dart in loop]
 
 
-def _walk(loops: list[list[int]], seams: Sequence[Seam]) -> list[tuple[int, Seam | None]]:
+def _walk(loops: Sequence[tuple[int, ...]], seams: Sequence[Seam]) -> list[tuple[int, Seam | None]]:
     """A cell's darts in one cyclic list, its seams with them."""
     if not loops:
         return []

@@ -76,12 +76,12 @@ class ApartModel:
 
 
 def loops_apart(instance: Instance, cells: Collection[int]) -> Apart:
-    """Make a cell of each live loop of the given cells; dead loops of these are left out."""
+    """Make a cell of each live loop of the given cells; dead darts of these are left out."""
     found: list[Cell] = []
     origin: list[int] = []
     side: dict[int, int] = {}
     for cell in instance.cells:
-        loops = [(loop,) for loop in cell.loops if any(map(instance.joinable, loop))]
+        loops = [(loop,) for loop in instance.live_loops[cell.id]]
         for own in loops if cell.id in cells else [cell.loops]:
             side |= {dart: len(found) for loop in own for dart in loop}
             found.append(Cell(len(found), cell.colors, own))

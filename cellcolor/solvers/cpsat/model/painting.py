@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from networkx.utils import UnionFind
 
-from cellcolor.data.solution import DartName, Division, number_segments
+from cellcolor.data.darts import DartName, strand_of
+from cellcolor.data.solution import Division, number_segments
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 
 __all__ = ["Block", "Painting", "canonical", "division_of", "moved", "painting_of", "segments_of"]
@@ -55,10 +56,7 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
     """A solution's division on a graph that has the strands it names, or more."""
     index = {dart.name: number for number, dart in enumerate(graph.darts)}
     return [
-        [
-            Block(s.color, {index[(n, 1) if isinstance(n, int) else n] for n in s.darts})
-            for s in cell.subcells
-        ]
+        [Block(s.color, {index[strand_of(dart)] for dart in s.darts}) for s in cell.subcells]
         for cell in division
     ]
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 from networkx.utils import UnionFind
 from ortools.sat.python import cp_model
 
+from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import OutOfTime
@@ -21,7 +22,6 @@ from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.model.dart_graph import (
     DartGraph,
-    Strand,
     dart_graph,
     enough_strands,
     seams_of,
