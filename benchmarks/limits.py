@@ -14,15 +14,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import math
 import os
-import random
 import signal
 import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -32,18 +30,7 @@ from typing import Any, Literal
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.lab.families import (
-    SHAPES,
-    Shape,
-    blobs,
-    cover_tree,
-    hub,
-    hub_grid,
-    hub_with_loops,
-    part,
-    voronoi,
-    wide_hub,
-)
+from cellcolor.lab.families import LARGE
 
 Subject = Instance | LabelledSurface
 
@@ -68,86 +55,6 @@ VARIANTS = {
     "surface cuts": ("solve", "--search-space", "surface", "--fewest-cuts"),
     "all": ("solve", "--all"),
     "check": ("check",),
-}
-
-
-def _voronoi(shape: Shape) -> Callable[[int], Subject]:
-    def make(seed: int) -> Subject:
-        rng = random.Random(f"{shape} {seed}")
-        size = rng.randint(12, 64)
-        low = rng.uniform(0.05, 0.6)
-        return voronoi(
-            seed,
-            shape,
-            size,
-            round(math.exp(rng.uniform(1.5, math.log(size**2 / 3)))),
-            rng.randint(2, 30),
-            scattered=rng.random() < 0.4,
-            coverage=(low, rng.uniform(low, 0.9)),
-            cracks=rng.randint(0, 15),
-            islands=rng.randint(0, 10),
-            holes=rng.randint(0, 4),
-        )
-
-    return make
-
-
-def _part(seed: int) -> Subject:
-    rng = random.Random(f"part {seed}")
-    cells = round(math.exp(rng.uniform(math.log(100), math.log(1500))))
-    return part(seed, cells, min(500, round(cells * rng.uniform(0.2, 0.5))))
-
-
-def _loops(seed: int) -> Subject:
-    rng = random.Random(f"loops {seed}")
-    return hub_with_loops(seed, rng.randint(2, 12), rng.randint(2, 10), rng.randint(3, 8))
-
-
-def _petals(seed: int) -> Subject:
-    rng = random.Random(f"petals {seed}")
-    petals = rng.randint(50, 400)
-    if seed % 2:
-        return hub(seed, petals, rng.randint(3, 100))
-    colors = rng.randint(4, 100)
-    return wide_hub(seed, petals, colors, rng.randint(1, max(1, colors // 4)))
-
-
-def _trees(seed: int) -> Subject:
-    rng = random.Random(f"trees {seed}")
-    hubs = rng.randint(5, 70)
-    return cover_tree(seed, hubs, rng.randint(2, 8), rng.randint(10, 80), rng.randint(2, 5))
-
-
-def _grids(seed: int) -> Subject:
-    rng = random.Random(f"grids {seed}")
-    rows, columns = rng.randint(2, 12), rng.randint(2, 12)
-    return hub_grid(seed, rows, columns, rng.randint(3, 8), rng.randint(1, 4))
-
-
-def _patches(seed: int) -> Subject:
-    rng = random.Random(f"patches {seed}")
-    return blobs(
-        seed,
-        rng.randint(24, 110),
-        rng.randint(3, 14),
-        waves=rng.uniform(0.5, 3.0),
-        coverage=(0.2, rng.uniform(0.4, 0.95)),
-        thin=rng.random() < 0.3,
-        cracks=rng.randint(0, 10),
-        rim=rng.randint(0, 30),
-        islands=rng.randint(0, 60),
-        holes=rng.randint(0, 5),
-    )
-
-
-KINDS: dict[str, Callable[[int], Subject]] = {
-    **{shape: _voronoi(shape) for shape in SHAPES},
-    "parts": _part,
-    "loops": _loops,
-    "petals": _petals,
-    "trees": _trees,
-    "grids": _grids,
-    "patches": _patches,
 }
 
 
@@ -306,7 +213,7 @@ def _read_answer(run: Run, said: str, complaints: str) -> None:
 
 def drawn(kind: str, seed: int, folder: Path, limit: float) -> Run:
     """The run of one random input, with the command whose turn it is."""
-    subject = KINDS[kind](seed)
+    subject = LARGE[kind](seed)
     variants = list(VARIANTS)
     if not isinstance(subject, LabelledSurface):
         variants.remove("check")
@@ -388,7 +295,7 @@ def main() -> int:
     """Run, print, and say by the exit code whether every promise was kept."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
-    parser.add_argument("--kinds", nargs="+", choices=list(KINDS), default=list(KINDS))
+    parser.add_argument("--kinds", nargs="+", choices=list(LARGE), default=list(LARGE))
     parser.add_argument("--count", type=int, default=200, help="inputs of each kind")
     parser.add_argument("--seed", type=int, default=0, help="of the first one")
     parser.add_argument("--limit", type=float, default=5.0, help="seconds")

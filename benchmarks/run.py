@@ -26,7 +26,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
-from cellcolor.lab.families import blobs, hub, hub_grid
+from cellcolor.lab.families import MEDIUM, blobs, hub, hub_grid
 from cellcolor.lab.races import Run, measure
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -78,6 +78,11 @@ def read(file: Path) -> Instance:
     if file.name.endswith(".surface.json"):
         return decompose(LabelledSurface.read(file))
     return Instance.read(file)
+
+
+def graph_of(made: Instance | LabelledSurface) -> Instance:
+    """The graph of what a family made."""
+    return made if isinstance(made, Instance) else decompose(made)
 
 
 def scenes(repeat: int) -> Rows:
@@ -143,18 +148,8 @@ def displaced(_: int) -> Rows:
 def families(_: int) -> Rows:
     """Random families, mostly on 24 × 24 points, in the search space paper: solving alone."""
     yield ["family", "cells", "of", "proved for any division", "median s", "worst s"]
-    kinds: dict[str, Callable[[int], LabelledSurface]] = {
-        "blobs": blobs,
-        "more waves": lambda seed: blobs(seed, waves=1.0),
-        "cracks": lambda seed: blobs(seed, cracks=4),
-        "islands, holes": lambda seed: blobs(seed, holes=3, islands=3),
-        "rim": lambda seed: blobs(seed, rim=8, coverage=(0.6, 0.9)),
-        "thin": lambda seed: blobs(seed, thin=True, colors=5),
-        "48 × 48 points, 8 colors": lambda seed: blobs(seed, 48, 8, waves=1.2),
-        "64 × 64 points, 10 colors": lambda seed: blobs(seed, 64, 10, waves=1.6),
-    }
-    for name, make in kinds.items():
-        instances = [decompose(make(seed)) for seed in range(FAMILY_SEEDS)]
+    for name, make in MEDIUM.items():
+        instances = [graph_of(make(seed)) for seed in range(FAMILY_SEEDS)]
         cells = [len(instance.cells) for instance in instances]
         found = solve_all(instances, Options())
         yield [name, f"{min(cells)} to {max(cells)}", *found]

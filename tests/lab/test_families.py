@@ -11,7 +11,17 @@ from bruteforce import minimum, noncrossing
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.lab.families import blobs, hub, hub_grid, hub_minimum, planar_graph
+from cellcolor.lab.families import (
+    LARGE,
+    MEDIUM,
+    SMALL,
+    Family,
+    blobs,
+    hub,
+    hub_grid,
+    hub_minimum,
+    planar_graph,
+)
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.interface import Options
 
@@ -281,3 +291,31 @@ def _points_and_outer_loops(instance: Instance) -> tuple[int, int]:
 def test_impossible_families_are_refused(make: object) -> None:
     with pytest.raises(InputError):
         make()  # type: ignore[operator]
+
+
+REGISTERED = [
+    pytest.param(family, id=f"{size} {name}")
+    for size, families in (("small", SMALL), ("medium", MEDIUM), ("large", LARGE))
+    for name, family in families.items()
+    if (size, name) not in (("large", "parts"), ("medium", "64 × 64 points, 10 colors"))
+]
+"""Those that are made within a second."""
+
+
+@pytest.mark.parametrize("family", REGISTERED)
+def test_registered_families_are_functions_of_a_seed(family: Family) -> None:
+    one, again, other = family(5), family(5), family(6)
+    assert one.sha256 == again.sha256 != other.sha256
+
+
+@pytest.mark.parametrize("name", SMALL)
+def test_small_families_are_what_every_solver_can_bear(name: str) -> None:
+    """No more live darts than a search over all divisions of a cell has time for."""
+    for seed in range(8):
+        made = SMALL[name](seed)
+        instance = made if isinstance(made, Instance) else decompose(made)
+        darts = max(
+            sum(bool(instance.joinable(dart)) for loop in cell.loops for dart in loop)
+            for cell in instance.cells
+        )
+        assert 2 <= len(instance.cells) <= 16 and darts <= 9

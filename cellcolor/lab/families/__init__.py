@@ -1,6 +1,7 @@
 """Random instance families, made on demand: labelled surfaces, and graphs without a surface.
 
 All of them are functions of a seed and a few numbers; the same arguments give the same instance.
+``registry`` has those that need a seed only, by name, for campaigns and benchmarks.
 """
 
 from cellcolor.lab.families.blobs import blobs
@@ -15,10 +16,15 @@ from cellcolor.lab.families.hubs import (
 )
 from cellcolor.lab.families.meshes import SHAPES, Topology
 from cellcolor.lab.families.parts import part
+from cellcolor.lab.families.registry import LARGE, MEDIUM, SMALL, Family
 from cellcolor.lab.families.voronoi import voronoi
 
 __all__ = [
+    "LARGE",
+    "MEDIUM",
     "SHAPES",
+    "SMALL",
+    "Family",
     "Topology",
     "blobs",
     "cover_tree",

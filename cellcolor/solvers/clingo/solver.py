@@ -51,7 +51,8 @@ class ClingoSolver:
         if not instance.cells:
             return Answer((), (), ())
         deadline = options.deadline
-        deadline.check()
+        if deadline.over:
+            return Answer(None, (), ())
         control = Control(list(_OPTIONS))
         control.load(str(files(__package__).joinpath("coloring.lp")))
         control.add("base", [], facts)
