@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 from library import PAPER
@@ -41,6 +42,15 @@ def test_building_and_solving_a_surface_needs_no_kinematics() -> None:
     assert code == 0
     assert "cellcolor.decomposition" in modules
     assert not modules & FRONTEND
+
+
+def test_solving_and_checking_an_instance_import_no_networkx(tmp_path: Path) -> None:
+    # It takes a tenth of a second and more, at every start.
+    ring, solution = str(PAPER / "ring.json"), str(tmp_path / "ring.solution.json")
+    for arguments in (["solve", ring, "-o", solution], ["check", ring, solution]):
+        code, modules = run(*arguments)
+        assert code == 0
+        assert "networkx" not in modules
 
 
 @pytest.mark.parametrize(

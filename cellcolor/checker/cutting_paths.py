@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import networkx as nx
-
+from cellcolor.checker.groups import Groups
 from cellcolor.data.darts import Strand, strand_of, twin
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import CellDivision, Division, Seam
@@ -42,13 +41,12 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, froze
     holder = {
         strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
     }
-    graph: nx.Graph[int] = nx.Graph()
-    graph.add_nodes_from(range(len(cell.subcells)))
-    graph.add_edges_from(
-        (number, holder[twin(strand)])
-        for strand, number in holder.items()
-        if abs(strand[0]) in seams and twin(strand) in holder
-    )
+    whole: Groups[int] = Groups()
+    for number in range(len(cell.subcells)):
+        whole.find(number)
+    for strand, number in holder.items():
+        if abs(strand[0]) in seams and twin(strand) in holder:
+            whole.join(number, holder[twin(strand)])
     return [
         (
             cell.subcells[min(parts)].color,
@@ -59,7 +57,7 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, froze
                 if abs(strand[0]) not in seams
             ),
         )
-        for parts in nx.connected_components(graph)
+        for parts in whole.sets()
     ]
 
 
@@ -68,6 +66,10 @@ def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[Strand]]]) -> i
 
     Loops and sub-cells that meet make a graph; loops on a common circle of it are in one group.
     """
+    if len(subcells) == 1:
+        return 0
+    import networkx as nx  # slow to import, and most divisions do without
+
     loop_of = {dart: number for number, loop in enumerate(cell.loops) for dart in loop}
     meetings: nx.Graph[tuple[str, int]] = nx.Graph()
     meetings.add_edges_from(
@@ -75,10 +77,12 @@ def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[Strand]]]) -> i
         for number, (_, strands) in enumerate(subcells)
         for dart, _ in strands
     )
-    groups: nx.Graph[int] = nx.Graph()
-    groups.add_nodes_from(range(len(cell.loops)))
+    groups: Groups[int] = Groups()
+    for loop in range(len(cell.loops)):
+        groups.find(loop)
     for edges in nx.biconnected_component_edges(meetings):
         if len(edges) > 1:
             met = {number for edge in edges for kind, number in edge if kind == "loop"}
-            nx.add_path(groups, sorted(met))
-    return len(subcells) - 1 + len(cell.loops) - nx.number_connected_components(groups)
+            for loop in met:
+                groups.join(min(met), loop)
+    return len(subcells) - 1 + len(cell.loops) - len(groups.sets())

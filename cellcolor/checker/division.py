@@ -6,11 +6,10 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import networkx as nx
-
 from cellcolor.checker.claimed_numbers import number_problems
 from cellcolor.checker.dart_lists import BadSeams, TooManyDarts, live_lists
 from cellcolor.checker.drawable import can_be_drawn
+from cellcolor.checker.groups import Groups
 from cellcolor.checker.scheme_rules import (
     Joinable,
     Painted,
@@ -218,19 +217,20 @@ def _edge_problems(division: Division, joinable: Joinable) -> list[str]:
 
 def _segments(division: Division) -> tuple[list[str], int]:
     """Faults of the segment numbers, and how many segments there are."""
-    graph: nx.Graph[tuple[int, int]] = nx.Graph()
+    joined: Groups[tuple[int, int]] = Groups()
     holder: dict[Strand, tuple[int, int]] = {}
     label: dict[tuple[int, int], int] = {}
     for cell in division:
         for number, sub in enumerate(cell.subcells):
             node = (cell.id, number)
-            graph.add_node(node)
+            joined.find(node)
             label[node] = sub.segment
             holder |= dict.fromkeys(map(strand_of, sub.darts), node)
-    graph.add_edges_from((holder[dart], holder[twin(dart)]) for dart in holder)
+    for dart, node in holder.items():
+        joined.join(node, holder[twin(dart)])
     problems = []
     pieces: dict[int, int] = defaultdict(int)
-    components = list(nx.connected_components(graph))
+    components = joined.sets()
     for component in components:
         labels = {label[node] for node in component}
         place = min(component)

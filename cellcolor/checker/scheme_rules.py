@@ -7,8 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-import networkx as nx
-
 from cellcolor.data.darts import Strand, twin
 
 Joinable = Callable[[Strand], frozenset[int]]
@@ -122,7 +120,14 @@ def _gaps(cell: Painted) -> Iterator[tuple[list[Strand], int, int]]:
 
 
 def _contradiction(clauses: Sequence[tuple[_Literal, _Literal]]) -> Strand | None:
-    """A variable that can be neither true nor false, if the clauses cannot all hold."""
+    """A variable that can be neither true nor false, if the clauses cannot all hold.
+
+    Mostly they all hold with every variable false: each dart shows the color before it.
+    """
+    if all(not (one[1] and other[1]) for one, other in clauses):
+        return None
+    import networkx as nx  # slow to import, and most divisions do without
+
     implications: nx.DiGraph[_Literal] = nx.DiGraph()
     for one, other in clauses:
         implications.add_edge((one[0], not one[1]), other)

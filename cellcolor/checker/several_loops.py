@@ -6,10 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-import networkx as nx
-
 from cellcolor.checker.cutting_paths import whole_subcells
 from cellcolor.checker.dart_lists import strands_along
+from cellcolor.checker.groups import Groups
 from cellcolor.checker.scheme_rules import Joinable, Painted, unavoidable_join
 from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Instance
@@ -37,10 +36,12 @@ class PaintedLoops:
 
     def unconnected_pair(self) -> tuple[int, int] | None:
         """Two sub-cells of one color that no chain of loops and sub-cells connects."""
-        graph: nx.Graph[int] = nx.Graph()
+        groups: Groups[int] = Groups()
         for loop in self.loops:
-            nx.add_path(graph, sorted(set(loop.block_of.values())))
-        group = {b: n for n, part in enumerate(nx.connected_components(graph)) for b in part}
+            blocks = list(loop.block_of.values())
+            for block in blocks:
+                groups.join(blocks[0], block)
+        group = {block: n for n, part in enumerate(groups.sets()) for block in part}
         colors = self.loops[0].colors
         return next(
             (

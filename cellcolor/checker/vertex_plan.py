@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import networkx as nx
-
+from cellcolor.checker.groups import Groups
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 
@@ -49,12 +48,14 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
             problems.append(f"{where}: color {color} does not reach this vertex")
     if problems:
         return PlanReport(tuple(problems), None)
-    graph: nx.Graph[int] = nx.Graph()
-    graph.add_nodes_from(v for v, color in enumerate(plan.vertex_colors) if color is not None)
+    segments: Groups[int] = Groups()
+    for vertex, color in enumerate(plan.vertex_colors):
+        if color is not None:
+            segments.find(vertex)
     for a, b in surface.left_of:
         color = plan.vertex_colors[a]
         if color is None or color != plan.vertex_colors[b]:
             continue
         if color not in surface.cracked(a, b):
-            graph.add_edge(a, b)
-    return PlanReport((), nx.number_connected_components(graph))
+            segments.join(a, b)
+    return PlanReport((), len(segments.sets()))

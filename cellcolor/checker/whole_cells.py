@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-
-from networkx.utils import UnionFind
-
+from cellcolor.checker.groups import Groups
 from cellcolor.data.instance import Instance
 
 __all__ = ["segments_of_whole_cells"]
@@ -20,22 +17,22 @@ def segments_of_whole_cells(instance: Instance) -> int:
     To paint every cell whole is legal in both search spaces, with any number of strands, and cells
     of one color are joined wherever they can be. So the fewest segments are at most these.
     """
-    regions: UnionFind[_Node] = UnionFind(
-        (cell.id, color) for cell in instance.cells for color in cell.colors
-    )
+    regions: Groups[_Node] = Groups()
+    for cell in instance.cells:
+        for color in cell.colors:
+            regions.find((cell.id, color))
     for edge in instance.edges:
         for color in instance.joinable(edge.id):
-            regions.union((edge.left, color), (edge.right, color))
-    members: dict[_Node, list[_Node]] = defaultdict(list)
-    for node in regions:
-        members[regions[node]].append(node)
+            regions.join((edge.left, color), (edge.right, color))
     painted: dict[int, int] = {}
-    for region in sorted(members.values(), key=len, reverse=True):
+    for region in sorted(regions.sets(), key=len, reverse=True):
         for cell_id, color in region:
             painted.setdefault(cell_id, color)
-    segments: UnionFind[_Node] = UnionFind(painted.items())
+    segments: Groups[_Node] = Groups()
+    for node in painted.items():
+        segments.find(node)
     for edge in instance.edges:
         color = painted.get(edge.left, -1)
         if color in instance.joinable(edge.id) and painted[edge.right] == color:
-            segments.union((edge.left, color), (edge.right, color))
-    return len({segments[node] for node in painted.items()})
+            segments.join((edge.left, color), (edge.right, color))
+    return len(segments.sets())

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, Shares, percent, shares
 from cellcolor.data.solution import Solution
 
 _CELLS_SHOWN = 12
+_SEGMENTS_SHOWN = 200
 _PLAIN_WIDTH = 200
 
 
@@ -78,21 +80,23 @@ def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
     table.add_column("color")
     table.add_column("cells", overflow="fold")
     table.add_column(_BASES[shares.of], justify="right")
-    for segment, share in enumerate(shares.segments):
-        whole: list[int] = []
-        parts: list[int] = []
-        color = 0
-        for cell in solution.cells or ():
-            own = [sub for sub in cell.subcells if sub.segment == segment]
-            if own:
-                color = own[0].color
-                (whole if len(own) == len(cell.subcells) else parts).append(cell.id)
+    whole: list[list[int]] = [[] for _ in shares.segments]
+    parts: list[list[int]] = [[] for _ in shares.segments]
+    colors = [0] * len(shares.segments)
+    for cell in solution.cells or ():
+        for segment, count in Counter(sub.segment for sub in cell.subcells).items():
+            (whole if count == len(cell.subcells) else parts)[segment].append(cell.id)
+        for sub in cell.subcells:
+            colors[sub.segment] = sub.color
+    for segment, share in enumerate(shares.segments[:_SEGMENTS_SHOWN]):
         table.add_row(
             str(segment),
-            shown(instance.colors[color]),
-            _cell_list(whole, parts),
+            shown(instance.colors[colors[segment]]),
+            _cell_list(whole[segment], parts[segment]),
             percent(*share),
         )
+    if (more := len(shares.segments) - _SEGMENTS_SHOWN) > 0:
+        table.add_row("…", f"{more} more segments", "", "")
     if shares.of == "surface":
         table.add_row("", UNREACHABLE, "", percent(shares.unreachable, shares.unreachable))
         if shares.given_up:

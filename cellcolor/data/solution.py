@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from os import PathLike
 from typing import Annotated, Any, Literal
 
-from networkx.utils import UnionFind
 from pydantic import ConfigDict, Field, NonNegativeFloat, NonNegativeInt, PositiveInt, TypeAdapter
 
 from cellcolor.data.bound import Bound
@@ -18,6 +17,7 @@ from cellcolor.data.proof_wording import in_words
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, parse_json, read_text, take_body, validate
 from cellcolor.files.validation import settle
+from cellcolor.union_find import UnionFind
 
 FORMAT = "cellcolor/solution"
 SCHEME_FORMAT = "cellcolor/scheme"

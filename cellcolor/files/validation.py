@@ -37,14 +37,23 @@ def settle(value: object, arrays: tuple[str, ...] = ()) -> None:
     """
     kind: Any = type(value)
     names, adapter = _members(kind, arrays)
-    given = tuple([plain(getattr(value, name)) for name in names])
+    given = tuple([getattr(value, name) for name in names])
     try:
-        settled = adapter.validate_python(given)
+        settled = _settled(adapter, given)
     except ValidationError as error:
         place, message = _first_fault(error)
         raise InputError(None, field_name((names[int(place[0])], *place[1:])), message) from error
-    for name, content in zip(names, settled, strict=True):
-        object.__setattr__(value, name, content)
+    for name, before, content in zip(names, given, settled, strict=True):
+        if content is not before:
+            object.__setattr__(value, name, content)
+
+
+def _settled(adapter: TypeAdapter[tuple[Any, ...]], given: tuple[Any, ...]) -> tuple[Any, ...]:
+    """The members as they are if they can be, which they can wherever they came from JSON."""
+    try:
+        return adapter.validate_python(given)
+    except ValidationError:
+        return adapter.validate_python(plain(given))
 
 
 def validate_python(adapter: TypeAdapter[T], content: Any, member: str) -> T:

@@ -92,6 +92,19 @@ class TestSolve:
         assert "\x1b" not in out
         assert "part of 0" in out
 
+    def test_a_table_has_200_segments_at_most(self, tmp_path: Path, capsys: Capture) -> None:
+        """250 cells apart from each other are 250 segments."""
+        path = tmp_path / "apart.json"
+        cells = tuple(Cell(number, (0,), ()) for number in range(250))
+        path.write_text(Instance("apart", ("red",), cells, ()).to_json(), encoding="utf-8")
+        assert run("solve", path) == 0
+        rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+        assert [row[:3] for row in rows if "red" in row] == [
+            [str(number), "red", str(number)] for number in range(200)
+        ]
+        assert ["…", "50", "more", "segments"] in rows
+        assert ["segments", "250"] in rows
+
     def test_share_of_area(self, tmp_path: Path, capsys: Capture) -> None:
         """Four neighbours of 1 m² and a divided cell of 4 m²: nobody knows whose its area is."""
         instance = Instance.read(PAPER / "figsimpleexample.json")

@@ -6,11 +6,10 @@ from collections import Counter, deque
 from dataclasses import dataclass
 from itertools import combinations, product
 
-from networkx.utils import UnionFind
-
 from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.bounds.merged_cells import MergedCells, merge_cells
+from cellcolor.union_find import UnionFind
 
 __all__ = ["Conflict", "MergedCell", "Parting", "RegionPair", "Side", "conflicts"]
 

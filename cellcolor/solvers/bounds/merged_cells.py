@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from networkx.utils import UnionFind
-
 from cellcolor.data.instance import Instance
+from cellcolor.union_find import UnionFind
 
 __all__ = ["MergedCells", "merge_cells"]
 

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import networkx as nx
-
 from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
 from cellcolor.data.solution import Seam
+from cellcolor.union_find import UnionFind
 
 __all__ = ["Part", "seam_places", "split"]
 
@@ -58,14 +57,13 @@ def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Part]:
     loops = instance.live_loops
     seams = seam_places(instance, loops)
     live: dict[int, tuple[int, ...]] = {}
-    graph: nx.Graph[int] = nx.Graph()
-    graph.add_nodes_from(range(len(instance.cells)))
+    connected = UnionFind(range(len(instance.cells)))
     for edge in instance.edges:
         own = instance.joinable(edge.id)
         if own and (shared := colors[edge.left] & colors[edge.right] & set(own)):
             live[edge.id] = tuple(sorted(shared))
-            graph.add_edge(edge.left, edge.right)
-    found = sorted((sorted(cells) for cells in nx.connected_components(graph)), key=len)
+            connected.union(edge.left, edge.right)
+    found = sorted(map(sorted, connected.sets()), key=len)
     number = {cell: place for cells in found for place, cell in enumerate(cells)}
     seams_of: dict[int, list[Seam]] = {}
     for seam in seams:

@@ -11,7 +11,6 @@ import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from networkx.utils import UnionFind
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
@@ -19,6 +18,7 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import Dart, DartGraph
 from cellcolor.solvers.cpsat.model.full import full_model, model_size, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
+from cellcolor.union_find import UnionFind
 
 __all__ = ["improve"]
 
@@ -215,6 +215,5 @@ def _regions(graph: DartGraph) -> list[Region]:
         for color in dart.colors:
             reached.union((color, dart.cell), (color, graph.darts[dart.twin].cell))
     return [
-        (next(iter(places))[0], frozenset(cell for _, cell in places))
-        for places in reached.to_sets()
+        (next(iter(places))[0], frozenset(cell for _, cell in places)) for places in reached.sets()
     ]

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import networkx as nx
-from networkx.utils import UnionFind
-
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
+from cellcolor.union_find import UnionFind
 
 __all__ = ["count_cuts", "unseamed"]
 
@@ -45,7 +43,7 @@ def unseamed(graph: DartGraph, blocks: Sequence[Block]) -> list[Block]:
             blocks[min(parts)].color,
             {dart for part in parts for dart in blocks[part].darts if dart not in virtual},
         )
-        for parts in whole.to_sets()
+        for parts in whole.sets()
     ]
 
 
@@ -55,6 +53,10 @@ def _cuts_of_cell(cell: Cell, subcells: Sequence[set[int]]) -> int:
     As long as the graph of loops and the sub-cells that meet them has a circle, its loops are put
     together, one circle after the other (docs/semantics.md, section 8).
     """
+    if len(subcells) == 1:
+        return 0
+    import networkx as nx  # slow to import, and most instances do without
+
     loops: UnionFind[int] = UnionFind(range(len(cell.loops)))
     loop_of = {dart: number for number, loop in enumerate(cell.loops) for dart in loop}
     together = 0

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import NamedTuple
 
 from cellcolor.data.darts import Strand
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 from cellcolor.solvers.cpsat.parts import Loops, seam_places
 
 
-@dataclass(frozen=True, slots=True)
-class Dart:
+class Dart(NamedTuple):
     """One side of one strand of a live edge or seam.
 
     Attributes:
@@ -111,10 +111,11 @@ def widened(
     """
     left = iter(places)
     seams: list[Seam] = []
-    for cell, own in zip(instance.cells, loops, strict=True):
+    for own in loops:
+        if len(own) < 2:
+            continue
         counts = [
-            sum(strands[abs(d)] for d in loop if _joinable(instance, colors, cell, d))
-            for loop in own
+            sum(strands[abs(d)] for d in loop if _joinable(instance, colors, d)) for loop in own
         ]
         widths = [count if most is None else min(count, most) for count in enough_strands(counts)]
         seams += [replace(next(left), strands=width) for width in widths]
@@ -144,6 +145,7 @@ def dart_graph(
     seams_of: dict[int, list[Seam]] = {}
     for seam in seams or ():
         seams_of.setdefault(seam.cell, []).append(seam)
+    joinable_of: dict[int, frozenset[int]] = {}
     for cell, own in zip(instance.cells, loops, strict=True):
         if seams is None:
             walks = [_unseamed(loop) for loop in own]
@@ -154,8 +156,11 @@ def dart_graph(
             first = len(found)
             for dart, through in walk:
                 if through is None:
-                    joinable = _joinable(instance, colors, cell, dart)
-                    count = strands[abs(dart)] if joinable else 0
+                    edge = abs(dart)
+                    if edge not in joinable_of:
+                        joinable_of[edge] = _joinable(instance, colors, edge)
+                    joinable = joinable_of[edge]
+                    count = strands[edge] if joinable else 0
                 else:
                     joinable, count = colors[cell.id], through.strands
                 numbers = range(1, count + 1)
@@ -170,11 +175,12 @@ def dart_graph(
     return DartGraph(darts, tuple(lists), tuple(colors), tuple(seams or ()))
 
 
-def _joinable(
-    instance: Instance, colors: Sequence[frozenset[int]], cell: Cell, dart: int
-) -> frozenset[int]:
+def _joinable(instance: Instance, colors: Sequence[frozenset[int]], dart: int) -> frozenset[int]:
     own = instance.joinable(dart)
-    return colors[cell.id] & colors[instance.across(dart)] & frozenset(own) if own else frozenset()
+    if not own:
+        return frozenset()
+    edge = instance.edge(dart)
+    return (colors[edge.left] & colors[edge.right]).intersection(own)
 
 
 def _unseamed(loop: Sequence[int]) -> list[tuple[int, Seam | None]]:

@@ -13,7 +13,6 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, permutations
 
-from networkx.utils import UnionFind
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Cell, Instance
@@ -35,6 +34,7 @@ from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.full import fewest_subcells, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.solvers.cpsat.model.variables import Variables, make_variables
+from cellcolor.union_find import UnionFind
 
 __all__ = ["Apart", "ApartModel", "build_apart", "loops_apart", "read_apart"]
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from networkx.utils import UnionFind
-
 from cellcolor.data.darts import DartName, strand_of
 from cellcolor.data.solution import Division, number_segments
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
+from cellcolor.union_find import UnionFind
 
 __all__ = ["Block", "Painting", "canonical", "division_of", "moved", "painting_of", "segments_of"]
 

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from networkx.utils import UnionFind
 from ortools.sat.python import cp_model
 
 from cellcolor.data.darts import Strand
@@ -36,6 +35,7 @@ from cellcolor.solvers.cpsat.model.full import (
     too_large,
 )
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
+from cellcolor.union_find import UnionFind
 
 __all__ = ["SeamWriter", "Seamed", "Solve"]
 

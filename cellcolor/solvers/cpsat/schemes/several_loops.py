@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import combinations
 
-from networkx.utils import UnionFind
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
+from cellcolor.union_find import UnionFind
 
 __all__ = ["SchemeVariables", "literals_on_loops", "same_blocks", "unconnected_differ"]
 
