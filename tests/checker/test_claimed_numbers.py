@@ -9,17 +9,25 @@ from dataclasses import replace
 from functools import cache
 from typing import Any
 
-from bruteforce import minimum
+import pytest
+from divisions import SPLIT, split_solution
+from exhaustive_minima import minimum
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import surfaces
 
+from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.whole_cells import segments_of_whole_cells
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Solution
+from cellcolor.data.coverage import Coverage
+from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.solution import (
+    InstanceReference,
+    Seam,
+    Solution,
+)
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
@@ -147,3 +155,128 @@ def test_the_order_of_sub_cells_means_nothing(case: tuple[Instance, Solution], r
     one = check_solution(instance, replace(solution, cells=tuple(cells)))
     other = check_solution(instance, replace(solution, cells=tuple(mixed)))
     assert (one.valid, one.segments) == (other.valid, other.segments)
+
+
+RED, BLUE = 0, 1
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({"instance": InstanceReference("split-cell", "0" * 64)}, "instance.sha256"),
+        ({"strands": 2}, "strands: must be 1"),
+        ({"segments": 3}, "segments: says 3, the division has 2"),
+        ({"lift_offs": 2}, "lift_offs: says 2, must be 1"),
+        ({"lower_bound": 3, "status": "feasible"}, "lower_bound: 3 cannot be above"),
+        ({"surface_lower_bound": 3, "proved_for_surface": False}, "surface_lower_bound: 3"),
+        ({"proved_for_surface": False}, "proved_for_surface: must be true"),
+        ({"surface_lower_bound": 1}, "proved_for_surface: must be false"),
+        ({"lower_bound": 1}, "status: 2 segments are not proved optimal"),
+        (
+            {"search_space": "surface", "surface_lower_bound": 1, "proved_for_surface": False},
+            "status: 2 segments are not proved optimal by a lower bound of 1",
+        ),
+    ],
+)
+def test_numbers_are_checked(change: dict[str, object], expected: str) -> None:
+    report = check_solution(SPLIT, replace(split_solution(), **change))  # type: ignore[arg-type]
+    assert any(problem.startswith(expected) for problem in report.problems), report.problems
+
+
+UNKNOWN: dict[str, object] = {
+    "status": "unknown",
+    "segments": None,
+    "lift_offs": None,
+    "cells": None,
+    "proved_for_surface": False,
+}
+
+
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        ({"lower_bound": 1, "status": "feasible"}, "lower_bound: 1 cannot be below"),
+        ({"bounds": ()}, "lower_bound: says 2, the greatest of bounds is 0"),
+        (
+            {"bounds": (Bound("cover", 2, "surface"), Bound("model", 3, "strands"))},
+            "lower_bound: says 2, the greatest of bounds is 3",
+        ),
+        ({"bounds": (Bound("model", 2, "strands"),)}, "surface_lower_bound: says 2"),
+        ({"cutting_paths": 7, "cutting_paths_lower_bound": 0}, "cutting_paths: says 7"),
+        (
+            {"cutting_paths": 1, "cutting_paths_lower_bound": 2},
+            "cutting_paths_lower_bound: 2 cannot be above the 1 found",
+        ),
+        ({"cutting_paths": 1}, "cutting_paths: goes with"),
+        ({"cutting_paths_lower_bound": 1}, "cutting_paths: goes with"),
+        ({"schemes": 1}, "schemes: goes with complete"),
+        ({"complete": True}, "schemes: goes with complete"),
+        ({"schemes": 0, "complete": True}, "schemes: cannot be 0 and complete"),
+        (
+            {"schemes": 1, "complete": True, "search_space": "surface", "strands": 2},
+            "schemes: are defined in search space 'paper' only",
+        ),
+        (
+            {"schemes": 1, "complete": False, "status": "feasible"},
+            "schemes: cannot be known to be optimal",
+        ),
+        ({"strands": 10**6, "search_space": "surface"}, "strands: would make 8000000 darts"),
+        ({"seams": (Seam(99, 0, 1, 3, 10**9),)}, "strands: would make 2000000008 darts"),
+        (UNKNOWN | {"proved_for_surface": True}, "proved_for_surface: must be false"),
+        (
+            # Blue in the cells 0, 1, 2 and red in 3 and 4 apart from each other.
+            UNKNOWN | {"lower_bound": 4, "surface_lower_bound": 4},
+            "lower_bound: 4 cannot be above the 3 segments whole cells can be painted in",
+        ),
+        (UNKNOWN | {"surface_lower_bound": 10**9}, "surface_lower_bound: 1000000000 cannot"),
+        (UNKNOWN | {"seams": (Seam(99, 0, 1, 3, 1),)}, "seams: there are none"),
+        (UNKNOWN | {"cutting_paths": 0}, "cutting_paths: cannot be known"),
+        (UNKNOWN | {"cutting_paths_lower_bound": 1}, "cutting_paths: cannot be known"),
+    ],
+)
+def test_contradictions_are_refused(change: dict[str, object], expected: str) -> None:
+    report = check_solution(SPLIT, replace(split_solution(), **change))  # type: ignore[arg-type]
+    assert any(problem.startswith(expected) for problem in report.problems), report.problems
+
+
+def test_numbers_that_are_right() -> None:
+    right = replace(
+        split_solution(),
+        cutting_paths=1,
+        cutting_paths_lower_bound=1,
+        schemes=1,
+        complete=True,
+        bounds=(Bound("cover", 2, "surface"),),
+    )
+    assert check_solution(SPLIT, right).problems == ()
+    nothing = replace(right, **UNKNOWN, cutting_paths=None, cutting_paths_lower_bound=0)  # type: ignore[arg-type]
+    nothing = replace(nothing, schemes=0, complete=False)
+    assert check_solution(SPLIT, nothing).problems == ()
+
+
+def test_coverage_is_the_instance_s() -> None:
+    coverage = Coverage(1.0, 0.25, 0.125)
+    covered = replace(SPLIT, coverage=coverage)
+    assert check_solution(covered, replace(split_solution(), coverage=coverage)).valid
+    other = replace(split_solution(), coverage=Coverage(1.0, 0.125, 0.25))
+    assert check_solution(covered, other).problems == ("coverage: is not that of the instance",)
+    # An instance that says nothing of it cannot contradict; the number is a claim.
+    assert check_solution(SPLIT, other).valid and "coverage" in claims(SPLIT, other)
+    assert "coverage" not in claims(covered, replace(split_solution(), coverage=coverage))
+
+
+def test_what_nobody_has_verified_is_named() -> None:
+    assert claims(SPLIT, split_solution()) == {
+        "lower_bound": 2,
+        "surface_lower_bound": 2,
+        "status": "optimal",
+        "proved_for_surface": True,
+    }
+    # One segment is needed for a cell, so this proof is complete.
+    one = Instance("one", ("red",), (Cell(0, (RED,), ()),), ())
+    solution = solve(one, Options())
+    assert (solution.status, claims(one, solution)) == ("optimal", {})
+
+
+def test_a_weaker_status_than_the_proof_is_no_fault() -> None:
+    assert check_solution(SPLIT, replace(split_solution(), status="feasible")).valid

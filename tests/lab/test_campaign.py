@@ -11,7 +11,7 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
-from bruteforce import vertex_minimum
+from exhaustive_minima import vertex_minimum
 from library import PAPER
 
 from cellcolor.cli import main

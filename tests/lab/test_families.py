@@ -6,7 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from bruteforce import minimum, noncrossing
+from exhaustive_minima import minimum, noncrossing
 
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.decomposition import decompose

@@ -7,7 +7,7 @@ from dataclasses import replace
 from queue import SimpleQueue
 
 import pytest
-from bruteforce import minimum, optimal_schemes
+from exhaustive_minima import minimum, optimal_schemes
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from bruteforce import literal_minimum, live_darts, minimum, optimal_schemes, vertex_minimum
+from exhaustive_minima import literal_minimum, live_darts, minimum, optimal_schemes, vertex_minimum
 from library import PAPER
 
 from cellcolor.checker.division import check_division

@@ -10,7 +10,7 @@ from itertools import product
 from math import comb
 
 import pytest
-from bruteforce import any_scheme
+from exhaustive_minima import any_scheme
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
@@ -78,7 +78,7 @@ def test_codes_of_a_four_edge_cell() -> None:
 
 
 @pytest.mark.parametrize("edges", range(1, 7))
-def test_paintedof_a_lone_cell_in_two_colors(edges: int) -> None:
+def test_schemes_of_a_lone_cell_in_two_colors(edges: int) -> None:
     """With colors: rules 2 to 4, round the cyclic list's end too (red, blue and red again)."""
     cell = Cell(0, (0, 1), (tuple(range(1, edges + 1)),))
     alone = GraphCell(
@@ -315,7 +315,7 @@ def test_seams_carry_what_must_pass() -> None:
 # --- refusals and limits --------------------------------------------------------------------------
 
 
-def test_paintedare_refused_where_they_are_not_defined() -> None:
+def test_schemes_are_refused_where_they_are_not_defined() -> None:
     with pytest.raises(InputError, match="cell 1 has several loops") as caught:
         SOLVER.optimal_schemes(Instance.read(PAPER / "annulus.json"), Options(), 3)
     assert caught.value.field == "cells[1].loops"
@@ -323,7 +323,7 @@ def test_paintedare_refused_where_they_are_not_defined() -> None:
         SOLVER.optimal_schemes(Instance.read(PAPER / "ring.json"), SURFACE, 2)
 
 
-def test_paintedof_a_wrong_minimum_are_refused() -> None:
+def test_schemes_of_a_wrong_minimum_are_refused() -> None:
     ring = Instance.read(PAPER / "ring.json")
     for wrong in (1, 3):
         with pytest.raises(ValueError, match="the minimum is 2"):

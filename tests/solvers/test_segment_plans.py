@@ -8,7 +8,7 @@ from pathlib import Path
 
 import networkx as nx
 import pytest
-from bruteforce import minimum, vertex_minimum
+from exhaustive_minima import minimum, vertex_minimum
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER

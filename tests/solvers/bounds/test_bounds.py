@@ -6,7 +6,7 @@ import itertools
 import math
 from dataclasses import replace
 
-from bruteforce import minimum, vertex_minimum
+from exhaustive_minima import minimum, vertex_minimum
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import PAPER
