@@ -54,3 +54,9 @@ def mirrored(instance: Instance) -> Instance:
     )
     edges = tuple(replace(edge, left=edge.right, right=edge.left) for edge in instance.edges)
     return replace(instance, cells=cells, edges=edges, surface=None)
+
+
+def turned_loop(loop: tuple[int, ...], rng: random.Random) -> tuple[int, ...]:
+    """The same loop, begun at another dart."""
+    start = rng.randrange(len(loop))
+    return loop[start:] + loop[:start]

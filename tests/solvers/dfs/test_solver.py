@@ -1,4 +1,4 @@
-"""The reference solver: its codes, its cost, its limits. Its results: test_cross_validation."""
+"""The reference solver on small and odd instances; what it refuses, and its limits."""
 
 from __future__ import annotations
 
@@ -6,176 +6,26 @@ import random
 import time
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import product
-from math import comb
 
 import pytest
-from exhaustive_minima import any_scheme
-from hypothesis import given
-from hypothesis import strategies as st
 from library import PAPER
+from reference import SOLVER, SURFACE, segments
+from relabelled import turned_loop
 
-from cellcolor.checker.division import check_division
 from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Cell, Edge, Instance
-from cellcolor.data.solution import CellDivision, SubCell, scheme_key
+from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families import hub, planar_graph
-from cellcolor.solvers.dfs import ReferenceSolver, code, divisions, literal_cost, solver
-from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
-from cellcolor.solvers.dfs.graph import GraphCell, Graphs
+from cellcolor.solvers.dfs import solver
+from cellcolor.solvers.dfs.cell_schemes import CellScheme
 from cellcolor.solvers.dfs.search import Search
-from cellcolor.solvers.dfs.segment_counts import SegmentCounts
-from cellcolor.solvers.dfs.zero_darts import zeros_fit
 from cellcolor.solvers.interface import Answer, Options
-
-SOLVER = ReferenceSolver()
-SURFACE = Options(search_space="surface", strands=2)
-
-
-def segments(instance: Instance, answer: Answer, strands: int = 1) -> int:
-    assert answer.division is not None
-    report = check_division(instance, answer.division, answer.seams, strands)
-    assert report.valid and report.segments is not None, report.problems
-    return report.segments
 
 
 def schemes(instance: Instance, count: int) -> int:
     return len({scheme_key(d) for d in SOLVER.optimal_schemes(instance, Options(), count)})
-
-
-def turned(loop: tuple[int, ...], rng: random.Random) -> tuple[int, ...]:
-    """The same loop, begun at another dart."""
-    start = rng.randrange(len(loop))
-    return loop[start:] + loop[:start]
-
-
-# --- the codes of section IV ----------------------------------------------------------------------
-
-
-@pytest.mark.parametrize("edges", range(1, 7))
-def test_divisions_of_a_lone_cell(edges: int) -> None:
-    """Catalan(n) + n, of which one block or none are 2^n."""
-    found = divisions(edges)
-    assert len(found) == comb(2 * edges, edges) // (edges + 1) + edges
-    assert sum(len(division) == 1 for division in found) == 2**edges
-
-
-def test_codes_of_simple_cells_are_binary() -> None:
-    """Figure "Possible divisions of a 3-edge cell": eight codes, no ×."""
-    found = {code(3, [sorted(darts) for darts in division]) for division in divisions(3)}
-    assert found == {f"{number:03b}" for number in range(8)}
-
-
-def test_codes_of_a_four_edge_cell() -> None:
-    """The sub-cells of ××11 and 11×× are the same division, and so are those of ×11× and 1××1."""
-    found = {
-        code(4, [sorted(darts) for darts in sorted(division, key=min)] if any(division) else [])
-        for division in divisions(4)
-    }
-    assert found == {f"{number:04b}" for number in range(16)} | {"11(11)", "1(11)1"}
-
-
-@pytest.mark.parametrize("edges", range(1, 7))
-def test_schemes_of_a_lone_cell_in_two_colors(edges: int) -> None:
-    """With colors: rules 2 to 4, round the cyclic list's end too (red, blue and red again)."""
-    cell = Cell(0, (0, 1), (tuple(range(1, edges + 1)),))
-    alone = GraphCell(
-        0, (0, 1), cell.loops[0], (frozenset((0, 1)),) * edges, (-1,) * edges, (0,) * edges
-    )
-    found = [frozenset(scheme.subcells) for scheme in cell_schemes(alone, (None,) * edges)]
-    expected = {
-        frozenset(local.blocks)
-        for painted in product((None, 0, 1), repeat=edges)
-        for local in any_scheme(cell, painted)
-    }
-    assert len(found) == len(set(found)) and set(found) == expected
-
-
-def test_zeros_that_show_one_color_on_both_sides_do_not_fit() -> None:
-    """Two cells painted alike, or not, and an edge in state 0 that is joinable in red, or not."""
-    red, blue = (CellScheme(((color, ()),), ((0, color),)) for color in (0, 1))
-    for joinable, painted, fits in (
-        ({0, 1}, (red, red), False),
-        ({0, 1}, (red, blue), True),
-        ({1}, (red, red), True),
-    ):
-        cells = [
-            GraphCell(i, (0, 1), (dart,), (frozenset(joinable),), (-1,), (0,))
-            for i, dart in enumerate((1, -1))
-        ]
-        assert zeros_fit(cells, painted) == fits
-
-
-def test_brackets_nest_and_leave_zeros_outside() -> None:
-    assert code(6, [(0, 5), (1, 4), (2, 3)]) == "1(1(11)1)1"
-    assert code(7, [(0, 6), (2, 4)]) == "10(101)01"
-    assert code(3, [()]) == "000"
-
-
-def test_the_cell_that_must_be_split() -> None:
-    """Its live darts face blue, blue, red, red: two of each must continue into it."""
-    instance = Instance.read(PAPER / "split-cell.json")
-    (division,) = SOLVER.optimal_schemes(instance, Options(), 2)
-    darts = [d for d in instance.cells[2].loops[0] if instance.joinable(d)]
-    places = [tuple(darts.index(d) for d in s.darts) for s in division[2].subcells]  # type: ignore[arg-type]
-    assert code(len(darts), places) == "11(11)"
-
-
-# --- cost: section V-A ----------------------------------------------------------------------------
-
-
-def test_literal_cost_counts_a_cycle_as_less_than_nothing() -> None:
-    """Three cells around a corner, painted alike: one segment, but 3 sub-cells - 3 pairs = 0."""
-    instance = Instance.read(PAPER / "triple-junction.json")
-    answer = SOLVER.minimize(instance, Options())
-    assert answer.division is not None
-    assert segments(instance, answer) == 1
-    assert literal_cost(instance, answer.division) == 0
-
-
-def test_literal_cost_counts_pairs_not_edges() -> None:
-    """Two cells joined across two edges are one pair ("Right" of the cost figure): 2 - 1."""
-    instance = Instance.read(PAPER / "ring.json")
-    division = SOLVER.minimize(instance, Options()).division
-    assert division is not None
-    assert sorted(len(s.darts) for cell in division for s in cell.subcells) == [0, 2, 2]
-    assert literal_cost(instance, division) == 2
-
-
-def test_literal_cost_refuses_another_instance() -> None:
-    instance = Instance.read(PAPER / "triple-junction.json")
-    with pytest.raises(InputError, match="cells"):
-        literal_cost(instance, (CellDivision(0, (SubCell(0, (), 0),)),))
-
-
-@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=25), st.data())
-def test_segments_are_undone(joins: list[tuple[int, int]], data: st.DataObject) -> None:
-    """After taking back the last joins the cost is that of the first ones alone."""
-    kept = data.draw(st.integers(0, len(joins)))
-    tried = SegmentCounts()
-    for region in range(10):
-        tried.add(region)
-    for number, (a, b) in enumerate(joins):
-        if number == kept:
-            mark = tried.mark()
-            late = tried.add(10)
-            tried.join(late, a)
-        tried.join(a, b)
-    if kept < len(joins):
-        tried.undo(mark)
-    groups = [{i} for i in range(10)]
-    for a, b in joins[:kept]:
-        merged = {i for group in groups if group & {a, b} for i in group}
-        groups = [group for group in groups if not group & merged] + [merged]
-    assert tried.cost == len(groups)
-    assert {
-        frozenset(i for i in range(10) if tried.find(i) == tried.find(j)) for j in range(10)
-    } == {frozenset(group) for group in groups}
-
-
-# --- small and odd instances ----------------------------------------------------------------------
 
 
 def test_no_cells_have_no_segments() -> None:
@@ -240,7 +90,7 @@ def test_names_do_not_matter(seed: int) -> None:
         Cell(
             cell_name[c.id],
             tuple(sorted(color_name[k] for k in c.colors)),
-            tuple(tuple(dart(d) for d in turned(loop, rng)) for loop in c.loops),
+            tuple(tuple(dart(d) for d in turned_loop(loop, rng)) for loop in c.loops),
         )
         for c in instance.cells
     ]
@@ -261,58 +111,6 @@ def test_names_do_not_matter(seed: int) -> None:
     best = segments(instance, SOLVER.minimize(instance, Options()))
     assert segments(renamed, SOLVER.minimize(renamed, Options())) == best
     assert schemes(renamed, best) == schemes(instance, best)
-
-
-# --- strands and seams ----------------------------------------------------------------------------
-
-
-def test_strands_reach_divisions_of_the_surface() -> None:
-    """Red and blue pass side by side through one edge: below the paper's minimum."""
-    instance = Instance.read(PAPER / "parallel-corridors.json")
-    assert segments(instance, SOLVER.minimize(instance, Options())) == 3
-    answer = SOLVER.minimize(instance, SURFACE)
-    assert segments(instance, answer, strands=2) == answer.lower_bound == 2
-
-
-def test_bound_in_surface_is_not_the_minimum_of_two_strands() -> None:
-    """The minimum with k strands is proved for k strands only: the bound stays what covers say."""
-    instance = Instance.read(PAPER / "annulus.json")
-    answer = SOLVER.minimize(instance, SURFACE)
-    assert segments(instance, answer, strands=2) == 3
-    assert answer.lower_bound == 2
-
-
-def test_seams_have_enough_strands() -> None:
-    annulus = Instance.read(PAPER / "annulus.json")  # 4 live darts around, 1 inside
-    assert Graphs(annulus, 1).sufficient_seam_strands(1) == [5 // 2 - 1]
-    assert Graphs(annulus, 2).sufficient_seam_strands(1) == [10 // 2 - 1]
-    three = Instance.read(PAPER / "three-loops.json")  # 8 live darts, then 8 + 2 * 4
-    assert Graphs(three, 1).sufficient_seam_strands(0) == [4, 8]
-
-
-@pytest.mark.parametrize(("name", "cell", "minimum"), [("annulus", 1, 3), ("three-loops", 0, 4)])
-def test_order_of_loops_does_not_matter(name: str, cell: int, minimum: int) -> None:
-    instance = Instance.read(PAPER / f"{name}.json")
-    for seed in range(4):
-        rng = random.Random(seed)
-        loops = list(instance.cells[cell].loops)
-        rng.shuffle(loops)
-        cells = list(instance.cells)
-        cells[cell] = replace(cells[cell], loops=tuple(turned(loop, rng) for loop in loops))
-        other = replace(instance, cells=tuple(cells))
-        assert segments(other, SOLVER.minimize(other, Options())) == minimum
-
-
-def test_seams_carry_what_must_pass() -> None:
-    """Strands are added one by one, so seams that have some could not do without."""
-    instance = Instance.read(PAPER / "three-loops.json")
-    answer = SOLVER.minimize(instance, Options())
-    assert segments(instance, answer) == 4
-    assert len(answer.seams) == 2 and all(seam.strands > 0 for seam in answer.seams)
-    assert {seam.id for seam in answer.seams} == {9, 10}  # above its 8 edges
-
-
-# --- refusals and limits --------------------------------------------------------------------------
 
 
 def test_schemes_are_refused_where_they_are_not_defined() -> None:

@@ -1,0 +1,206 @@
+"""Conflicts: pairs of segments that would have to cross, against paths on the mesh itself."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import networkx as nx
+from exhaustive_minima import vertex_minimum
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import PAPER
+from meshes import grid_faces, grid_points, surface
+from petals import hub
+
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.solvers.bounds.conflicts import MergedCell, conflicts
+from cellcolor.solvers.bounds.cover import color_regions, set_cover
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+RED, BLUE, GREEN = 0, 1, 2
+
+
+def areas(pair: tuple[MergedCell, MergedCell]) -> tuple[list[int], list[int]]:
+    one, other = pair
+    return sorted(one), sorted(other)
+
+
+def test_petals_in_turn_are_in_conflict() -> None:
+    red, blue = color_regions(hub(RED, BLUE, RED, BLUE))
+    (found,) = conflicts(hub(RED, BLUE, RED, BLUE), red, blue)
+    assert areas(found.one) == ([1], [3])
+    assert areas(found.other) == ([2], [4])
+
+
+def test_petals_side_by_side_are_not() -> None:
+    red, blue = color_regions(hub(RED, RED, BLUE, BLUE))
+    assert conflicts(hub(RED, RED, BLUE, BLUE), red, blue) == []
+
+
+def test_a_way_around_is_no_conflict() -> None:
+    """The red petals of the hub also meet behind one of the blue ones."""
+    instance = Instance(
+        "around",
+        ("red", "blue"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2, 3, 4),)),
+            Cell(1, (RED,), ((-1, 5),)),
+            Cell(2, (BLUE,), ((-2,),)),
+            Cell(3, (RED,), ((-3, -5),)),
+            Cell(4, (BLUE,), ((-4,),)),
+        ),
+        (*(Edge(i, 0, i) for i in range(1, 5)), Edge(5, 1, 3)),
+    )
+    red, blue = color_regions(instance)
+    assert conflicts(instance, red, blue) == []
+
+
+def test_corridors_side_by_side_are_no_conflict() -> None:
+    """They cross one edge together, which paper forbids and the surface does not."""
+    instance = Instance.read(PAPER / "parallel-corridors.json")
+    for first, second in combinations(color_regions(instance), 2):
+        assert conflicts(instance, first, second) == []
+
+
+def test_a_handle_leads_past() -> None:
+    """Petals in turn, but the hub's edge 1 leads from between two of them to a second border."""
+    petals = (RED, BLUE, RED, BLUE)
+    instance = Instance(
+        "handle",
+        ("red", "blue"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2, 3, 4, 5), (-1,))),
+            *(Cell(i, (color,), ((-i - 1,),)) for i, color in enumerate(petals, start=1)),
+        ),
+        (Edge(1, 0, 0), *(Edge(i + 1, 0, i) for i in range(1, 5))),
+    )
+    red, blue = color_regions(instance)
+    assert conflicts(instance, red, blue) == []
+    found = solve(instance, Options())
+    assert (found.segments, found.lower_bound) == (2, 2)
+
+
+def test_a_conflict_is_proved_for_any_division() -> None:
+    """Red from top to bottom and blue from left to right, over two cells of both colors.
+
+    Nothing limits how often the edge between these two is crossed, and one strand is tried.
+    """
+    instance = Instance(
+        "crossing",
+        ("red", "blue"),
+        (
+            Cell(0, (RED,), ((1, 2),)),
+            Cell(1, (RED,), ((3, 4),)),
+            Cell(2, (RED, BLUE), ((-1, 5, -3, 6),)),
+            Cell(3, (RED, BLUE), ((-2, -6, -4, 7),)),
+            Cell(4, (BLUE,), ((-5,),)),
+            Cell(5, (BLUE,), ((-7,),)),
+        ),
+        (
+            Edge(1, 0, 2),
+            Edge(2, 0, 3),
+            Edge(3, 1, 2),
+            Edge(4, 1, 3),
+            Edge(5, 2, 4),
+            Edge(6, 2, 3),
+            Edge(7, 3, 5),
+        ),
+    )
+    assert set_cover(instance).bound == 2
+    found = solve(instance, Options())
+    assert (found.segments, found.surface_lower_bound) == (3, 3)
+    assert found.proved_for_surface
+
+
+@st.composite
+def framed(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
+    """Single-colored pieces of frame around an inside of two or three blocks with islands."""
+    inside = draw(
+        st.lists(
+            st.sampled_from([(RED, BLUE), (RED, GREEN), (RED, BLUE, GREEN)]),
+            min_size=2,
+            max_size=3,
+        )
+    )
+    pieces = draw(st.lists(st.sampled_from([RED, BLUE, GREEN]), min_size=6, max_size=8))
+    rim = [(0, column) for column in range(width)]
+    rim += [(row, width - 1) for row in range(1, height)]
+    rim += [(height - 1, column) for column in reversed(range(width - 1))]
+    rim += [(row, 0) for row in reversed(range(1, height - 1))]
+    labels: dict[tuple[int, int], Sequence[int]] = {
+        place: (pieces[number * len(pieces) // len(rim)],) for number, place in enumerate(rim)
+    }
+    for row in range(1, height - 1):
+        for column in range(1, width - 1):
+            labels[row, column] = inside[(row - 1) * len(inside) // (height - 2)]
+    for row in draw(st.sets(st.integers(2, height - 3), max_size=2)):
+        labels[row, width // 2] = draw(st.sampled_from([(), (RED,), (BLUE,), (GREEN,)]))
+    return surface(
+        grid_points(width, height),
+        grid_faces(width, height),
+        [labels[row, column] for row in range(height) for column in range(width)],
+    )
+
+
+def can_pass(
+    mesh: LabelledSurface, colors: tuple[int, int], one: list[set[int]], other: list[set[int]]
+) -> bool:
+    """Whether two disjoint sets of mesh vertices exist, connected in the one and the other color,
+    that each touch two sets of vertices: every path without shortcuts is tried for the first."""
+    graphs = []
+    for color in colors:
+        graph: nx.Graph[int] = nx.Graph()
+        graph.add_nodes_from(v for v, own in enumerate(mesh.vertex_colors) if color in own)
+        cracked = {(c.i, c.j) for c in mesh.cracks if color in c.colors}
+        graph.add_edges_from(
+            (i, j)
+            for i, j in mesh.left_of
+            if i in graph and j in graph and (min(i, j), max(i, j)) not in cracked
+        )
+        graphs.append(graph)
+    first, second = graphs
+
+    def others_meet(path: list[int]) -> bool:
+        rest = second.subgraph(second.nodes - set(path))
+        return any(
+            not part.isdisjoint(other[0]) and not part.isdisjoint(other[1])
+            for part in nx.connected_components(rest)
+        )
+
+    def extend(path: list[int]) -> bool:
+        if not others_meet(path):
+            return False
+        if path[-1] in one[1]:
+            return True
+        near = set().union(*(first[v] for v in path[:-1])) | set(path)
+        return any(extend([*path, v]) for v in first[path[-1]] if v not in near)
+
+    return any(extend([start]) for start in sorted(one[0]))
+
+
+@settings(max_examples=60, deadline=None)
+@given(mesh=framed(5, 7))
+def test_what_is_in_conflict_cannot_pass_on_the_mesh(mesh: LabelledSurface) -> None:
+    """Against trying all paths over mesh vertices, without cells, edges or merging."""
+    instance = decompose(mesh, "mesh")
+    assert instance.surface is not None
+    cell_of = instance.surface.vertex_cell
+    for first, second in combinations(color_regions(instance), 2):
+        for found in conflicts(instance, first, second):
+            one, other = (
+                [{v for v, c in enumerate(cell_of) if c in area} for area in pair]
+                for pair in (found.one, found.other)
+            )
+            assert not can_pass(mesh, (first[0], second[0]), one, other)
+
+
+@settings(max_examples=60, deadline=None)
+@given(mesh=framed(5, 7))
+def test_the_surface_bound_holds_where_segments_are_in_conflict(mesh: LabelledSurface) -> None:
+    """Against a sweep over vertex colorings, which knows no cells."""
+    found = solve(decompose(mesh), Options())
+    assert found.surface_lower_bound <= vertex_minimum(mesh)

@@ -1,0 +1,112 @@
+"""All optimal schemes by CP-SAT: the thread, its end, and lone cells."""
+
+from __future__ import annotations
+
+import time
+from queue import SimpleQueue
+
+import pytest
+from dart_graphs import graph_of
+
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.solution import scheme_key
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.errors import TooLarge
+from cellcolor.lab.families import hub
+from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.cpsat.schemes import enumeration
+from cellcolor.solvers.interface import Options
+
+RED, BLUE = 0, 1
+
+
+@pytest.mark.parametrize(("edges", "catalan"), [(1, 1), (2, 2), (3, 5), (4, 14), (5, 42), (6, 132)])
+def test_divisions_of_a_lone_cell(edges: int, catalan: int) -> None:
+    """Colors ignored there are Catalan(n) + n: the paper's eight for three edges.
+
+    Three colors are enough for all of them; the petals can be painted in any, so that a state is
+    never forced. Every number of segments is asked for, not just the fewest.
+    """
+    every = (0, 1, 2)
+    instance = Instance(
+        "lone",
+        ("red", "blue", "green"),
+        (
+            Cell(0, every, (tuple(range(1, edges + 1)),)),
+            *(Cell(i, every, ((-i,),)) for i in range(1, edges + 1)),
+        ),
+        tuple(Edge(i, 0, i) for i in range(1, edges + 1)),
+    )
+    divisions = {
+        frozenset(frozenset(sub.darts) for sub in division[0].subcells)
+        for segments in range(1, edges + 2)
+        for division in CpSatSolver().optimal_schemes(instance, Options(), segments)
+    }
+    assert len(divisions) == catalan + edges
+
+
+def test_enumeration_gives_nothing_after_its_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What waits to be taken when the time is over stays there: taking it needs time as well."""
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(deadline=Deadline.after(1e6)), 40)
+    next(found)
+    monkeypatch.setattr(Deadline, "over", property(lambda _: True))
+    with pytest.raises(OutOfTime):
+        next(found)
+
+
+def test_enumeration_stops_when_its_time_is_over() -> None:
+    # Forty cells of two free colors each have 2**40 optimal schemes.
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(deadline=Deadline.after(0.5)), 40)
+    with pytest.raises(OutOfTime):
+        for _ in found:
+            pass
+
+
+def test_enumeration_waits_for_who_takes_the_schemes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No more than a few schemes wait in memory, however slowly they are taken."""
+    monkeypatch.setattr(enumeration, "_AHEAD", 3)
+    put: list[object] = []
+
+    class Watched(SimpleQueue[object]):
+        def put(self, item: object, block: bool = True, timeout: float | None = None) -> None:
+            put.append(item)
+            super().put(item, block, timeout)
+
+    monkeypatch.setattr(enumeration, "SimpleQueue", Watched)
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(), 40)
+    for taken in range(1, 6):
+        next(found)
+        time.sleep(0.05)  # the search could fill the memory meanwhile
+        assert len(put) <= taken + 3
+
+
+def test_a_model_of_schemes_that_is_too_large_is_not_built(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """What is counted beforehand is about what there would be."""
+    instance = hub(0, 60, 3)
+    graph = graph_of(instance)
+    model = enumeration._SchemeModel(graph, 20, NEVER).model
+    literals = sum(
+        len(constraint.bool_or.literals) + len(constraint.at_most_one.literals)
+        for constraint in model.proto.constraints
+    )
+    monkeypatch.setattr(enumeration, "_MOST_LITERALS", 1.5 * literals)
+    enumeration._check_size(graph, NEVER)
+    monkeypatch.setattr(enumeration, "_MOST_LITERALS", 0.7 * literals)
+    with pytest.raises(TooLarge, match="one cell has 60 darts"):
+        next(CpSatSolver().optimal_schemes(instance, Options(), 20))
+
+
+def test_enumeration_can_be_left_early() -> None:
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    found = CpSatSolver().optimal_schemes(instance, Options(), 40)
+    assert len({scheme_key(next(found)) for _ in range(5)}) == 5
+    found.close()  # type: ignore[attr-defined]

@@ -1,0 +1,151 @@
+"""Routes: whatever is routed is a legal division."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from exhaustive_minima import minimum
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import INSTANCES, PAPER
+from petals import hub
+
+from cellcolor.checker.division import check_division
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.solvers.bounds.cover import set_cover
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
+from cellcolor.solvers.cpsat.model.painting import division_of
+from cellcolor.solvers.cpsat.routes.routing import route
+from cellcolor.solvers.cpsat.routes.sectors import refined
+from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, SegmentPlan
+from cellcolor.solvers.interface import Options
+
+RED, BLUE, GREEN = 0, 1, 2
+
+SEEDS = st.integers(0, 10**6)
+
+
+def whole_cover(instance: Instance) -> SegmentPlan:
+    return tuple(PlannedSegment(region, region[1]) for region in set_cover(instance).regions)
+
+
+def graph_of(instance: Instance) -> DartGraph:
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    once = {edge.id: 1 for edge in instance.edges}
+    return dart_graph(instance, colors, once, seams_of(instance, colors, once, 2))
+
+
+def segments_of(instance: Instance, plan: SegmentPlan, rings: int, rounds: int = 40) -> int:
+    graph = graph_of(instance)
+    painting = route(refined(graph, rings), plan, rounds, 0)
+    report = check_division(instance, division_of(graph, painting), seams=graph.seams)
+    assert report.valid, report.problems
+    return report.segments
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    seed=SEEDS,
+    cells=st.integers(1, 9),
+    colors=st.integers(1, 4),
+    rings=st.integers(0, 3),
+    rounds=st.integers(0, 12),
+)
+def test_whatever_is_routed_is_legal(
+    seed: int, cells: int, colors: int, rings: int, rounds: int
+) -> None:
+    """Also when the rounds end before the nets have found their places."""
+    instance = planar_graph(seed, cells, cells + 4, colors)
+    plan = whole_cover(instance)
+    assert segments_of(instance, plan, rings, rounds) >= len(plan)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_holes_and_cracks_are_routed_around(seed: int) -> None:
+    instance = decompose(blobs(seed, size=14, colors=4, cracks=3, holes=2, islands=2))
+    segments_of(instance, whole_cover(instance), 1)
+
+
+def test_chords_side_by_side_need_rings() -> None:
+    """Four pairs of petals, two of which are not neighbors: only one fits through the center."""
+    instance = hub(0, 1, 2, 3, 3, 2, 1, 0)
+    assert minimum(instance) == 4
+    assert segments_of(instance, whole_cover(instance), 1) == 5
+    assert segments_of(instance, whole_cover(instance), 2) == 4
+
+
+def test_a_crack_is_routed_around() -> None:
+    """Blue cannot go from cell 1 to cell 2 directly; in cell 4 there is room beside red."""
+    instance = Instance(
+        "crack",
+        ("red", "blue"),
+        (
+            Cell(0, (BLUE,), ((1,),)),
+            Cell(1, (RED, BLUE), ((-1, 2, 3),)),
+            Cell(2, (RED, BLUE), ((-2, 4, 5),)),
+            Cell(3, (BLUE,), ((-5,),)),
+            Cell(4, (RED, BLUE), ((-3, 6, -4),)),
+            Cell(5, (RED,), ((-6,),)),
+        ),
+        (
+            Edge(1, 0, 1),
+            Edge(2, 1, 2, (RED,)),
+            Edge(3, 1, 4),
+            Edge(4, 2, 4),
+            Edge(5, 2, 3),
+            Edge(6, 4, 5),
+        ),
+    )
+    assert segments_of(instance, whole_cover(instance), 1) == 2
+
+
+def test_what_no_route_touches_is_connected_next() -> None:
+    """Cell 0, of red and blue, lies behind cells that green and gray flood at first."""
+    gray = 3
+    instance = Instance(
+        "behind",
+        ("red", "blue", "green", "gray"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2),)),
+            Cell(1, (RED, GREEN), ((3, -1, 4, 5),)),
+            Cell(2, (BLUE, gray), ((6, -2, 7, 8),)),
+            *(Cell(i, (c,), ((-i,),)) for i, c in ((3, RED), (4, GREEN), (5, GREEN))),
+            *(Cell(i, (c,), ((-i,),)) for i, c in ((6, BLUE), (7, gray), (8, gray))),
+        ),
+        (
+            Edge(1, 0, 1),
+            Edge(2, 0, 2),
+            *(Edge(i, 1, i) for i in (3, 4, 5)),
+            *(Edge(i, 2, i) for i in (6, 7, 8)),
+        ),
+    )
+    assert segments_of(instance, whole_cover(instance), 1, rounds=1) == 5
+    assert segments_of(instance, whole_cover(instance), 1) == 4
+
+
+def test_the_cell_that_must_be_split_is_routed() -> None:
+    instance = Instance.read(PAPER / "split-cell.json")
+    assert segments_of(instance, whole_cover(instance), 1) == 2
+
+
+@pytest.mark.parametrize("rings", [0, 1])
+@pytest.mark.parametrize("name", ["hemisphere_tilted", "half_pipe", "wok", "wok_obstacle"])
+def test_robot_scenes_are_routed_to_their_cover(name: str, rings: int) -> None:
+    """Which is the minimum, since no division has fewer segments than a smallest cover."""
+    instance = Instance.read(INSTANCES / "scenes" / f"{name}.json")
+    plan = whole_cover(instance)
+    assert segments_of(instance, plan, rings) == len(plan)
+
+
+@pytest.mark.parametrize("file", sorted((INSTANCES / "scenes" / "feasibility").glob("*.json")))
+def test_raw_scenes_need_no_cutting_paths(file: Path) -> None:
+    """Cells are divided only where whole ones do not do."""
+    instance = decompose(LabelledSurface.read(file))
+    found = solve(instance, Options(fewest_cuts=True))
+    assert found.segments == set_cover(instance).bound
+    assert (found.cutting_paths, found.cutting_paths_lower_bound) == (0, 0)

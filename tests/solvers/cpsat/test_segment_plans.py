@@ -1,0 +1,78 @@
+"""Segment plans heed conflicts, and every division is one."""
+
+from __future__ import annotations
+
+import pytest
+from exhaustive_minima import minimum
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ortools.sat.python import cp_model
+from petals import hub
+
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import NEVER
+from cellcolor.lab.families import planar_graph
+from cellcolor.solvers.bounds.cover import color_regions, set_cover
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan
+from cellcolor.solvers.interface import Options
+
+RED, BLUE, GREEN = 0, 1, 2
+
+SEEDS = st.integers(0, 10**6)
+
+
+def planner_of(instance: Instance) -> Planner:
+    def run(
+        model: cp_model.CpModel, seed: int
+    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+        solver = cp_model.CpSolver()
+        solver.parameters.num_workers = 1
+        solver.parameters.random_seed = seed
+        return solver, solver.solve(model)
+
+    return Planner(instance, color_regions(instance), set_cover(instance).bound, run, NEVER)
+
+
+def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
+    """The fewest segments for which there is a plan without conflicts."""
+    planner = planner_of(instance)
+    segments = set_cover(instance).bound
+    while True:
+        plan = planner.plan(segments, 0)
+        if plan is None:
+            segments += 1
+        elif not planner.find_partings(plan):
+            return segments, plan
+
+
+@pytest.mark.parametrize(
+    ("petals", "segments"),
+    [
+        ((RED, RED, BLUE), 2),
+        ((RED, BLUE, RED, BLUE), 3),
+        # Both red or both blue petals meet in the hub, and the green one is alone.
+        ((RED, BLUE, GREEN, RED, BLUE), 4),
+        # Three of one color meet, the others are three segments.
+        ((RED, BLUE, RED, BLUE, RED, BLUE), 4),
+    ],
+)
+def test_plans_heed_conflicts(petals: tuple[int, ...], segments: int) -> None:
+    fewest, plan = fewest_planned(hub(*petals))
+    assert len(plan) == fewest == segments == minimum(hub(*petals))
+    assert set().union(*(s.cells for s in plan)) == set(range(len(petals) + 1))
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 3))
+def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors: int) -> None:
+    """Against brute force, which paints with one strand, and the DFS with two."""
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    fewest, plan = fewest_planned(instance)
+    assert set_cover(instance).bound <= fewest <= minimum(instance)
+    wide = solve(instance, Options(search_space="surface", strands=2), "dfs")
+    assert wide.segments is not None
+    assert fewest <= wide.segments
+    for cell in instance.cells:
+        assert sum(cell.id in segment.cells for segment in plan) == 1
+    assert all(segment.cells <= segment.region[1] for segment in plan)

@@ -1,0 +1,153 @@
+"""The CP-SAT solver: known minima, search spaces, starts, odd instances, progress."""
+
+from __future__ import annotations
+
+import pytest
+from dart_graphs import graph_of
+from exhaustive_minima import optimal_schemes
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import PAPER
+from ortools.sat.python import cp_model
+
+from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.solution import scheme_key
+from cellcolor.deadline import Deadline
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families import blobs, hub, hub_minimum, planar_graph
+from cellcolor.solvers.bounds.cover import color_regions, strangers
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.cpsat import CpSatSolver
+from cellcolor.solvers.cpsat.model.full import add_hint, full_model
+from cellcolor.solvers.cpsat.model.painting import painting_of
+from cellcolor.solvers.interface import Options, Start
+
+RED, BLUE = 0, 1
+
+SEEDS = st.integers(0, 10**6)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=SEEDS, petal_count=st.integers(2, 14), colors=st.integers(2, 5))
+def test_hubs_have_their_known_minimum(seed: int, petal_count: int, colors: int) -> None:
+    if colors == 2 and petal_count % 2:
+        petal_count += 1  # two colors can alternate around an even ring only
+    instance = hub(seed, petal_count, colors)
+    ring = [cell.colors[0] for cell in instance.cells[1:]]
+    assert solve(instance, Options()).segments == hub_minimum(ring)
+
+
+@pytest.mark.parametrize(
+    ("name", "paper", "surface"),
+    [("parallel-corridors", 3, 2), ("parallel-corridors-private", 4, 3)],
+)
+def test_surface_may_beat_paper(name: str, paper: int, surface: int) -> None:
+    instance = Instance.read(PAPER / f"{name}.json")
+    found = solve(instance, Options())
+    assert (found.status, found.segments) == ("optimal", paper)
+    assert not found.proved_for_surface
+    found = solve(instance, Options(search_space="surface", strands=2))
+    assert (found.status, found.segments, found.proved_for_surface) == ("optimal", surface, True)
+
+
+def test_three_loops_need_more_strands_than_two_at_a_time_would_get() -> None:
+    instance = Instance.read(PAPER / "three-loops.json")
+    found = solve(instance, Options())
+    assert (found.status, found.segments) == ("optimal", 4)
+
+
+def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
+    # With one strand the corridors' two segments are not found, and two could cross edge 2.
+    instance = Instance.read(PAPER / "parallel-corridors.json")
+    found = solve(instance, Options(search_space="surface", strands=1))
+    assert (found.segments, found.surface_lower_bound, found.status) == (3, 2, "feasible")
+    assert not found.proved_for_surface
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
+def test_fewest_cutting_paths(seed: int, cells: int, colors: int) -> None:
+    """Against all optimal schemes: a division with the fewest sub-cells is a scheme."""
+    instance = planar_graph(seed, cells, cells + 4, colors)
+    found = solve(instance, Options(fewest_cuts=True))
+    _, schemes = optimal_schemes(instance)
+    fewest = min(sum(len(subcells) - 1 for subcells in scheme) for scheme in schemes)
+    assert found.cutting_paths == found.cutting_paths_lower_bound == fewest
+
+
+def test_fewest_cutting_paths_of_the_cell_that_must_be_split() -> None:
+    instance = Instance.read(PAPER / "split-cell.json")
+    found = solve(instance, Options(fewest_cuts=True))
+    assert (found.segments, found.cutting_paths, found.cutting_paths_lower_bound) == (2, 1, 1)
+
+
+def test_a_start_is_kept_when_there_is_no_time() -> None:
+    instance = decompose(blobs(3))
+    good = solve(instance, Options())
+    assert good.cells is not None
+    start = Start(good.cells, good.seams)
+    found = solve(instance, Options(deadline=Deadline.after(0.0), start=start))
+    assert found.segments == good.segments
+
+
+def test_a_start_helps_the_model() -> None:
+    """Its hint is complete: the model's first solution is the division that was handed in."""
+    for seed in range(10):
+        instance = planar_graph(seed, 6, 10, 3)
+        best = solve(instance, Options())
+        assert best.cells is not None
+        graph = graph_of(instance)
+        built = full_model(graph, color_regions(instance))
+        add_hint(built, graph, painting_of(graph, best.cells))
+        solver = cp_model.CpSolver()
+        solver.parameters.num_workers = 1
+        solver.parameters.stop_after_first_solution = True
+        solver.parameters.fix_variables_to_their_hinted_value = True
+        assert solver.solve(built.model) in (cp_model.OPTIMAL, cp_model.FEASIBLE)
+        assert round(solver.objective_value) == best.segments
+
+
+def test_without_any_time_there_is_a_division_all_the_same() -> None:
+    """Every cell painted whole; and a bound that takes no search."""
+    instance = decompose(blobs(3))
+    found = solve(instance, Options(deadline=Deadline.after(0.0)))
+    assert found.status == "feasible" and [bound.kind for bound in found.bounds] == ["strangers"]
+    assert found.segments is not None and found.segments <= len(instance.cells)
+    assert 1 <= found.surface_lower_bound <= len(strangers(instance)) < found.segments
+
+
+@pytest.mark.parametrize("instance", [Instance("empty", (), (), ()), Instance("e", ("r",), (), ())])
+def test_empty_instance(instance: Instance) -> None:
+    found = solve(instance, Options())
+    assert (found.status, found.segments, found.lift_offs, found.cells) == ("optimal", 0, 0, ())
+    assert list(CpSatSolver().optimal_schemes(instance, Options(), 0)) == [()]
+
+
+def test_a_closed_surface_of_one_cell() -> None:
+    instance = Instance("sphere", ("red", "blue"), (Cell(0, (RED, BLUE), ()),), ())
+    assert solve(instance, Options()).segments == 1
+    # It may be painted in either color.
+    schemes = list(CpSatSolver().optimal_schemes(instance, Options(), 1))
+    assert {scheme_key(s) for s in schemes} == {
+        (frozenset({(color, frozenset())}),) for color in (RED, BLUE)
+    }
+
+
+def test_progress_reports_the_best_and_the_bound() -> None:
+    seen: list[tuple[int | None, int]] = []
+    instance = Instance.read(PAPER / "split-cell.json")
+    CpSatSolver().minimize(instance, Options(), lambda best, bound: seen.append((best, bound)))
+    # A division is there from the beginning: every cell painted whole.
+    assert all(found is not None and bound <= 2 <= found for found, bound in seen)
+    assert seen[-1] == (2, 2)
+
+
+def test_progress_comes_closer_and_never_passes_the_minimum() -> None:
+    seen: list[tuple[int | None, int]] = []
+    instance = hub(3, 12, 3)
+    minimum = hub_minimum([cell.colors[0] for cell in instance.cells[1:]])
+    CpSatSolver().minimize(instance, Options(), lambda best, bound: seen.append((best, bound)))
+    assert seen[-1] == (minimum, minimum)
+    assert all(bound <= minimum for _, bound in seen)
+    best = [found for found, _ in seen if found is not None]
+    assert best == sorted(best, reverse=True) and best[-1] == minimum

@@ -1,0 +1,13 @@
+"""Dart graphs of whole instances, as the CP-SAT solver's tests look at them."""
+
+from __future__ import annotations
+
+from cellcolor.data.instance import Instance
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
+
+
+def graph_of(instance: Instance, strands: int = 1) -> DartGraph:
+    """With seams as wide as they can have to be."""
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    counts = {edge.id: strands for edge in instance.edges}
+    return dart_graph(instance, colors, counts, seams_of(instance, colors, counts, None))

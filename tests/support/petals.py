@@ -1,0 +1,19 @@
+"""Hubs with petals: a cell of all colors, and cells of one color all round it."""
+
+from __future__ import annotations
+
+from cellcolor.data.instance import Cell, Edge, Instance
+
+
+def hub(*petals: int) -> Instance:
+    """A cell of all colors, two at least, with petals in these colors."""
+    colors = tuple(range(max(1, *petals) + 1))
+    return Instance(
+        "hub",
+        tuple(f"color {c}" for c in colors),
+        (
+            Cell(0, colors, (tuple(range(1, len(petals) + 1)),)),
+            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(petals, start=1)),
+        ),
+        tuple(Edge(i, 0, i) for i in range(1, len(petals) + 1)),
+    )
