@@ -10,9 +10,7 @@ The figures of docs/experiments.md were made with this.
 
 from __future__ import annotations
 
-import re
 import sys
-import tempfile
 from collections import Counter
 from pathlib import Path
 
@@ -21,38 +19,27 @@ import numpy as np
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.scene import load_scene
+from cellcolor.frontend.scene import Scene
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
 TOP = Path(__file__).parents[1]
-SCENES, ROBOTS = TOP / "instances" / "scenes", TOP / "models" / "robots"
+SCENES = TOP / "instances" / "scenes"
 NAMES = ("hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square")
 SHIFT_M, TURN_RAD = 0.005, np.deg2rad(2.0)
 
 
-def build(name: str, vertices: int, seed: int, raw: bool, folder: Path) -> BuildResult:
+def build(name: str, vertices: int, seed: int, raw: bool) -> BuildResult:
     """A variant of a shipped scene; seed 0 leaves it where it is."""
-    file = SCENES / f"{name}.toml"
-    place = load_scene(file).placement
-    random = np.random.default_rng(seed)
-    shift = random.uniform(-SHIFT_M, SHIFT_M, 3) if seed else np.zeros(3)
-    turn = random.uniform(-TURN_RAD, TURN_RAD, 3) if seed else np.zeros(3)
-    setup = (ROBOTS / "ur5_polishing.toml").read_text()
-    for urdf in ("ur5.urdf", "polishing_tool.urdf"):
-        setup = setup.replace(f'"{urdf}"', f'"{(ROBOTS / urdf).as_posix()}"')
-    (folder / "setup.toml").write_text(setup[: setup.index("[slivers]")] if raw else setup)
-    text = file.read_text()
-    head, rest = text.split("[placement]")
-    for key, value in (
-        ("position_m", (np.array(place.position_m) + shift).tolist()),
-        ("rpy_rad", (np.array(place.rpy_rad) + turn).tolist()),
-    ):
-        rest = re.sub(rf"^{key} = .*$", f"{key} = {value}", rest, count=1, flags=re.MULTILINE)
-    head = re.sub(r"^setup = .*$", 'setup = "setup.toml"', head, flags=re.MULTILINE)
-    head = re.sub(r"target_vertices = \d+", f"target_vertices = {vertices}", head)
-    (folder / "scene.toml").write_text(f"{head}[placement]{rest}")
-    return build_surface(folder / "scene.toml")
+    scene = Scene.read(SCENES / f"{name}.toml").varied(object={"target_vertices": vertices})
+    if seed:
+        random = np.random.default_rng(seed)
+        shift, turn = random.uniform(-SHIFT_M, SHIFT_M, 3), random.uniform(-TURN_RAD, TURN_RAD, 3)
+        place = scene.placement
+        scene = scene.moved(position_m=place.position_m + shift, rpy_rad=place.rpy_rad + turn)
+    if raw:
+        scene = scene.with_setup(scene.setup.varied(slivers=None))
+    return build_surface(scene)
 
 
 def lift_offs(result: BuildResult) -> tuple[str, int]:
@@ -79,33 +66,29 @@ def main(arguments: list[str]) -> None:
     names = [argument for argument in arguments if argument in NAMES] or NAMES
     left_out = {"--policy-only": True, "--raw-only": False}
     policies = [raw for raw in (True, False) if raw not in {left_out[key] for key in options}]
-    with tempfile.TemporaryDirectory() as place:
-        for name in names:
-            for raw in policies:
-                label = f"{name} {numbers[0]} {'raw' if raw else 'policy'}:"
-                if len(numbers) == 1:
-                    result = build(name, numbers[0], 0, raw, Path(place))
-                    minimum, cells = lift_offs(result)
-                    reach, lost = shares(result)
-                    print(
-                        f"{label} {minimum} lift-offs, {cells} cells, {result.report.cracks}"
-                        f" cracks, {reach:.1f} % reachable, {lost:.2f} % given up,"
-                        f" {sum(result.report.seconds.values()):.2f} s",
-                        flush=True,
-                    )
-                    continue
-                results = [
-                    build(name, numbers[0], seed, raw, Path(place))
-                    for seed in range(1, numbers[1] + 1)
-                ]
-                minima = Counter(lift_offs(result)[0] for result in results)
-                reach, lost = zip(*map(shares, results), strict=True)
+    for name in names:
+        for raw in policies:
+            label = f"{name} {numbers[0]} {'raw' if raw else 'policy'}:"
+            if len(numbers) == 1:
+                result = build(name, numbers[0], 0, raw)
+                minimum, cells = lift_offs(result)
+                reach, lost = shares(result)
                 print(
-                    f"{label} {dict(sorted(minima.items()))},"
-                    f" {min(reach):.1f} to {max(reach):.1f} % reachable,"
-                    f" at most {max(lost):.2f} % given up",
+                    f"{label} {minimum} lift-offs, {cells} cells, {result.report.cracks}"
+                    f" cracks, {reach:.1f} % reachable, {lost:.2f} % given up,"
+                    f" {sum(result.report.seconds.values()):.2f} s",
                     flush=True,
                 )
+                continue
+            results = [build(name, numbers[0], seed, raw) for seed in range(1, numbers[1] + 1)]
+            minima = Counter(lift_offs(result)[0] for result in results)
+            reach, lost = zip(*map(shares, results), strict=True)
+            print(
+                f"{label} {dict(sorted(minima.items()))},"
+                f" {min(reach):.1f} to {max(reach):.1f} % reachable,"
+                f" at most {max(lost):.2f} % given up",
+                flush=True,
+            )
 
 
 if __name__ == "__main__":

@@ -10,9 +10,7 @@ candidates; verdicts are compared. Build times are the best of three runs.
 
 from __future__ import annotations
 
-import re
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -21,9 +19,9 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend import Reason, Scene, build_surface
 from cellcolor.frontend.contact.collision import body_shape
-from cellcolor.frontend.stage import Stage, prepare
+from cellcolor.frontend.prepared import PreparedScene, prepare
 
 TOP = Path(__file__).parents[1]
 
@@ -31,11 +29,11 @@ TOP = Path(__file__).parents[1]
 class Loop:
     """The tests once more, one configuration at a time."""
 
-    def __init__(self, stage: Stage) -> None:
-        robot, surface = stage.robot, stage.surface
-        self.stage, self.model, self.data = stage, robot.model, robot.model.createData()
-        self.tip = self.model.getFrameId(stage.setup.robot.tip_link)
-        self.gravity = np.array(stage.setup.task.gravity_m_per_s2)
+    def __init__(self, prepared: PreparedScene) -> None:
+        robot, surface = prepared.robot, prepared.surface
+        self.prepared, self.model, self.data = prepared, robot.model, robot.model.createData()
+        self.tip = self.model.getFrameId(prepared.setup.robot.tip_link)
+        self.gravity = np.array(prepared.setup.task.gravity_m_per_s2)
         self.shapes = [fcl.CollisionObject(body_shape(body)) for body in robot.bodies]
         self.local = []
         for body in robot.bodies:
@@ -50,14 +48,14 @@ class Loop:
         mesh.endModel()
         self.object = fcl.CollisionObject(mesh)
         self.obstacles = []
-        for obstacle in stage.scene.obstacle:
+        for obstacle in prepared.scene.obstacle:
             assert obstacle.kind == "cylinder" and obstacle.rpy_rad == (0.0, 0.0, 0.0)
             shape = fcl.Cylinder(obstacle.radius_m, obstacle.height_m)
             at = fcl.Transform(np.array(obstacle.position_m))
             self.obstacles.append(fcl.CollisionObject(shape, at))
         self.request = fcl.CollisionRequest()
         # The shipped tool's body ends 10 mm above the tip, on the axis.
-        radius, length = stage.setup.task.contact_radius_m, 0.01
+        radius, length = prepared.setup.task.contact_radius_m, 0.01
         self.region = fcl.CollisionObject(fcl.Capsule(radius, length))
         self.in_region = pin.SE3(np.eye(3), np.array([0.0, 0.0, -length / 2]))
 
@@ -65,7 +63,7 @@ class Loop:
         return bool(fcl.collide(a, b, self.request, fcl.CollisionResult()))
 
     def tip_blocked(self, pose: pin.SE3) -> bool:
-        region, ground = self.stage.setup.task.contact_radius_m, self.stage.scene.ground
+        region, ground = self.prepared.setup.task.contact_radius_m, self.prepared.scene.ground
         if ground is not None:
             behind = pose.act(2 * self.in_region.translation)
             if min(pose.translation[2], behind[2]) - region < ground.height_m:
@@ -75,8 +73,8 @@ class Loop:
         return any(self.touch(obstacle, self.region) for obstacle in self.obstacles)
 
     def __call__(self, q: Array) -> Reason:
-        stage, robot = self.stage, self.stage.robot
-        thresholds, task = stage.setup.thresholds, stage.setup.task
+        prepared, robot = self.prepared, self.prepared.robot
+        thresholds, task = prepared.setup.thresholds, prepared.setup.task
         if (q < robot.lower).any() or (q > robot.upper).any():
             return Reason.JOINT_LIMITS
         pose = pin.framesForwardKinematics(self.model, self.data, q) or self.data.oMf[self.tip]
@@ -96,15 +94,15 @@ class Loop:
         pin.forwardKinematics(self.model, self.data, q)
         poses = [self.data.oMi[body.joint] * at
                  for body, at in zip(robot.bodies, self.local, strict=True)]  # fmt: skip
-        if stage.scene.ground is not None:
+        if prepared.scene.ground is not None:
             for body, pose in zip(robot.bodies, poses, strict=True):
-                if body.link in stage.setup.robot.may_touch_ground:
+                if body.link in prepared.setup.robot.may_touch_ground:
                     continue
                 up = abs(pose.rotation[2, 2])
                 around = body.radius * (np.sqrt(max(1 - up**2, 0)) if body.flat else 1)
                 if (
                     pose.translation[2] - up * body.length / 2 - around
-                    < stage.scene.ground.height_m
+                    < prepared.scene.ground.height_m
                 ):
                     return Reason.GROUND
         for shape, pose in zip(self.shapes, poses, strict=True):
@@ -122,18 +120,13 @@ class Loop:
 
 def main(scene: Path, vertices: int, sample: int) -> None:
     """Print the figures."""
-    text = re.sub(r"target_vertices = \d+", f"target_vertices = {vertices}", scene.read_text())
-    setup = (scene.parent / re.search(r'setup = "(.*)"', text)[1]).resolve()  # type: ignore[index]
-    text = re.sub(r'setup = ".*"', f'setup = "{setup.as_posix()}"', text)
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "scene.toml"
-        file.write_text(text)
-        runs = []
-        for _ in range(3):
-            started = time.perf_counter()
-            result = build_surface(file)
-            runs.append((time.perf_counter() - started, result))
-        stage = prepare(file)
+    varied = Scene.read(scene).varied(object={"target_vertices": vertices})
+    runs = []
+    for _ in range(3):
+        started = time.perf_counter()
+        result = build_surface(varied)
+        runs.append((time.perf_counter() - started, result))
+    prepared = prepare(varied)
     total, result = min(runs, key=lambda run: run[0])
     candidates = result.reasons.size
     print(f"{scene.stem}: {len(result.reasons)} vertices, {candidates} candidates, {total:.2f} s")
@@ -143,7 +136,7 @@ def main(scene: Path, vertices: int, sample: int) -> None:
              "colors and cracks")  # fmt: skip
     tests = sum(s for name, s in result.report.seconds.items() if name not in later)
 
-    loop = Loop(stage)
+    loop = Loop(prepared)
     rows = np.random.default_rng(0).choice(candidates, min(sample, candidates), replace=False)
     joints, expected = result.configurations.reshape(-1, 6)[rows], result.reasons.flat[rows]
     solved = expected != Reason.NO_SOLUTION

@@ -20,9 +20,7 @@ climb prints its best. The figures of docs/experiments.md were made with this.
 
 from __future__ import annotations
 
-import re
 import sys
-import tempfile
 from pathlib import Path
 
 import numpy as np
@@ -32,9 +30,10 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES
+from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.validity import Reason
-from cellcolor.frontend.stage import Stage, prepare
-from cellcolor.frontend.target.surface import rotation_from_rpy
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.target.placement import rotation_from_rpy
 
 TOP = Path(__file__).parents[1]
 SCENES, ROBOTS = TOP / "instances" / "scenes", TOP / "models" / "robots"
@@ -78,13 +77,13 @@ def heights(robot: Robot, configurations: Array) -> Array:
     return above
 
 
-def judged(stage: Stage) -> tuple[Mask, Array]:
+def judged(prepared: PreparedScene) -> tuple[Mask, Array]:
     """Validity (n, 8) and heights (n, 8) of all candidates, NaN without a solution."""
-    solutions = stage.inverse(stage.surface.vertices, -stage.surface.normals)
-    verdicts = stage.judge(solutions.reshape(-1, 6))
+    solutions = prepared.inverse(prepared.surface.vertices, -prepared.surface.normals)
+    verdicts = prepared.judge(solutions.reshape(-1, 6))
     above = np.full(verdicts.reasons.shape, np.nan)
     solved = ~np.isnan(verdicts.configurations[:, 0])
-    above[solved] = heights(stage.robot, verdicts.configurations[solved])
+    above[solved] = heights(prepared.robot, verdicts.configurations[solved])
     return (verdicts.reasons == Reason.VALID).reshape(-1, 8), above.reshape(-1, 8)
 
 
@@ -108,8 +107,8 @@ def count(name: str) -> None:
     )
 
 
-def write(values: dict[str, float], folder: Path, stout: bool = False, motor: bool = False) -> Path:
-    """The wok with such a placement, and its setup, arm and tool."""
+def variant(values: dict[str, float], stout: bool = False, motor: bool = False) -> Scene:
+    """The wok with such a placement, arm and tool."""
     radius = float(values["rim_radius"] / np.sin(values["half_angle"]))
     height = float(values["rim"] - radius * np.cos(values["half_angle"]))
     turn = (values["aside"], values["away"], 0.0)
@@ -117,64 +116,60 @@ def write(values: dict[str, float], folder: Path, stout: bool = False, motor: bo
     circle = [values["rim_radius"] * np.cos(rim), values["rim_radius"] * np.sin(rim)]
     edge = np.stack([*circle, np.full(90, values["rim"] - height)]).T @ rotation_from_rpy(*turn).T
     ground = min(0.0, float(edge[:, 2].min()) + height - values["gap"])
-    tool = (ROBOTS / "polishing_tool.urdf").read_text()
+    wok = Scene.read(SCENES / "wok.toml")
+    setup = wok.setup.varied(
+        robot={"arm_urdf": arm(stout), "tool_urdf": tool(values, motor)},
+        thresholds={
+            "min_manipulability_m3": values.get("manipulability", 0.01),
+            "min_task_determinant_m3": values.get("determinant", 0.001),
+        },
+    )
+    return wok.varied(
+        setup=setup,
+        object={
+            "radius_m": radius,
+            "half_angle_rad": values["half_angle"],
+            "target_vertices": 271,
+        },
+        placement={"position_m": (values["distance"], 0.0, height), "rpy_rad": turn},
+        ground={"height_m": ground},
+    )
+
+
+def tool(values: dict[str, float], motor: bool) -> str:
+    """The shipped tool's URDF with another length and radius, or with a motor beside it."""
+    text = (ROBOTS / "polishing_tool.urdf").read_text()
     body = values.get("length", 0.1) - 0.01
-    tool = tool.replace('<origin xyz="0 0 0.1"/>', f'<origin xyz="0 0 {body + 0.01}"/>')
-    tool = tool.replace('xyz="0 0 0.045"', f'xyz="0 0 {body / 2}"')
-    tool = tool.replace(
+    text = text.replace('<origin xyz="0 0 0.1"/>', f'<origin xyz="0 0 {body + 0.01}"/>')
+    text = text.replace('xyz="0 0 0.045"', f'xyz="0 0 {body / 2}"')
+    text = text.replace(
         'radius="0.02" length="0.09"', f'radius="{values.get("radius", 0.02)}" length="{body}"'
     )
-    if motor:
-        tool = tool.replace("</link>", f"{MOTOR}</link>", 1)
-    (folder / "tool.urdf").write_text(tool)
-    arm = (ROBOTS / "ur5.urdf").read_text()
+    return text.replace("</link>", f"{MOTOR}</link>", 1) if motor else text
+
+
+def arm(stout: bool) -> str:
+    """The shipped arm's URDF, with capsules of 50 mm on forearm and wrist 2 if it is stout."""
+    text = (ROBOTS / "ur5.urdf").read_text()
     for link, radius_now in {"forearm_link": "0.045", "wrist_2_link": "0.043"}.items():
-        head, name, rest = arm.partition(f'<link name="{link}">')
+        head, name, rest = text.partition(f'<link name="{link}">')
         body_text, end, tail = rest.partition("</link>")
         if stout:
             body_text = body_text.replace(f'radius="{radius_now}"', 'radius="0.05"')
-        arm = head + name + body_text + end + tail
-    (folder / "arm.urdf").write_text(arm)
-    changes = {
-        "arm_urdf": '"arm.urdf"',
-        "tool_urdf": '"tool.urdf"',
-        "min_manipulability_m3": values.get("manipulability", 0.01),
-        "min_task_determinant_m3": values.get("determinant", 0.001),
-    }
-    setup = (ROBOTS / "ur5_polishing.toml").read_text()
-    (folder / "setup.toml").write_text(edited(setup, changes))
-    changes = {
-        "setup": '"setup.toml"',
-        "radius_m": radius,
-        "half_angle_rad": values["half_angle"],
-        "target_vertices": 271,
-        "position_m": [values["distance"], 0.0, height],
-        "rpy_rad": list(turn),
-        "height_m": ground,
-    }
-    (folder / "scene.toml").write_text(edited((SCENES / "wok.toml").read_text(), changes))
-    return folder / "scene.toml"
-
-
-def edited(text: str, values: dict[str, object]) -> str:
-    """TOML text with the values of some keys replaced."""
-    for key, value in values.items():
-        text, found = re.subn(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
-        if found != 1:
-            raise ValueError(f"{key} stands there {found} times")
+        text = head + name + body_text + end + tail
     return text
 
 
-def score(scene: Path) -> tuple[float, str]:
+def score(scene: Scene) -> tuple[float, str]:
     """How near a placement comes to the paper's wok, and what it is like."""
     try:
-        stage = prepare(scene)
+        prepared = prepare(scene)
     except InputError as error:
         if error.field != "placement":
             raise
         return -1.0, "the wok stands in the robot"
-    valid, above = judged(stage)
-    area = stage.surface.vertex_areas()
+    valid, above = judged(prepared)
+    area = prepared.surface.vertex_areas()
     area /= area.sum()
     covered = area @ valid
     if not covered.any():
@@ -195,7 +190,7 @@ def score(scene: Path) -> tuple[float, str]:
     return share - faults, found
 
 
-def search(trials: int, seed: int, ranges: dict[str, tuple[float, float]], folder: Path) -> None:
+def search(trials: int, seed: int, ranges: dict[str, tuple[float, float]]) -> None:
     """Climb from random starts (a plain evolution strategy), printing each climb's best."""
     random = np.random.default_rng(seed)
     low, high = np.array(list(ranges.values())).T
@@ -205,7 +200,7 @@ def search(trials: int, seed: int, ranges: dict[str, tuple[float, float]], folde
         nonlocal done
         done += 1
         values = dict(zip(ranges, (low + point * (high - low)).tolist(), strict=True))
-        value, found = score(write(values, folder))
+        value, found = score(variant(values))
         return value, found, point
 
     while done < trials:
@@ -227,13 +222,12 @@ def search(trials: int, seed: int, ranges: dict[str, tuple[float, float]], folde
 def main(arguments: list[str]) -> None:
     """Count, look close to the robot, or search."""
     if "--near" in arguments:
-        with tempfile.TemporaryDirectory() as folder:
-            for name, changes in (
-                ("as it is", {}),
-                ("capsules of 50 mm", {"stout": True}),
-                ("motor", {"motor": True}),
-            ):
-                print(f"{name}: {score(write(NEAR, Path(folder), **changes))[1]}", flush=True)
+        for name, changes in (
+            ("as it is", {}),
+            ("capsules of 50 mm", {"stout": True}),
+            ("motor", {"motor": True}),
+        ):
+            print(f"{name}: {score(variant(NEAR, **changes))[1]}", flush=True)
         return
     if "--search" not in arguments:
         for name in arguments or NAMES:
@@ -242,8 +236,7 @@ def main(arguments: list[str]) -> None:
     trials, seed, *_ = [int(a) for a in arguments if a.isdigit()] + [1]
     ranges = PLACEMENT | (TOOL if "--tool" in arguments else {})
     ranges |= THRESHOLDS if "--thresholds" in arguments else {}
-    with tempfile.TemporaryDirectory() as folder:
-        search(trials, seed, ranges, Path(folder))
+    search(trials, seed, ranges)
 
 
 if __name__ == "__main__":

@@ -10,20 +10,11 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.kinematics import Poses, forward
-from cellcolor.frontend.arm.robot import Body, Robot, load_robot
+from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import segment_distance
-from cellcolor.frontend.scene import (
-    BoxObstacle,
-    CylinderObstacle,
-    MeshObstacle,
-    Obstacle,
-    SphereObstacle,
-    load_scene,
-    load_setup,
-)
-from cellcolor.frontend.target.mesh_file import load_mesh
-from cellcolor.frontend.target.shapes import make_surface
-from cellcolor.frontend.target.surface import rotation_from_rpy
+from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.prepared import robot_of
+from cellcolor.frontend.scene import Scene
 from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
@@ -47,13 +38,8 @@ def arm_at(scene_path: Path, result: BuildResult, vertex: int, branch: int) -> P
         vertex: index of a vertex.
         branch: index of a branch.
     """
-    scene = load_scene(scene_path)
-    setup_path = scene_path.parent / scene.setup
-    setup = load_setup(setup_path)
-    folder, files = setup_path.parent, setup.robot
-    robot = load_robot(
-        folder / files.arm_urdf, files.flange_link, folder / files.tool_urdf, files.tip_link
-    )
+    scene = Scene.read(scene_path)
+    robot = robot_of(scene.setup)
     configuration = result.configurations[vertex, branch]
     poses = forward(robot, configuration[None])
 
@@ -67,14 +53,14 @@ def arm_at(scene_path: Path, result: BuildResult, vertex: int, branch: int) -> P
     mesh = (result.surface.vertices, result.surface.faces)
     layers.append(_layer("object", FAINT, mesh))
     if scene.collision_object is not None:
-        solid = make_surface(scene.collision_object, scene_path.parent).placed(scene.placement)
+        solid = scene.collision_object.surface(scene.folder).placed(scene.placement)
         layers.append(_layer("collision object", "#999933", (solid.vertices, solid.faces)))
     size = float(np.ptp(result.surface.vertices, axis=0).max())
     points, triangles = _capsule(np.zeros(3), np.zeros(3), 0.02 * size)
     target = result.surface.vertices[vertex]
     layers.append(_layer(f"vertex {vertex}", WARNING, (points + target, triangles)))
     if scene.obstacle:
-        meshes = [_obstacle(obstacle, scene_path.parent) for obstacle in scene.obstacle]
+        meshes = [_obstacle(obstacle, scene.folder) for obstacle in scene.obstacle]
         obstacles = _joined(meshes)
         layers.append(_layer("obstacles", "#882255", obstacles))
     ground: tuple[SpaceLines, ...] = ()
@@ -159,27 +145,8 @@ def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]])
 
 
 def _obstacle(obstacle: Obstacle, folder: Path) -> Mesh:
-    up = np.array([0.0, 0.0, 1.0])
-    match obstacle:
-        case MeshObstacle():
-            mesh = load_mesh(folder / obstacle.file, obstacle.meters_per_unit)
-            points, triangles = mesh.vertices, mesh.faces
-        case BoxObstacle():
-            points, triangles = _box(np.array(obstacle.size_m))
-        case CylinderObstacle():
-            half = up * obstacle.height_m / 2
-            points, triangles = _cylinder(-half, half, obstacle.radius_m)
-        case SphereObstacle():
-            points, triangles = _capsule(0 * up, 0 * up, obstacle.radius_m)
-    turn = rotation_from_rpy(*obstacle.rpy_rad)
-    return points @ turn.T + np.array(obstacle.position_m), triangles
-
-
-def _box(size: Array) -> Mesh:
-    signs = np.array([(x, y, z) for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)])
-    quads = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
-    triangles = [t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))]
-    return signs * size / 2, np.array(triangles, dtype=np.int64)
+    points, triangles = obstacle.shell(folder)
+    return obstacle.placed(points), triangles
 
 
 def _ground(height: float, points: Array) -> SpaceLines:

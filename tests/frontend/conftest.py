@@ -6,13 +6,14 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from shipped import ROBOTS, WOK, edited
+from shipped import ROBOTS, WOK, edited, with_keys
 
 from cellcolor.frontend.arm.robot import Robot, load_robot
 from cellcolor.frontend.arm.ur import UrGeometry, ur_geometry
-from cellcolor.frontend.scene import Setup, load_setup
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.setup import Setup
 
-Rewrite = Callable[..., Path]
+Varied = Callable[..., Scene]
 
 
 @pytest.fixture(scope="session")
@@ -32,26 +33,41 @@ def geometry(robot: Robot) -> UrGeometry:
 @pytest.fixture(scope="session")
 def setup() -> Setup:
     """The shared setup."""
-    return load_setup(ROBOTS / "ur5_polishing.toml")
+    return Setup.read(ROBOTS / "ur5_polishing.toml")
 
 
 @pytest.fixture
-def scene(tmp_path: Path) -> Rewrite:
-    """``scene(setup={...}, arm=function, radius_m=.3, ...)`` writes a variant of the wok.
+def scene() -> Varied:
+    """``scene(setup={...}, arm=function, radius_m=.3, ...)`` makes a variant of the wok.
 
-    ``setup`` replaces keys of the setup file, ``arm`` rewrites the arm's URDF text, and the
-    other names replace keys of the scene.
+    ``setup`` changes keys of the setup, ``arm`` rewrites the arm's URDF text, and the other names
+    change keys of the scene.
     """
 
-    def write(
+    def vary(
         setup: dict[str, object] | None = None,
-        arm: Callable[[str], str] = lambda text: text,
+        arm: Callable[[str], str] | None = None,
         **keys: object,
-    ) -> Path:
+    ) -> Scene:
+        wok = Scene.read(WOK)
+        changed = with_keys(wok.setup, **(setup or {}))
+        if arm is not None:
+            changed = changed.varied(robot={"arm_urdf": arm((ROBOTS / "ur5.urdf").read_text())})
+        return with_keys(wok.with_setup(changed), **keys)
+
+    return vary
+
+
+@pytest.fixture
+def scene_file(tmp_path: Path) -> Callable[..., Path]:
+    """``scene_file(setup={...}, radius_m=.3, ...)`` writes a variant of the wok and its setup.
+
+    ``setup`` replaces keys of the setup's text, and the other names those of the scene's.
+    """
+
+    def write(setup: dict[str, object] | None = None, **keys: object) -> Path:
         for name in ("ur5.urdf", "polishing_tool.urdf", "ur5_polishing.toml"):
             text = (ROBOTS / name).read_text()
-            if name == "ur5.urdf":
-                text = arm(text)
             if name == "ur5_polishing.toml":
                 text = edited(text, **(setup or {}))
             (tmp_path / name).write_text(text)

@@ -13,11 +13,14 @@ from cellcolor.cli import main
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.frontend import Reason, build_surface
 from cellcolor.frontend.candidates_file import side_file
+from cellcolor.frontend.scene import Scene
 from cellcolor.pictures.by_reason import read_verdicts
 
 
-def test_build_writes_it_beside_the_surface(scene: Callable[..., Path], tmp_path: Path) -> None:
-    file = scene(target_vertices=200)
+def test_build_writes_it_beside_the_surface(
+    scene_file: Callable[..., Path], tmp_path: Path
+) -> None:
+    file = scene_file(target_vertices=200)
     assert main(["build", str(file), "-o", str(tmp_path / "wok.json")]) == 0
     surface = LabelledSurface.read(tmp_path / "wok.surface.json")
     result = build_surface(file)
@@ -32,12 +35,12 @@ def test_build_writes_it_beside_the_surface(scene: Callable[..., Path], tmp_path
     assert not list(tmp_path.glob(".*"))
 
 
-def test_same_result_same_bytes(scene: Callable[..., Path]) -> None:
+def test_same_result_same_bytes(scene: Callable[..., Scene]) -> None:
     result = build_surface(scene(target_vertices=50))
     assert side_file(result) == side_file(result)
 
 
-def test_more_colors_than_sixteen_bits_tell(scene: Callable[..., Path], tmp_path: Path) -> None:
+def test_more_colors_than_sixteen_bits_tell(scene: Callable[..., Scene], tmp_path: Path) -> None:
     """A noisy surface can have a color for each vertex; files with 16 bits stay readable."""
     result = build_surface(scene(target_vertices=50))
     surface = replace(result.surface, meta={"side_file": "many.npz"})
@@ -52,12 +55,12 @@ def test_more_colors_than_sixteen_bits_tell(scene: Callable[..., Path], tmp_path
 
 
 def test_side_file_of_another_build(
-    scene: Callable[..., Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    scene_file: Callable[..., Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """As a kill between two renames can leave it: as many vertices, other colors."""
     pytest.importorskip("matplotlib")
     for name, height in (("low", -0.04), ("high", 0.1)):
-        file = scene(target_vertices=50, position_m=[0.465, -0.15, height])
+        file = scene_file(target_vertices=50, position_m=[0.465, -0.15, height])
         assert main(["build", str(file), "-o", str(tmp_path / f"{name}.json")]) == 0
     (tmp_path / "low.reasons.npz").replace(tmp_path / "high.reasons.npz")
     show = ["show", str(tmp_path / "high.json"), "--reason", "-o", str(tmp_path / "x.png")]

@@ -26,10 +26,10 @@ STAGES = [
 
 
 @pytest.fixture
-def part(scene: Callable[..., Path], tmp_path: Path) -> Path:
+def part(scene_file: Callable[..., Path], tmp_path: Path) -> Path:
     """A box to be refined, beside a mesh obstacle and one by its measures."""
     (tmp_path / "box.obj").write_text(obj(BOX, OUTWARD))
-    text = scene().read_text()
+    text = scene_file().read_text()
     start, end = text.index("[object]"), text.index("[placement]")
     table = '[object]\nkind = "mesh"\nfile = "box.obj"\nmeters_per_unit = 0.1\nmax_edge_m = 0.04\n'
     obstacles = (

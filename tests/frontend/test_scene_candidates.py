@@ -6,7 +6,6 @@ The slow ones print what they counted: ``pytest -m slow -n 0 -s -k five_thousand
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from pathlib import Path
 
 import coal
 import numpy as np
@@ -21,7 +20,7 @@ from independent import (
     regular,
     set_distance,
 )
-from shipped import at_resolution
+from shipped import shipped
 from world import World
 
 from cellcolor.arrays import Array
@@ -34,31 +33,31 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
-from cellcolor.frontend.contact.solids import mesh_solid, primitive_solid
-from cellcolor.frontend.scene import CylinderObstacle
-from cellcolor.frontend.stage import Stage, prepare
+from cellcolor.frontend.contact.primitives import CylinderObstacle
+from cellcolor.frontend.contact.solids import mesh_solid
+from cellcolor.frontend.prepared import PreparedScene, prepare
 
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
 
 
-def check_inverse(name: str, folder: Path, vertices: int, count: int) -> None:
+def check_inverse(name: str, vertices: int, count: int) -> None:
     """EAIK has the same solutions, modulo 2 pi and both ways, for poses of the scene.
 
     Solutions next to a singularity would be left out on both sides, since rounding decides
     whether there are two of them or none. No scene has any.
     """
-    stage = prepare(at_resolution(name, folder, vertices))
+    prepared = prepare(shipped(name, vertices))
     random = np.random.default_rng([17, NAMES.index(name)])
-    rows = random.choice(len(stage.surface.vertices), count, replace=False)
-    points, directions = stage.surface.vertices[rows], -stage.surface.normals[rows]
-    found = stage.inverse(points, directions)
+    rows = random.choice(len(prepared.surface.vertices), count, replace=False)
+    points, directions = prepared.surface.vertices[rows], -prepared.surface.normals[rows]
+    found = prepared.inverse(points, directions)
     solved = ~np.isnan(found[:, :, 0])
-    eaik = Eaik(stage.robot)
+    eaik = Eaik(prepared.robot)
     apart, left_out = [], 0
     for point, direction, all_, there in zip(points, directions, found, solved, strict=True):
         ours = all_[there][:, :5]
         theirs = eaik.solutions(point, direction, random.uniform(0, 2 * np.pi))
-        kept = [regular(stage.robot, each) for each in (ours, theirs)]
+        kept = [regular(prepared.robot, each) for each in (ours, theirs)]
         left_out += len(ours) + len(theirs) - len(kept[0]) - len(kept[1])
         apart.append(set_distance(*kept))
     number = solved.sum(axis=1)
@@ -89,12 +88,12 @@ class Contacts:
         return int((np.abs(np.array(self.distances)) <= CONTACT).sum())
 
 
-def check_kinematics(stage: Stage, joints: Array) -> dict[str, float]:
+def check_kinematics(prepared: PreparedScene, joints: Array) -> dict[str, float]:
     """Largest differences from Pinocchio, one configuration at a time."""
-    robot = stage.robot
+    robot = prepared.robot
     poses = forward(robot, joints)
     linear, angular = tip_jacobian(poses)
-    torques = gravity_torques(robot, poses, np.array(stage.setup.task.gravity_m_per_s2))
+    torques = gravity_torques(robot, poses, np.array(prepared.setup.task.gravity_m_per_s2))
     measure = manipulability(linear)
     determinant = task_determinant(linear, angular, poses.tool_axis)
     model, data = robot.model, robot.model.createData()
@@ -124,45 +123,45 @@ def check_kinematics(stage: Stage, joints: Array) -> dict[str, float]:
     return worst
 
 
-def check_candidates(name: str, folder: Path, vertices: int, count: int) -> None:
+def check_candidates(name: str, vertices: int, count: int) -> None:
     """Candidates that the scene has a configuration for: kinematics, contacts, first reason."""
-    file = at_resolution(name, folder, vertices)
-    stage, result = prepare(file), build_surface(file)
+    scene = shipped(name, vertices)
+    prepared, result = prepare(scene), build_surface(scene)
     joints, codes = drawn(result, count, [3, NAMES.index(name)])
 
-    worst = check_kinematics(stage, joints)
+    worst = check_kinematics(prepared, joints)
     print(f"\n{name}: {count} candidates; " + str({k: f"{v:.0e}" for k, v in worst.items()}))
     assert max(worst.values()) < 1e-9
 
     obstacles, solids = [], []
-    for obstacle in stage.scene.obstacle:
+    for obstacle in prepared.scene.obstacle:
         assert isinstance(obstacle, CylinderObstacle) and obstacle.rpy_rad == (0.0, 0.0, 0.0)
         pose = coal.Transform3s(np.eye(3), np.array(obstacle.position_m))
         obstacles.append((coal.Cylinder(obstacle.radius_m, obstacle.height_m), pose))
-        solids.append(primitive_solid(obstacle))
-    assert stage.scene.ground is not None
-    ground, exempt = stage.scene.ground.height_m, stage.setup.robot.may_touch_ground
-    target = mesh_solid(stage.surface.vertices, stage.surface.faces)
-    ends = body_ends(stage.robot, forward(stage.robot, joints))
+        solids.append(obstacle.solid())
+    assert prepared.scene.ground is not None
+    ground, exempt = prepared.scene.ground.height_m, prepared.setup.robot.may_touch_ground
+    target = mesh_solid(prepared.surface.vertices, prepared.surface.faces)
+    ends = body_ends(prepared.robot, forward(prepared.robot, joints))
     # Each test on every candidate, not only on what the ones before it have left.
     verdicts = {
-        Reason.GROUND: hits_ground(stage.robot, ends, ground, exempt),
-        Reason.SELF_COLLISION: hits_itself(stage.robot, ends),
-        Reason.OBJECT_COLLISION: target.hits(stage.robot, ends),
+        Reason.GROUND: hits_ground(prepared.robot, ends, ground, exempt),
+        Reason.SELF_COLLISION: hits_itself(prepared.robot, ends),
+        Reason.OBJECT_COLLISION: target.hits(prepared.robot, ends),
     }
     if solids:
         verdicts[Reason.OBSTACLE_COLLISION] = np.any(
-            [solid.hits(stage.robot, ends) for solid in solids], axis=0
+            [solid.hits(prepared.robot, ends) for solid in solids], axis=0
         )
     contacts = {reason: Contacts() for reason in verdicts}
-    world = World(stage.robot, stage.surface.vertices, stage.surface.faces)
+    world = World(prepared.robot, prepared.surface.vertices, prepared.surface.faces)
     wrong = unclear = 0
     for row, (q, code) in enumerate(zip(joints, codes, strict=True)):
-        distances = clearances(world, stage.setup, ground, q, obstacles)
+        distances = clearances(world, prepared.setup, ground, q, obstacles)
         for reason, distance in distances.items():
             contacts[reason].verdicts.append(bool(verdicts[reason][row]))
             contacts[reason].distances.append(distance)
-        expected = possible_reasons(arm_reason(stage.robot, stage.setup, q), distances)
+        expected = possible_reasons(arm_reason(prepared.robot, prepared.setup, q), distances)
         wrong += Reason(code) not in expected
         unclear += len(expected) > 1
     for reason, contact in contacts.items():
@@ -195,22 +194,22 @@ def drawn(result: BuildResult, count: int, seed: list[int]) -> tuple[Array, Arra
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_some_target_poses_against_eaik(name: str, tmp_path: Path) -> None:
-    check_inverse(name, tmp_path, vertices=300, count=200)
+def test_some_target_poses_against_eaik(name: str) -> None:
+    check_inverse(name, vertices=300, count=200)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_five_thousand_target_poses_against_eaik(name: str, tmp_path: Path) -> None:
-    check_inverse(name, tmp_path, vertices=5200, count=5000)
+def test_five_thousand_target_poses_against_eaik(name: str) -> None:
+    check_inverse(name, vertices=5200, count=5000)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_some_candidates_against_pinocchio_and_coal(name: str, tmp_path: Path) -> None:
-    check_candidates(name, tmp_path, vertices=200, count=200)
+def test_some_candidates_against_pinocchio_and_coal(name: str) -> None:
+    check_candidates(name, vertices=200, count=200)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_five_thousand_candidates_against_pinocchio_and_coal(name: str, tmp_path: Path) -> None:
-    check_candidates(name, tmp_path, vertices=1000, count=5000)
+def test_five_thousand_candidates_against_pinocchio_and_coal(name: str) -> None:
+    check_candidates(name, vertices=1000, count=5000)

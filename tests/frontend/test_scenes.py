@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import itertools
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
 import pytest
-from shipped import SCENES, at_resolution
+from shipped import SCENES, shipped
 
 from cellcolor.arrays import Array
 from cellcolor.data.instance import Instance
@@ -17,7 +16,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import BuildResult, Reason, build_surface
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.scene import load_scene
+from cellcolor.frontend.scene import Scene
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
@@ -32,8 +31,8 @@ LIFT_OFFS = {
 }
 
 
-def built(name: str, folder: Path, vertices: int) -> BuildResult:
-    return build_surface(at_resolution(name, folder, vertices))
+def built(name: str, vertices: int) -> BuildResult:
+    return build_surface(shipped(name, vertices))
 
 
 def covers(surface: LabelledSurface, count: int) -> list[set[str]]:
@@ -59,14 +58,14 @@ def wrist_above(robot: Robot, configurations: Array) -> list[bool]:
 
 
 def test_one_setup_for_all() -> None:
-    scenes = {file.stem: load_scene(file) for file in SCENES.glob("*.toml")}
+    scenes = {file.stem: Scene.read(file) for file in SCENES.glob("*.toml")}
     assert scenes.keys() == LIFT_OFFS.keys()
     assert len({scene.setup for scene in scenes.values()}) == 1
 
 
 @pytest.mark.parametrize("name", LIFT_OFFS)
-def test_lift_offs(name: str, tmp_path: Path) -> None:
-    result = built(name, tmp_path, 500)
+def test_lift_offs(name: str) -> None:
+    result = built(name, 500)
     solution = solve(decompose(result.surface), Options(deadline=Deadline.after(60), workers=2))
     assert solution.status == "optimal" and solution.proved_for_surface
     assert solution.lift_offs == LIFT_OFFS[name]
@@ -78,7 +77,7 @@ def test_files_as_built(name: str) -> None:
     instance = Instance.read(SCENES / f"{name}.json")
     surface = LabelledSurface.read(SCENES / f"{name}.surface.json")
     assert decompose(surface, f"{name}.surface.json").to_json() == instance.to_json()
-    assert surface.meta["scene"] == load_scene(SCENES / f"{name}.toml").model_dump(mode="json")
+    assert surface.meta["scene"] == Scene.read(SCENES / f"{name}.toml").model_dump(mode="json")
     assert len(surface.vertices) > 800
     solution = solve(instance, Options(deadline=Deadline.after(60), workers=2))
     assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
@@ -98,20 +97,20 @@ def test_stored_surface_is_what_the_scene_gives(name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", LIFT_OFFS)
 @pytest.mark.parametrize("vertices", [2000, 4000])
-def test_lift_offs_at_higher_resolutions(name: str, vertices: int, tmp_path: Path) -> None:
-    surface = built(name, tmp_path, vertices).surface
+def test_lift_offs_at_higher_resolutions(name: str, vertices: int) -> None:
+    surface = built(name, vertices).surface
     solution = solve(decompose(surface), Options(deadline=Deadline.after(300), workers=2))
     assert solution.status == "optimal" and solution.lift_offs == LIFT_OFFS[name]
 
 
-def test_flat_hemisphere_is_not_fully_reachable_and_needs_four_colors(tmp_path: Path) -> None:
-    result = built("hemisphere_flat", tmp_path, 500)
+def test_flat_hemisphere_is_not_fully_reachable_and_needs_four_colors() -> None:
+    result = built("hemisphere_flat", 500)
     assert result.report.reachable_area_m2 < 0.9 * result.report.area_m2
     assert covers(result.surface, 4) and not covers(result.surface, 3)
 
 
-def test_tilted_hemisphere_is_reachable_and_covered_by_three_colors(tmp_path: Path) -> None:
-    result = built("hemisphere_tilted", tmp_path, 500)
+def test_tilted_hemisphere_is_reachable_and_covered_by_three_colors() -> None:
+    result = built("hemisphere_tilted", 500)
     report = result.report
     assert report.slivers is not None
     covered = report.reachable_area_m2 - report.slivers.given_up_area_m2
@@ -119,9 +118,9 @@ def test_tilted_hemisphere_is_reachable_and_covered_by_three_colors(tmp_path: Pa
     assert covers(result.surface, 3) and not covers(result.surface, 2)
 
 
-def test_trap_of_the_half_pipe(tmp_path: Path) -> None:
+def test_trap_of_the_half_pipe() -> None:
     """A color of most of the area that no two segments can contain."""
-    result = built("half_pipe", tmp_path, 500)
+    result = built("half_pipe", 500)
     trap = "shoulder-left elbow-up wrist-unflipped"
     share = {c.name: c.area_m2 / result.report.area_m2 for c in result.report.colors}
     assert share[trap] > 0.7
@@ -131,9 +130,9 @@ def test_trap_of_the_half_pipe(tmp_path: Path) -> None:
     assert not covers(result.surface, 1)
 
 
-def test_two_colors_cover_the_square_alone(tmp_path: Path) -> None:
+def test_two_colors_cover_the_square_alone() -> None:
     """Two more reach part of it, as in the paper; but here these have the same shoulder."""
-    result = built("square", tmp_path, 500)
+    result = built("square", 500)
     assert covers(result.surface, 1) == [
         {"shoulder-left elbow-up wrist-unflipped"},
         {"shoulder-left elbow-up wrist-flipped"},
@@ -163,11 +162,9 @@ def test_three_colors_over_the_wok_with_the_obstacle(robot: Robot) -> None:
     assert not any(wrist_above(robot, result.configurations[rows, branch]))
 
 
-def test_collisions_over_the_wok_do_not_ask_for_the_wrist_above(
-    robot: Robot, tmp_path: Path
-) -> None:
+def test_collisions_over_the_wok_do_not_ask_for_the_wrist_above(robot: Robot) -> None:
     """What differs from the paper: of two wrists, the one above the forearm is lost more often."""
-    result = built("wok", tmp_path, 500)
+    result = built("wok", 500)
     solved = ~np.isnan(result.configurations[:, :, 0])
     valid = result.reasons == Reason.VALID
     above = np.zeros(solved.shape, dtype=bool)

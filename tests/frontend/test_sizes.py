@@ -17,14 +17,16 @@ from hypothesis import strategies as st
 from cellcolor.cli import main
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface, sizes
+from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.target.mesh_file import load_mesh
 from cellcolor.frontend.target.remesh import refine
 
-Scene = Callable[..., Path]
+Varied = Callable[..., Scene]
 
 
 def with_object(file: Path, table: str) -> Path:
-    """The scene with another object table."""
+    """The scene's file with another object table."""
     text = file.read_text()
     start, end = text.index("[object]"), text.index("[placement]")
     file.write_text(f"{text[:start]}[object]\n{table}\n\n{text[end:]}")
@@ -50,11 +52,11 @@ TOO_LARGE = {
 
 @pytest.mark.parametrize("name", TOO_LARGE)
 def test_refused_with_the_number(
-    name: str, scene: Scene, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    name: str, scene_file: Callable[..., Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     setup, table, field, needed = TOO_LARGE[name]
     (tmp_path / "box.obj").write_text(obj(BOX, OUTWARD))
-    file = scene(setup=setup, target_vertices=50)
+    file = scene_file(setup=setup, target_vertices=50)
     if table is not None:
         with_object(file, table)
     tracemalloc.start()
@@ -102,25 +104,16 @@ def test_what_is_refused_would_have_been_too_much(seed: int, longest: float) -> 
         sizes.MOST_VERTICES = most
 
 
-def test_a_mesh_too_coarse_for_what_stands_there(scene: Scene, tmp_path: Path) -> None:
+def test_a_mesh_too_coarse_for_what_stands_there(scene: Varied) -> None:
     """Four vertices, and an obstacle in the middle that is narrower than the edges are long."""
     square = 0.3 * np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) - [0.15, 0.15, 0]
-    (tmp_path / "square.obj").write_text(obj(square, [[0, 1, 2], [0, 2, 3]]))
-    file = with_object(
-        scene(position_m="[0.45, 0.1, 0.1]"),
-        'kind = "mesh"\nfile = "square.obj"\nmeters_per_unit = 1.0',
-    )
-    text = file.read_text()
-    (warning,) = build_surface(file).report.warnings
+    faces = np.array([[0, 1, 2], [0, 2, 3]])
+    coarse = scene(position_m=(0.45, 0.1, 0.1)).with_object((square, faces))
+    (warning,) = build_surface(coarse).report.warnings
     assert "0.424 m" in warning and "'tool_body' is 0.04 m wide" in warning
     # A plate's width is not its thickness.
-    file.write_text(
-        f'{text}\n[[obstacle]]\nkind = "box"\nsize_m = [0.002, 0.03, 0.2]\n'
-        "position_m = [0.45, 0.1, 0.3]\n"
-    )
-    (warning,) = build_surface(file).report.warnings
+    plate = BoxObstacle(size_m=(0.002, 0.03, 0.2), position_m=(0.45, 0.1, 0.3))
+    (warning,) = build_surface(coarse.with_obstacle(plate)).report.warnings
     assert "obstacle[0] is 0.03 m wide" in warning
-    file.write_text(
-        text.replace("meters_per_unit = 1.0", "meters_per_unit = 1.0\nmax_edge_m = 0.04")
-    )
-    assert build_surface(file).report.warnings == ()
+    fine = coarse.with_object(refine(square, faces, 0.04))
+    assert build_surface(fine).report.warnings == ()

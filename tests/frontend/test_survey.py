@@ -14,9 +14,9 @@ from shipped import SCENES, edited
 from cellcolor.cli import main
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.ur import UrGeometry
-from cellcolor.frontend.scene import Placement
-from cellcolor.frontend.stage import prepare
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.survey import survey
+from cellcolor.frontend.target.placement import Placement
 from cellcolor.frontend.target.shapes import disc_mesh, grid_mesh, rectangle, spherical_cap
 from cellcolor.frontend.target.surface import Surface
 
@@ -78,8 +78,8 @@ def test_domes_before_the_robot(
 @pytest.mark.parametrize("scene", sorted(SCENES.glob("*.toml")), ids=lambda path: path.stem)
 def test_no_shipped_scene_is_warned_of(scene: Path) -> None:
     """Half a pipe shows the shoulder mostly its inside."""
-    stage = prepare(scene)
-    assert survey(stage.surface, stage.geometry).warnings == ()
+    prepared = prepare(scene)
+    assert survey(prepared.surface, prepared.geometry).warnings == ()
 
 
 def test_what_cannot_be_told(geometry: UrGeometry) -> None:

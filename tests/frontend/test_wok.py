@@ -8,15 +8,15 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from pathlib import Path
 
 import networkx as nx
 import numpy as np
 import pytest
-from shipped import ROBOTS, WOK, edited
+from shipped import WOK, shipped
 
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.scene import Scene
 
 PLACE, TURN = np.array([0.465, -0.15, -0.04]), np.zeros(3)
 
@@ -50,27 +50,17 @@ def one_color_suffices(surface: LabelledSurface) -> bool:
     return bool(set.intersection(*reached))
 
 
-def variant(folder: Path, vertices: int, seed: int) -> Path:
+def variant(vertices: int, seed: int) -> Scene:
     """The wok at another resolution, moved by up to 5 mm and 2 degrees an axis (seed 0: not)."""
     random = np.random.default_rng(seed)
     shift = random.uniform(-0.005, 0.005, 3) if seed else 0.0
     turn = random.uniform(-1, 1, 3) * np.deg2rad(2) if seed else np.zeros(3)
-    file = folder / f"{vertices}-{seed}.toml"
-    file.write_text(
-        edited(
-            WOK.read_text(),
-            setup=f'"{ROBOTS / "ur5_polishing.toml"}"',
-            target_vertices=vertices,
-            position_m=(PLACE + shift).tolist(),
-            rpy_rad=turn.tolist(),
-        )
-    )
-    return file
+    return shipped("wok", vertices).moved(position_m=PLACE + shift, rpy_rad=turn)
 
 
-def minimum(file: Path) -> int | None:
+def minimum(scene: Scene) -> int | None:
     """1 or 2 where that is settled, else None."""
-    surface = build_surface(file).surface
+    surface = build_surface(scene).surface
     if one_color_suffices(surface):
         return 1
     return 2 if fewest_found(surface) == 2 else None
@@ -90,21 +80,19 @@ def test_shipped_scene() -> None:
 
 
 @pytest.mark.parametrize("vertices", [500, 2000])
-def test_other_resolutions(tmp_path: Path, vertices: int) -> None:
-    assert minimum(variant(tmp_path, vertices, 0)) == 2
+def test_other_resolutions(vertices: int) -> None:
+    assert minimum(variant(vertices, 0)) == 2
 
 
-def test_moved_a_little(tmp_path: Path, record_property: pytest.RecordProperty) -> None:
-    found = Counter(minimum(variant(tmp_path, 500, seed)) for seed in range(1, 6))
+def test_moved_a_little(record_property: pytest.RecordProperty) -> None:
+    found = Counter(minimum(variant(500, seed)) for seed in range(1, 6))
     record_property("minima at 500 vertices", dict(found))
     assert found == {2: 5}
 
 
 @pytest.mark.slow
-def test_moved_a_little_at_the_shipped_resolution(
-    tmp_path: Path, record_property: pytest.RecordProperty
-) -> None:
-    found = Counter(minimum(variant(tmp_path, 2000, seed)) for seed in range(1, 21))
+def test_moved_a_little_at_the_shipped_resolution(record_property: pytest.RecordProperty) -> None:
+    found = Counter(minimum(variant(2000, seed)) for seed in range(1, 21))
     record_property("minima at 2000 vertices", dict(found))
     assert found == {2: 20}
 

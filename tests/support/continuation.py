@@ -13,7 +13,7 @@ from independent import wrapped
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, Reason
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.stage import Stage
+from cellcolor.frontend.prepared import PreparedScene
 
 POINTS = 400
 SMALL = 0.05  # rad; larger steps are halved
@@ -93,13 +93,15 @@ def unlinked_pairs(result: BuildResult) -> Array:
     return np.array(pairs, dtype=np.int64).reshape(-1, 3)
 
 
-def smooth_and_valid(stage: Stage, result: BuildResult, pair: Array) -> bool:
+def smooth_and_valid(prepared: PreparedScene, result: BuildResult, pair: Array) -> bool:
     """Whether an independent motion joins a pair's configurations, valid at all its points."""
     i, j, branch = pair.tolist()
     ends = [i, j]
-    path = Follower(stage.robot).along(
-        result.configurations[i, branch], stage.surface.vertices[ends], stage.surface.normals[ends]
+    path = Follower(prepared.robot).along(
+        result.configurations[i, branch],
+        prepared.surface.vertices[ends],
+        prepared.surface.normals[ends],
     )
     if path is None or wrapped(path[-1] - result.configurations[j, branch]).max() > 1e-6:
         return False
-    return bool((stage.judge(path).reasons == Reason.VALID).all())
+    return bool((prepared.judge(path).reasons == Reason.VALID).all())

@@ -14,7 +14,7 @@ from world import PAIRS, World
 from cellcolor.arrays import Array
 from cellcolor.frontend import Reason
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.scene import Setup
+from cellcolor.frontend.setup import Setup
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
 SINGULAR = 1e-6  # m^3; two solutions with a smaller task determinant are about to meet

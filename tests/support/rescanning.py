@@ -12,7 +12,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import _cells
-from cellcolor.frontend.scene import Slivers
+from cellcolor.frontend.setup import Slivers
 
 Branches = frozenset[int]
 

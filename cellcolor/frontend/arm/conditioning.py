@@ -9,10 +9,20 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cellcolor.frontend.arm.ur import UrGeometry
-from cellcolor.frontend.scene import Setup
+import numpy as np
 
-__all__ = ["Conditioning", "conditioning"]
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.kinematics import (
+    forward,
+    manipulability,
+    task_determinant,
+    tip_jacobian,
+)
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.ur import UrGeometry
+from cellcolor.frontend.setup import Setup
+
+__all__ = ["Conditioning", "conditioning", "task_determinants"]
 
 _POSITION = 3  # rows of the task's Jacobian that are lengths
 
@@ -47,3 +57,22 @@ def conditioning(setup: Setup, geometry: UrGeometry) -> Conditioning:
         volume(limits.min_task_determinant_m3, limits.min_task_determinant),
         volume(policy.near_singular_determinant_m3, policy.near_singular_determinant),
     )
+
+
+def task_determinants(robot: Robot, configurations: Array, limits: Conditioning | None) -> Array:
+    """Task determinants (k,) in m^3 of configurations (k, joints) in rad.
+
+    NaN where there is no configuration, or one that fails one of the limits, if there are any.
+    """
+    found = np.flatnonzero(~np.isnan(configurations[:, 0]))
+    poses = forward(robot, configurations[found])
+    linear, angular = tip_jacobian(poses)
+    determinant = task_determinant(linear, angular, poses.tool_axis)
+    if limits is not None:
+        good = (manipulability(linear) >= limits.min_manipulability) & (
+            determinant >= limits.min_task_determinant
+        )
+        determinant[~good] = np.nan
+    determinants = np.full(len(configurations), np.nan)
+    determinants[found] = determinant
+    return determinants

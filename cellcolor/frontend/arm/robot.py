@@ -77,15 +77,16 @@ class Robot:
     geometry: pin.GeometryModel = field(repr=False, compare=False)
 
 
-def load_robot(arm_file: Path, flange_link: str, tool_file: Path, tip_link: str) -> Robot:
-    """Read arm and tool and put the tool on the flange.
+def load_robot(arm: Path | Urdf, flange_link: str, tool: Path | Urdf, tip_link: str) -> Robot:
+    """Put the tool on the arm's flange, both from files or as they have been read.
 
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip
             link, not six joints between base and tip, one there that follows another, or
             Pinocchio read other collision shapes than the file has.
     """
-    arm, tool = load_urdf(arm_file), load_urdf(tool_file)
+    arm, tool = (given if isinstance(given, Urdf) else load_urdf(given) for given in (arm, tool))
+    arm_file, tool_file = arm.file, tool.file
     if tool.moving:
         raise InputError(str(tool_file), f"joint[{tool.moving[0]}]", "a tool may not move")
     if tip_link != tool.root and tip_link not in tool.parent:

@@ -15,7 +15,7 @@ from pathlib import Path
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 
-__all__ = ["Urdf", "load_urdf", "mount"]
+__all__ = ["Urdf", "load_urdf", "mount", "parse_urdf"]
 
 _SHAPES = {"cylinder": ("radius", "length"), "sphere": ("radius",)}
 _THING = ("inertial", "visual")  # what a link that is more than a frame has
@@ -63,12 +63,25 @@ def load_urdf(file: Path) -> Urdf:
     """Read and check a URDF file.
 
     Raises:
-        InputError: not readable, not XML, not one tree, a moving joint that is not revolute or
+        InputError: not readable, or what :func:`parse_urdf` refuses.
+    """
+    return parse_urdf(read_text(file), file)
+
+
+def parse_urdf(text: str, file: Path) -> Urdf:
+    """Check a URDF text.
+
+    Args:
+        text: the XML.
+        file: what errors name; it is not read.
+
+    Raises:
+        InputError: not XML, not one tree, a moving joint that is not revolute or
             has no usable limits, a solid link without mass, a collision shape other than
             cylinder or sphere, numbers that are not finite.
     """
     try:
-        xml = ET.fromstring(read_text(file))
+        xml = ET.fromstring(text)
     except ET.ParseError as error:
         raise InputError(str(file), None, f"not XML: {error}") from error
     if xml.tag != "robot":

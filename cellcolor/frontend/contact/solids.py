@@ -22,10 +22,9 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import body_poses, body_shape
 from cellcolor.frontend.contact.samples import sample_mesh
-from cellcolor.frontend.scene import BoxObstacle, CylinderObstacle, SphereObstacle
-from cellcolor.frontend.target.surface import Faces, rotation_from_rpy
+from cellcolor.frontend.target.surface import Faces
 
-__all__ = ["Solid", "mesh_solid", "primitive_solid"]
+__all__ = ["Solid", "mesh_solid"]
 
 _FINEST = 0.002  # m; half a slice that is left to fcl rather than halved again
 _CLOSE = 0.025  # m; half a slice from which on the nearest sample is worth its price
@@ -210,35 +209,3 @@ def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Sol
 
     shape = fcl.CollisionObject(model, fcl.Transform())
     return Solid(shape, sorted(extent.tolist())[1], distances, near)
-
-
-def primitive_solid(obstacle: BoxObstacle | CylinderObstacle | SphereObstacle) -> Solid:
-    """A box, cylinder or sphere; unlike a mesh it is filled."""
-    turn, center = rotation_from_rpy(*obstacle.rpy_rad), np.array(obstacle.position_m)
-    match obstacle:
-        case BoxObstacle(size_m=size):
-            shape, extents = fcl.Box(*size), size
-
-            def outside(local: Array) -> Array:
-                return np.asarray(np.abs(local) - np.array(size) / 2)
-
-        case CylinderObstacle(radius_m=radius, height_m=height):
-            shape, extents = fcl.Cylinder(radius, height), (2 * radius, 2 * radius, height)
-
-            def outside(local: Array) -> Array:
-                across = np.hypot(local[:, 0], local[:, 1]) - radius
-                return np.column_stack([across, np.abs(local[:, 2]) - height / 2])
-
-        case SphereObstacle(radius_m=radius):
-            shape, extents = fcl.Sphere(radius), (2 * radius,) * 3
-
-            def outside(local: Array) -> Array:
-                return np.asarray(np.linalg.norm(local, axis=1)[:, None] - radius)
-
-    def distances(points: Array) -> tuple[Array, Array]:
-        beyond = outside((points - center) @ turn)
-        distance = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
-        return distance, distance
-
-    placed = fcl.CollisionObject(shape, fcl.Transform(turn, center))
-    return Solid(placed, sorted(extents)[1], distances)

@@ -22,7 +22,7 @@ from scipy.sparse.csgraph import connected_components
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.reach.continuity import Coloring
-from cellcolor.frontend.scene import Slivers
+from cellcolor.frontend.setup import Slivers
 
 __all__ = ["SliverReport", "clean"]
 

@@ -29,7 +29,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.contact.tip import Tip
-from cellcolor.frontend.scene import Scene, Setup
+from cellcolor.frontend.setup import Setup
 
 __all__ = ["Candidates", "Judge", "Reason", "Verdicts", "within_limits"]
 
@@ -94,12 +94,14 @@ class Verdicts:
         reasons: (k,) uint8, see :class:`Reason`.
         determinants: (k,) task determinant in m^3, NaN where the tests ended before it.
         ends: (ends, k, 3) of the axes of the bodies that can move, in the world, m; NaN as above.
+        seconds: wall time of forward kinematics and of each test.
     """
 
     configurations: Array
     reasons: NDArray[np.uint8]
     determinants: Array
     ends: Array
+    seconds: dict[str, float]
 
 
 def within_limits(robot: Robot, configurations: Array) -> tuple[Array, Mask]:
@@ -127,7 +129,7 @@ class Judge:
         robot: Robot,
         setup: Setup,
         limits: Conditioning,
-        scene: Scene,
+        ground: float | None,
         obstacles: list[Solid],
         target: Solid,
         tip: Tip,
@@ -135,15 +137,16 @@ class Judge:
     ) -> None:
         """``obstacles``, ``target``, the object, and what ``tip`` knows stand in the world.
 
+        ``ground`` is its height in m, if there is one.
+
         ``deadline`` is when to give up, asked in between (:class:`OutOfTime`).
         ``end_radii`` (ends,) are those of the bodies of :attr:`Verdicts.ends`, m.
         """
-        self._robot, self._setup, self._scene = robot, setup, scene
+        self._robot, self._setup, self._ground = robot, setup, ground
         self._limits, self._deadline = limits, deadline
         self._obstacles, self._target, self._tip = obstacles, target, tip
         self._moving = [index for index, body in enumerate(robot.bodies) if body.joint > 0]
         self.end_radii = np.repeat([robot.bodies[index].radius for index in self._moving], 2)
-        self.seconds: dict[str, float] = {}
 
     def __call__(self, configurations: Array) -> Verdicts:
         """Test configurations (k, 6) in rad, NaN where there is none."""
@@ -154,6 +157,7 @@ class Judge:
             np.empty(count, dtype=np.uint8),
             np.empty(count),
             np.empty((len(self.end_radii), count, 3)),
+            {},
         )
         for first in range(0, count, _AT_ONCE):
             self._deadline.check()
@@ -161,6 +165,8 @@ class Judge:
             part = self._judged(configurations[rows])
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
             whole.determinants[rows], whole.ends[:, rows] = part.determinants, part.ends
+            for name, seconds in part.seconds.items():
+                whole.seconds[name] = whole.seconds.get(name, 0.0) + seconds
         return whole
 
     def _judged(self, configurations: Array) -> Verdicts:
@@ -174,14 +180,14 @@ class Judge:
             reasons[solved[~inside]] = Reason.JOINT_LIMITS
         posed = np.flatnonzero(reasons == Reason.VALID)
 
-        started = time.perf_counter()
+        seconds, started = {}, time.perf_counter()
         poses = forward(robot, moved[posed])
         linear, angular = tip_jacobian(poses)
         determinant = task_determinant(linear, angular, poses.tool_axis)
         determinants = np.full(len(reasons), np.nan)
         determinants[posed] = determinant
         ends = body_ends(robot, poses)
-        self._lap("forward kinematics", started)
+        seconds["forward kinematics"] = time.perf_counter() - started
 
         # Each test sees the rows of `poses` that have passed the ones before it.
         tests: list[tuple[Reason, Test]] = []
@@ -214,10 +220,10 @@ class Judge:
             failed = test(passed)
             reasons[posed[passed[failed]]] = reason
             passed = passed[~failed]
-            self._lap(reason.text, started)
+            seconds[reason.text] = time.perf_counter() - started
         places = np.full((2 * len(self._moving), len(reasons), 3), np.nan)
         places[:, posed] = ends[self._moving].reshape(len(places), len(posed), 3)
-        return Verdicts(moved, reasons, determinants, places)
+        return Verdicts(moved, reasons, determinants, places, seconds)
 
     def _too_weak(self, poses: Poses, linear: Array) -> Mask:
         task = self._setup.task
@@ -227,16 +233,13 @@ class Judge:
         return weak
 
     def _in_ground(self, ends: Array) -> Mask:
-        ground, exempt = self._scene.ground, self._setup.robot.may_touch_ground
-        if ground is None:
+        exempt = self._setup.robot.may_touch_ground
+        if self._ground is None:
             return np.zeros(ends.shape[2], dtype=bool)
-        return hits_ground(self._robot, ends, ground.height_m, exempt)
+        return hits_ground(self._robot, ends, self._ground, exempt)
 
     def _in_obstacle(self, ends: Array) -> Mask:
         hit = np.zeros(ends.shape[2], dtype=bool)
         for obstacle in self._obstacles:
             hit[~hit] = obstacle.hits(self._robot, ends[:, :, ~hit])
         return hit
-
-    def _lap(self, stage: str, started: float) -> None:
-        self.seconds[stage] = self.seconds.get(stage, 0.0) + time.perf_counter() - started

@@ -1,27 +1,43 @@
-"""Surfaces from mesh files: checked, repaired on request only."""
+"""Surfaces from mesh files."""
 
 from __future__ import annotations
 
 import io
 import re
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import trimesh
 
 from cellcolor.arrays import Array
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.sizes import check_faces, check_vertices
+from cellcolor.frontend.sizes import check_faces
+from cellcolor.frontend.tables import Positive
+from cellcolor.frontend.target.mesh import mesh_surface
 from cellcolor.frontend.target.obj_file import read_obj
-from cellcolor.frontend.target.remesh import refine, repair
-from cellcolor.frontend.target.surface import Faces, Surface, face_normals
+from cellcolor.frontend.target.part import Part
+from cellcolor.frontend.target.surface import Faces, Surface
 
-__all__ = ["load_mesh"]
+__all__ = ["MeshObject", "load_mesh"]
 
-_FARTHEST, _SMALLEST = 1e6, 1e-6  # m
 _HEADER = 4096  # bytes; where a PLY file names its elements
+
+
+class MeshObject(Part):
+    """A triangle mesh from a file (STL, OBJ, PLY)."""
+
+    kind: Literal["mesh"] = "mesh"
+    file: str
+    meters_per_unit: Positive
+    max_edge_m: Positive | None = None
+    repair: bool = False
+
+    def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
+        """The mesh as it is, or refined or repaired on request; see :func:`load_mesh`."""
+        units, longest = self.meters_per_unit, self.max_edge_m
+        return load_mesh(folder / self.file, units, longest, self.repair, deadline)
 
 
 def load_mesh(
@@ -31,59 +47,25 @@ def load_mesh(
     mend: bool = False,
     deadline: Deadline = NEVER,
 ) -> Surface:
-    """A mesh file as it is, checked; refined or repaired on request.
+    """A mesh file as a surface, checked; see :func:`~cellcolor.frontend.target.mesh.mesh_surface`.
 
     STL has no shared vertices, so there the corners with equal coordinates are one vertex.
-    Normals are those of the adjoining faces, weighted with their angles.
 
     Args:
         meters_per_unit: of the file's coordinates.
-        max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
-        mend: see :func:`~cellcolor.frontend.target.remesh.repair`.
+        max_edge_m, mend: see :func:`~cellcolor.frontend.target.mesh.mesh_surface`.
         deadline: when to give up; not looked at while another library reads the file.
 
     Raises:
-        InputError: missing or unreadable file, no triangles, coordinates that are not finite,
-            two vertices in one place, faces without area, vertices without faces, edges or
-            vertices that are not manifold, inconsistent winding, a closed mesh inside out;
-            names the element. More vertices than fit, before or after halving edges.
+        InputError: missing or unreadable file, or the mesh cannot be used; names file and element.
         OutOfTime: the deadline came first.
     """
     vertices, faces = _read_mesh(file, deadline)
-    deadline.check()
-    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
-    if len(unknown):  # here already: a repair would take -1 for the last one
-        face, corner = unknown[0]
-        message = f"there is no vertex {faces[face, corner]}"
-        raise InputError(str(file), f"faces[{face}][{corner}]", message)
-    if mend:
-        finite = np.isfinite(vertices).all()
-        vertices, faces = repair(vertices, faces) if finite else (vertices, faces)
-    if not len(faces):
-        raise InputError(str(file), "faces", "there are none")
-    _check_size(file, vertices, meters_per_unit)
     try:
-        check_vertices(len(vertices))
-        # The labelled surface's own rules, held here before any work is done.
-        bare = LabelledSurface(file.name, (), vertices, faces, ((),) * len(vertices))
+        return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
     except InputError as error:
-        raise error.in_file(str(file)) from error
-    deadline.check()
-    _check_elements(file, vertices, faces)
-    if all((j, i) in bare.left_of for i, j in bare.left_of):  # closed
-        corners = vertices[faces]
-        if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
-            raise InputError(str(file), "faces", "closed mesh inside out: its volume is negative")
-    if max_edge_m is not None:
-        vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit, deadline)
-    deadline.check()
-    normals = _vertex_normals(vertices, faces)
-    size = np.linalg.norm(normals, axis=1, keepdims=True)
-    if size.min() < 1e-6:
-        vertex = np.argmin(size)
-        raise InputError(str(file), f"vertices[{vertex}]", "has no normal: its faces cancel out")
-    normals /= size
-    return Surface(vertices * meters_per_unit, faces, normals)
+        # Of halving edges the scene is to blame, which alone can say that it was asked for.
+        raise error if error.field == "max_edge_m" else error.in_file(str(file)) from error
 
 
 def _read_mesh(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
@@ -147,52 +129,3 @@ def _check_container(file: Path) -> None:
         file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise InputError(str(file), None, "neither binary STL nor UTF-8 text") from error
-
-
-def _check_size(file: Path, vertices: Array, meters_per_unit: float) -> None:
-    """Refuse sizes that no arm has to do with, and no distance can be computed of."""
-    if not np.isfinite(vertices).all():
-        return  # which has an error of its own
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
-    farthest = float(max(abs(low).max(), abs(high).max())) * meters_per_unit
-    if farthest > _FARTHEST:
-        message = f"up to {farthest:.3g} m from their origin; is meters_per_unit right?"
-        raise InputError(str(file), "vertices", message)
-    size = float((high - low).max()) * meters_per_unit
-    if size < _SMALLEST:
-        message = f"within {size:.3g} m of each other; is meters_per_unit right?"
-        raise InputError(str(file), "vertices", message)
-
-
-def _check_elements(file: Path, vertices: Array, faces: Faces) -> None:
-    used = np.zeros(len(vertices), dtype=bool)
-    used[faces] = True
-    if not used.all():
-        raise InputError(str(file), f"vertices[{np.argmin(used)}]", "belongs to no face")
-    _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
-    twin = first[index.reshape(-1)] != np.arange(len(vertices))
-    if twin.any():
-        vertex = int(np.argmax(twin))
-        other = int(first[index.reshape(-1)[vertex]])
-        raise InputError(str(file), f"vertices[{vertex}]", f"in one place with vertex {other}")
-    double_area = np.linalg.norm(face_normals(vertices, faces), axis=1)
-    longest = np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2).max(1)
-    flat = double_area <= 1e-9 * longest**2
-    if flat.any():
-        raise InputError(str(file), f"faces[{np.argmax(flat)}]", "has no area")
-
-
-def _vertex_normals(vertices: Array, faces: Faces) -> Array:
-    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex."""
-    corners = vertices[faces]
-    ahead = np.roll(corners, -1, axis=1) - corners
-    behind = np.roll(corners, 1, axis=1) - corners
-    cosine = (
-        (ahead * behind).sum(2) / np.linalg.norm(ahead, axis=2) / np.linalg.norm(behind, axis=2)
-    )
-    angles = np.arccos(np.clip(cosine, -1, 1))
-    unit = face_normals(vertices, faces)
-    unit /= np.linalg.norm(unit, axis=1, keepdims=True)
-    normals = np.zeros_like(vertices)
-    np.add.at(normals, faces, angles[:, :, None] * unit[:, None])
-    return normals

@@ -3,40 +3,80 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field, FiniteFloat
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.scene import CapObject, MeshObject, Object, PipeObject, RectangleObject
-from cellcolor.frontend.sizes import check_vertices
-from cellcolor.frontend.target.mesh_file import load_mesh
+from cellcolor.frontend.sizes import MOST_VERTICES, check_vertices
+from cellcolor.frontend.tables import Length
+from cellcolor.frontend.target.part import Part
 from cellcolor.frontend.target.surface import Faces, Surface
 
-__all__ = ["disc_mesh", "grid_mesh", "make_surface", "pipe", "rectangle", "spherical_cap"]
+__all__ = [
+    "CapObject",
+    "PipeObject",
+    "RectangleObject",
+    "disc_mesh",
+    "grid_mesh",
+    "pipe",
+    "rectangle",
+    "spherical_cap",
+]
 
 
-def make_surface(spec: Object, base: Path, deadline: Deadline = NEVER) -> Surface:
-    """The object of a scene in its own frame; mesh files are relative to the folder ``base``.
+class _Sampled(Part):
+    """A shape whose mesh is made here."""
 
-    Raises:
-        InputError: a mesh file cannot be used.
-        OutOfTime: the deadline came first.
-    """
-    match spec:
-        case MeshObject():
-            units, longest, mend = spec.meters_per_unit, spec.max_edge_m, spec.repair
-            return load_mesh(base / spec.file, units, longest, mend, deadline)
-        case CapObject(radius_m=radius, half_angle_rad=half_angle):
-            disc = disc_mesh(spec.target_vertices, spec.jitter, spec.seed)
-            return spherical_cap(radius, half_angle, *disc)
-        case PipeObject(radius_m=radius, length_m=length):
-            width = radius * spec.arc_rad
-            grid = grid_mesh(width, length, spec.target_vertices, spec.jitter, spec.seed)
-            return pipe(radius, spec.arc_rad, length, *grid)
-        case RectangleObject(size_x_m=x, size_y_m=y):
-            grid = grid_mesh(x, y, spec.target_vertices, spec.jitter, spec.seed)
-            return rectangle(x, y, *grid)
+    target_vertices: Annotated[int, Field(ge=7, le=MOST_VERTICES)]
+    jitter: Annotated[FiniteFloat, Field(ge=0, le=0.25)] = 0.0
+    seed: Annotated[int, Field(ge=0)] = 0
+
+    def _disc(self) -> tuple[Array, Faces]:
+        return disc_mesh(self.target_vertices, self.jitter, self.seed)
+
+    def _grid(self, width: float, height: float) -> tuple[Array, Faces]:
+        return grid_mesh(width, height, self.target_vertices, self.jitter, self.seed)
+
+
+class CapObject(_Sampled):
+    """A spherical cap about +z, the sphere's center at the object's origin."""
+
+    kind: Literal["spherical-cap"] = "spherical-cap"
+    radius_m: Length
+    half_angle_rad: Annotated[FiniteFloat, Field(gt=0, lt=3.1)]
+
+    def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
+        """The cap as rings of vertices about its pole."""
+        return spherical_cap(self.radius_m, self.half_angle_rad, *self._disc())
+
+
+class PipeObject(_Sampled):
+    """Part of a pipe's outside: its axis along y through the origin, its crown at +z."""
+
+    kind: Literal["pipe"] = "pipe"
+    radius_m: Length
+    length_m: Length
+    arc_rad: Annotated[FiniteFloat, Field(gt=0, lt=6.2)]
+
+    def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
+        """The pipe as a grid that is bent."""
+        grid = self._grid(self.radius_m * self.arc_rad, self.length_m)
+        return pipe(self.radius_m, self.arc_rad, self.length_m, *grid)
+
+
+class RectangleObject(_Sampled):
+    """A flat rectangle in z = 0, centered on the origin, its outside at +z."""
+
+    kind: Literal["rectangle"] = "rectangle"
+    size_x_m: Length
+    size_y_m: Length
+
+    def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
+        """The rectangle as a grid."""
+        return rectangle(self.size_x_m, self.size_y_m, *self._grid(self.size_x_m, self.size_y_m))
 
 
 def disc_mesh(target: int, jitter: float, seed: int) -> tuple[Array, Faces]:

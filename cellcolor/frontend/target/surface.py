@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index
-from cellcolor.frontend.scene import Placement
+from cellcolor.frontend.target.placement import Placement, rotation_from_rpy
 
-__all__ = ["Faces", "Surface", "along_edges", "every_edge", "face_normals", "rotation_from_rpy"]
+__all__ = ["Faces", "Surface", "along_edges", "every_edge", "face_normals"]
 
 Faces = NDArray[np.int64]
 
@@ -57,18 +57,6 @@ def every_edge(faces: Faces) -> Faces:
     """The edges (k, 2) of faces (m, 3), each once, in lexicographic order."""
     pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
     return np.unique(np.sort(pairs, axis=1), axis=0)
-
-
-def rotation_from_rpy(roll: float, pitch: float, yaw: float) -> Array:
-    """Rotation matrix of extrinsic x, y, z angles, as in URDF."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos([roll, pitch, yaw]), np.sin([roll, pitch, yaw])
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
 
 
 def face_normals(vertices: Array, faces: Faces) -> Array:

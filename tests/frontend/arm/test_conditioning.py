@@ -4,28 +4,28 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 from scipy.optimize import minimize
+from shipped import ROBOTS
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import Reason
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import UrGeometry
-from cellcolor.frontend.scene import load_setup
-from cellcolor.frontend.stage import prepare
+from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.scene import Scene
 
-Scene = Callable[..., Path]
+Varied = Callable[..., Scene]
 # The manufacturer's reach of UR3, UR5 and UR10, 0.5, 0.85 and 1.3 m, against the UR5's.
 ARMS = {"UR3": 0.5 / 0.85, "UR5": 1.0, "UR10": 1.3 / 0.85}
 SHARES = {
-    "min_manipulability_m3": "min_manipulability = 0.03",
-    "min_task_determinant_m3": "min_task_determinant = 0.0023",
-    "near_singular_determinant_m3": "near_singular_determinant = 0.0029",
+    "min_manipulability": 0.03,
+    "min_task_determinant": 0.0023,
+    "near_singular_determinant": 0.0029,
 }
 NUMBER = r"-?\d+(?:\.\d+)?(?:e-?\d+)?"
 
@@ -47,36 +47,30 @@ def scaled(text: str, size: float) -> str:
     )
 
 
-def reasons(scene: Scene, size: float, shares: bool) -> NDArray[np.uint8]:
+def reasons(scene: Varied, size: float, shares: bool) -> NDArray[np.uint8]:
     """Of all candidates: the wok and the shipped arm, all lengths so many times as large.
 
     The force is left out: masses and torques would have to grow in their own ways.
     """
-    place = f"[{0.465 * size}, {-0.15 * size}, {-0.04 * size}]"
-    file = scene(
+    tool = scaled((ROBOTS / "polishing_tool.urdf").read_text(), size)
+    thresholds = SHARES | {f"{name}_m3": None for name in SHARES} if shares else {}
+    wok = scene(
         arm=lambda text: scaled(text, size),
+        setup={"tool_urdf": tool, "force": False} | thresholds,
         radius_m=0.2 * size,
-        position_m=place,
+        position_m=(0.465 * size, -0.15 * size, -0.04 * size),
         target_vertices=300,
     )
-    tool = file.parent / "polishing_tool.urdf"
-    tool.write_text(scaled(tool.read_text(), size))
-    setup = file.parent / "ur5_polishing.toml"
-    text = setup.read_text()
-    if shares:
-        for key, line in SHARES.items():
-            text = re.sub(rf"^{key} = .*$", line, text, flags=re.MULTILINE)
-    setup.write_text(text + "\n[constraints]\nforce = false\n")
-    stage = prepare(file)
-    candidates = stage.inverse(stage.surface.vertices, -stage.surface.normals)
-    return stage.judge(candidates.reshape(-1, 6)).reasons
+    prepared = prepare(wok)
+    candidates = prepared.inverse(prepared.surface.vertices, -prepared.surface.normals)
+    return prepared.judge(candidates.reshape(-1, 6)).reasons
 
 
 def conditioned(found: NDArray[np.uint8]) -> int:
     return int(((found == Reason.MANIPULABILITY) | (found == Reason.TASK_DETERMINANT)).sum())
 
 
-def test_shares_mean_the_same_for_every_size(scene: Scene) -> None:
+def test_shares_mean_the_same_for_every_size(scene: Varied) -> None:
     found = {name: reasons(scene, size, shares=True) for name, size in ARMS.items()}
     assert conditioned(found["UR5"]) > 50
     for other in found.values():
@@ -84,7 +78,7 @@ def test_shares_mean_the_same_for_every_size(scene: Scene) -> None:
         assert np.mean(other == found["UR5"]) > 0.999
 
 
-def test_cubic_meters_do_not(scene: Scene) -> None:
+def test_cubic_meters_do_not(scene: Varied) -> None:
     """What is fine for a UR5 fails on a UR3, and a UR10 passes too easily."""
     small, middle, large = (
         conditioned(reasons(scene, size, shares=False)) for size in ARMS.values()
@@ -104,12 +98,10 @@ def test_reach_is_what_no_configuration_exceeds(robot: Robot, geometry: UrGeomet
     assert -best.fun == pytest.approx(geometry.arm_reach, abs=1e-6)
 
 
-@pytest.mark.parametrize("key", SHARES)
-def test_each_threshold_once(key: str, scene: Scene) -> None:
-    setup = scene().parent / "ur5_polishing.toml"
-    text = setup.read_text()
-    name = key.removesuffix("_m3")
-    for faulty in (text.replace(key, f"# {key}"), text.replace(key, f"{name} = 0.1\n{key}")):
-        setup.write_text(faulty)
-        with pytest.raises(InputError, match=f"give either {name} or {key}"):
-            load_setup(setup)
+@pytest.mark.parametrize("name", SHARES)
+def test_each_threshold_once(name: str, scene: Varied) -> None:
+    key, table = f"{name}_m3", "continuity" if name.startswith("near") else "thresholds"
+    for faulty in ({key: None}, {name: 0.1}):
+        with pytest.raises(InputError, match=f"give either {name} or {key}") as caught:
+            scene().setup.varied(**{table: faulty})
+        assert caught.value.field == table

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import coal
 import numpy as np
@@ -24,14 +23,11 @@ from cellcolor.frontend.contact.collision import (
     hits_itself,
     segment_distance,
 )
-from cellcolor.frontend.contact.solids import mesh_solid, primitive_solid
-from cellcolor.frontend.scene import (
-    BoxObstacle,
-    CylinderObstacle,
-    Obstacle,
-    Placement,
-    SphereObstacle,
-)
+from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.contact.primitives import BoxObstacle, CylinderObstacle, SphereObstacle
+from cellcolor.frontend.contact.solids import mesh_solid
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.target.placement import Placement
 from cellcolor.frontend.target.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.target.surface import Surface
 
@@ -115,19 +111,15 @@ def test_obstacles_agree_with_coal(
     for q in joints[:600]:
         world.place(q)
         distances.append(world.to_solid(shape, pose))
-    found = primitive_solid(obstacle).hits(robot, placed(robot, joints[:600]))
+    found = obstacle.solid().hits(robot, placed(robot, joints[:600]))
     agree(found, np.array(distances))
 
 
-def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Path]) -> None:
-    file = scene(target_vertices=500)
-    free = build_surface(file)
-    file.write_text(
-        file.read_text()
-        + '\n[[obstacle]]\nkind = "cylinder"\nradius_m = 0.03\nheight_m = 0.3\n'
-        + "position_m = [0.205, 0.005, 0.15]\n"
-    )
-    blocked = build_surface(file)
+def test_an_obstacle_takes_away_what_it_hits(scene: Callable[..., Scene]) -> None:
+    wok = scene(target_vertices=500)
+    free = build_surface(wok)
+    post = CylinderObstacle(radius_m=0.03, height_m=0.3, position_m=(0.205, 0.005, 0.15))
+    blocked = build_surface(wok.with_obstacle(post))
     changed = free.reasons != blocked.reasons
     assert (blocked.reasons[changed] == Reason.OBSTACLE_COLLISION).all()
     assert changed.sum() == blocked.report.candidates["obstacle collision"] > 100
@@ -169,8 +161,8 @@ def test_only_the_tip_touches(robot: Robot) -> None:
         assert mesh_solid(vertices, plate.faces).hits(robot, body_ends(robot, poses))[0] == expected
 
 
-def test_object_in_the_base_is_refused(scene: Callable[..., Path]) -> None:
-    file = scene(position_m="[0.0, 0.0, -0.12]", target_vertices=200)
+def test_object_in_the_base_is_refused(scene: Callable[..., Scene]) -> None:
+    wok = scene(position_m=(0.0, 0.0, -0.12), target_vertices=200)
     with pytest.raises(InputError, match="'base_link'") as caught:
-        build_surface(file)
-    assert (caught.value.file, caught.value.field) == (str(file), "placement")
+        build_surface(wok)
+    assert (caught.value.file, caught.value.field) == (None, "placement")

@@ -17,9 +17,9 @@ from trimesh.proximity import closest_point_naive
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import body_poses, body_shape
+from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.contact.samples import sample_mesh
-from cellcolor.frontend.contact.solids import Solid, mesh_solid, primitive_solid
-from cellcolor.frontend.scene import BoxObstacle
+from cellcolor.frontend.contact.solids import Solid, mesh_solid
 from cellcolor.frontend.target.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.target.surface import Surface
 
@@ -97,7 +97,7 @@ def test_a_box_is_hit_where_fcl_says_so(robot: Robot, cap: Surface, kind: str) -
     shape = fcl.CollisionObject(fcl.Box(0.1, 0.2, 0.3), fcl.Transform(np.array([0.1, 0, 0.05])))
     expected = by_fcl(shape, body, ends[0])
     assert 0.01 < expected.mean() < 0.99
-    assert (primitive_solid(box).hits(single, ends) == expected).all()
+    assert (box.solid().hits(single, ends) == expected).all()
 
 
 @pytest.mark.parametrize("target", [30, 300, 3000])

@@ -14,40 +14,31 @@ from hypothesis import strategies as st
 from shipped import ROBOTS
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend import Reason, build_surface
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.solids import primitive_solid
+from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
+from cellcolor.frontend.contact.primitives import BoxObstacle, SphereObstacle
 from cellcolor.frontend.contact.tip import Tip
-from cellcolor.frontend.scene import BoxObstacle, SphereObstacle
-from cellcolor.frontend.target.shapes import disc_mesh
-from cellcolor.frontend.target.surface import Surface, rotation_from_rpy
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.setup import Setup
+from cellcolor.frontend.target.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.target.shapes import RectangleObject, disc_mesh
+from cellcolor.frontend.target.surface import Surface
 
 HEIGHT = 0.1  # m, of the plane
 SHAFT = 0.01  # m, from the tip to the body of the shipped tool
 RADIUS = 0.005  # m, of the shipped setup
-SCENE = f"""
-name = "plane"
-setup = "{(ROBOTS / "ur5_polishing.toml").as_posix()}"
-[object]
-kind = "rectangle"
-size_x_m = 0.3
-size_y_m = 0.3
-target_vertices = 400
-[placement]
-position_m = [0.45, 0.1, {HEIGHT}]
-"""
-BOX = """
-[[obstacle]]
-kind = "box"
-size_m = [0.15, 0.15, {thickness}]
-position_m = [0.45, 0.1, {height}]
-"""
+PLANE = Scene(
+    name="plane",
+    setup=Setup.read(ROBOTS / "ur5_polishing.toml"),
+    object=RectangleObject(size_x_m=0.3, size_y_m=0.3, target_vertices=400),
+    placement=Placement(position_m=(0.45, 0.1, HEIGHT)),
+)
 
 
-def built(folder: Path, more: str) -> BuildResult:
-    file = folder / "scene.toml"
-    file.write_text(SCENE + more)
-    return build_surface(file)
+def plate(thickness: float, height: float) -> BoxObstacle:
+    """A plate under or over the middle of the plane."""
+    return BoxObstacle(size_m=(0.15, 0.15, thickness), position_m=(0.45, 0.1, height))
 
 
 def from_shaft_to_box(vertices: Array, bottom: float, top: float) -> Array:
@@ -68,10 +59,8 @@ def from_shaft_to_box(vertices: Array, bottom: float, top: float) -> Array:
         (0.050, 0.069),  # the same 6 mm below: there is room
     ],
 )
-def test_where_an_obstacle_is_no_tip_can_be(
-    tmp_path: Path, thickness: float, height: float
-) -> None:
-    result = built(tmp_path, BOX.format(thickness=thickness, height=height))
+def test_where_an_obstacle_is_no_tip_can_be(thickness: float, height: float) -> None:
+    result = build_surface(PLANE.with_obstacle(plate(thickness, height)))
     vertices = np.array(result.surface.vertices)
     distance = from_shaft_to_box(vertices, height - thickness / 2, height + thickness / 2)
     blocked = (result.reasons == Reason.TIP_BLOCKED).any(axis=1)
@@ -90,9 +79,9 @@ def test_where_an_obstacle_is_no_tip_can_be(
 
 @pytest.mark.parametrize(("ground", "all_blocked"), [(0.13, True), (0.096, True), (0.094, False)])
 def test_nothing_below_the_ground_or_nearer_to_it_than_the_radius(
-    tmp_path: Path, ground: float, all_blocked: bool
+    ground: float, all_blocked: bool
 ) -> None:
-    result = built(tmp_path, f"[ground]\nheight_m = {ground}\n")
+    result = build_surface(PLANE.varied(ground={"height_m": ground}))
     blocked = (result.reasons == Reason.TIP_BLOCKED).any(axis=1)
     assert blocked.all() == blocked.any() == all_blocked
     assert result.report.unreachable["tip blocked"] == blocked.sum()
@@ -108,11 +97,9 @@ def test_a_mesh_blocks_like_a_box(tmp_path: Path) -> None:
     sides += ["6 8 2", "4 8 3", "7 5 3", "3 8 7", "7 6 5", "8 6 7"]
     lines = ["v {} {} {}".format(*p) for p in corners] + [f"f {side}" for side in sides]
     (tmp_path / "plate.obj").write_text("\n".join(lines) + "\n")
-    place = (
-        'kind = "mesh"\nfile = "plate.obj"\nmeters_per_unit = 1.0\nposition_m = [0.45, 0.1, 0.1]'
-    )
-    as_mesh = built(tmp_path, f"[[obstacle]]\n{place}\n")
-    as_box = built(tmp_path, BOX.format(thickness=0.008, height=0.1))
+    shell = MeshObstacle(file="plate.obj", meters_per_unit=1.0, position_m=(0.45, 0.1, 0.1))
+    as_mesh = build_surface(PLANE.with_obstacle(shell).varied(folder=tmp_path))
+    as_box = build_surface(PLANE.with_obstacle(plate(0.008, 0.1)))
     assert (as_mesh.reasons == as_box.reasons).all()
 
 
@@ -136,7 +123,7 @@ def test_against_distances_by_other_code(
     seed: int,
 ) -> None:
     obstacle = BoxObstacle(kind="box", size_m=size, position_m=position, rpy_rad=rpy)
-    tip = Tip(robot, radius, [primitive_solid(obstacle)], None)
+    tip = Tip(robot, radius, [obstacle.solid()], None)
     random = np.random.default_rng(seed)
     points, directions = random.uniform(-0.05, 0.05, (20, 3)), random.normal(size=(20, 3))
     directions /= np.linalg.norm(directions, axis=1, keepdims=True)
@@ -162,7 +149,7 @@ def test_the_region_reaches_to_the_body_of_the_tool(robot: Robot) -> None:
     point, down = np.zeros((1, 3)), np.array([[0.0, 0.0, -1.0]])
     bare = replace(robot, bodies=tuple(body for body in robot.bodies if body.joint < 6))
     for arm, hit in ((robot, True), (bare, False)):
-        assert Tip(arm, 0.002, [primitive_solid(above)], None).blocked(point, down) == hit
+        assert Tip(arm, 0.002, [above.solid()], None).blocked(point, down) == hit
 
 
 def test_a_post_between_two_vertices_is_met(robot: Robot) -> None:
@@ -175,7 +162,7 @@ def test_a_post_between_two_vertices_is_met(robot: Robot) -> None:
         SphereObstacle(kind="sphere", radius_m=0.004, position_m=place)
         for place in ((0.021, 0.017, 0.0), (-0.05, 0.015, 0.006), (0.0, -0.0405, -0.004))
     ]
-    tip = Tip(robot, RADIUS, [primitive_solid(post) for post in posts], None)
+    tip = Tip(robot, RADIUS, [post.solid() for post in posts], None)
     way = np.linspace(0, 1, 400)[:, None]
 
     def distance(edge: Array) -> float:
@@ -196,10 +183,9 @@ def test_a_post_between_two_vertices_is_met(robot: Robot) -> None:
     assert (ends_free & ~free).any()
 
 
-def test_left_out_with_the_other_contacts(scene: Callable[..., Path]) -> None:
-    file = scene(target_vertices=200, height_m=0.2)
-    on = build_surface(file)
+def test_left_out_with_the_other_contacts(scene: Callable[..., Scene]) -> None:
+    wok = scene(target_vertices=200, height_m=0.2)
+    on = build_surface(wok)
     assert on.report.candidates["tip blocked"] > 0 and on.report.reachable == 0
-    setup = file.parent / "ur5_polishing.toml"
-    setup.write_text(setup.read_text() + "\n[constraints]\ncollision = false\n")
-    assert build_surface(file).report.candidates["tip blocked"] == 0
+    off = wok.varied(setup={"constraints": {"collision": False}})
+    assert build_surface(off).report.candidates["tip blocked"] == 0

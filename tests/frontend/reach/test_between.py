@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -13,12 +12,14 @@ from shipped import SCENES, WOK
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, Reason, build_surface
 from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.contact.primitives import CylinderObstacle
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach.between import (
     at_domain_border,
     remains_valid,
     strides,
 )
-from cellcolor.frontend.stage import prepare
+from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.target.shapes import disc_mesh
 from cellcolor.frontend.target.surface import Surface, along_edges
 
@@ -120,20 +121,20 @@ def test_strides_are_of_the_body_that_moves_too_far() -> None:
 @pytest.mark.parametrize("name", ["hemisphere_tilted", "square"])
 def test_no_body_moves_far_between_tested_points(name: str) -> None:
     """On links of a scene, one at a time; the bodies put in place by Pinocchio."""
-    stage = prepare(SCENES / f"{name}.toml")
-    surface, robot = stage.surface, stage.robot
+    prepared = prepare(SCENES / f"{name}.toml")
+    surface, robot = prepared.surface, prepared.robot
     edges, random = surface.edges(), np.random.default_rng(5)
-    solutions = stage.inverse(surface.vertices, -surface.normals)
-    found = stage.judge(solutions.reshape(-1, 6))
+    solutions = prepared.inverse(surface.vertices, -surface.normals)
+    found = prepared.judge(solutions.reshape(-1, 6))
     valid = (found.reasons == Reason.VALID).reshape(-1, 8)
     ends = found.ends.reshape(-1, *valid.shape, 3)
-    longest = longest_steps(stage.judge.end_radii)
+    longest = longest_steps(prepared.judge.end_radii)
     data = robot.model.createData()
     asked: list[Array] = []
 
     def test(points: Array, directions: Array, branch: Array) -> tuple[Array, Array]:
         asked.append(np.column_stack([points, directions]))
-        verdicts = stage.judge(stage.follow(points, directions, branch))
+        verdicts = prepared.judge(prepared.follow(points, directions, branch))
         return verdicts.reasons == Reason.VALID, verdicts.ends
 
     def axis_points(q: Array, share: Array) -> Array:
@@ -158,7 +159,7 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
         start, goal = (np.append(surface.vertices[v], -surface.normals[v]) for v in edge[0])
         order = np.argsort(np.linalg.norm(inner[:, :3] - start[:3], axis=1))
         way = np.array([start, *inner[order], goal])
-        joints = stage.inverse(way[:, :3], way[:, 3:])[:, branch]
+        joints = prepared.inverse(way[:, :3], way[:, 3:])[:, branch]
         for share in (np.zeros(len(robot.bodies)), random.uniform(0, 1, len(robot.bodies))):
             path = np.array([axis_points(q, share) for q in joints])
             moved = np.linalg.norm(np.diff(path, axis=0), axis=2)
@@ -184,15 +185,12 @@ def test_border_of_a_domain() -> None:
     assert not at_domain_border(edges, valid)[:, 1].any()
 
 
-def test_asked_for_in_the_setup(scene: Callable[..., Path]) -> None:
+def test_asked_for_in_the_setup(scene: Callable[..., Scene]) -> None:
     """A narrow post cuts links whose two ends it does not touch."""
-    file = scene(target_vertices=200)
-    post = '\n[[obstacle]]\nkind = "cylinder"\nradius_m = 0.004\nheight_m = 0.3\n'
-    file.write_text(file.read_text() + post + "position_m = [0.3, 0.02, 0.15]\n")
-    asked = build_surface(file)
-    setup = file.parent / "ur5_polishing.toml"
-    setup.write_text(setup.read_text().replace("validity_spacing_m = 0.001", ""))
-    trusting = build_surface(file)
+    post = CylinderObstacle(radius_m=0.004, height_m=0.3, position_m=(0.3, 0.02, 0.15))
+    wok = scene(target_vertices=200).with_obstacle(post)
+    asked = build_surface(wok)
+    trusting = build_surface(wok.varied(setup={"continuity": {"validity_spacing_m": None}}))
     assert (asked.reasons == trusting.reasons).all()
 
     def torn(result: BuildResult) -> set[tuple[int, int, str]]:
@@ -205,11 +203,11 @@ def test_asked_for_in_the_setup(scene: Callable[..., Path]) -> None:
 
 
 def test_a_branch_followed_alone_is_the_same() -> None:
-    stage = prepare(WOK)
-    points, directions = stage.surface.vertices, -stage.surface.normals
+    prepared = prepare(WOK)
+    points, directions = prepared.surface.vertices, -prepared.surface.normals
     branches = np.random.default_rng(2).integers(8, size=len(points))
-    expected = stage.inverse(points, directions)[np.arange(len(points)), branches]
-    found = stage.follow(points, directions, branches)
+    expected = prepared.inverse(points, directions)[np.arange(len(points)), branches]
+    found = prepared.follow(points, directions, branches)
     np.testing.assert_array_equal(found, expected)
     assert np.isfinite(found).all(axis=1).mean() > 0.5
-    assert stage.follow(points[:0], directions[:0], branches[:0]).shape == (0, 6)
+    assert prepared.follow(points[:0], directions[:0], branches[:0]).shape == (0, 6)

@@ -12,11 +12,14 @@ from box import BOX, OUTWARD, obj
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
+from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.target.mesh_file import load_mesh
 from cellcolor.frontend.target.remesh import refine
-from cellcolor.frontend.target.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.target.shapes import RectangleObject, disc_mesh, spherical_cap
 
-Scene = Callable[..., Path]
+Varied = Callable[..., Scene]
 KINEMATIC = {
     Reason.JOINT_LIMITS,
     Reason.GROUND,
@@ -33,51 +36,42 @@ def weak(text: str) -> str:
     return text.replace('effort="28"', 'effort="1.5"')
 
 
-def switched(file: Path, **on: bool) -> set[Reason]:
+def switched(scene: Scene, **on: bool) -> set[Reason]:
     """The reasons that occur with some constraints switched off."""
-    setup = file.parent / "ur5_polishing.toml"
-    lines = [f"{name} = {str(value).lower()}" for name, value in on.items()]
-    setup.write_text(setup.read_text() + "\n[constraints]\n" + "\n".join(lines) + "\n")
-    return {Reason(code) for code in np.unique(build_surface(file).reasons)}
+    result = build_surface(scene.varied(setup={"constraints": on}))
+    return {Reason(code) for code in np.unique(result.reasons)}
 
 
 @pytest.mark.parametrize("alone", OF)
-def test_each_constraint_binds_alone(scene: Scene, alone: str) -> None:
+def test_each_constraint_binds_alone(scene: Varied, alone: str) -> None:
     """With weak joints and strict thresholds every constraint binds; the switches part them."""
-    file = scene(
-        arm=weak, setup={"min_manipulability_m3": 0.05}, target_vertices=200, height_m=0.05
-    )
-    found = switched(file, **{name: name == alone for name in OF})
+    wok = scene(arm=weak, setup={"min_manipulability_m3": 0.05}, target_vertices=200, height_m=0.05)
+    found = switched(wok, **{name: name == alone for name in OF})
     assert found & OF[alone]
     assert found <= OF[alone] | {Reason.VALID, Reason.NO_SOLUTION}
 
 
-def test_all_constraints_are_on_by_default(scene: Scene) -> None:
-    file = scene(
-        arm=weak, setup={"min_manipulability_m3": 0.05}, target_vertices=200, height_m=0.05
-    )
-    found = {Reason(code) for code in np.unique(build_surface(file).reasons)}
+def test_all_constraints_are_on_by_default(scene: Varied) -> None:
+    wok = scene(arm=weak, setup={"min_manipulability_m3": 0.05}, target_vertices=200, height_m=0.05)
+    found = {Reason(code) for code in np.unique(build_surface(wok).reasons)}
     assert all(found & reasons for reasons in OF.values())
 
 
-def test_switched_off_collisions_admit_an_object_in_the_base(scene: Scene) -> None:
-    file = scene(position_m="[0.0, 0.0, -0.12]", target_vertices=50)
+def test_switched_off_collisions_admit_an_object_in_the_base(scene: Varied) -> None:
+    wok = scene(position_m=(0.0, 0.0, -0.12), target_vertices=50)
     with pytest.raises(InputError, match="'base_link'"):
-        build_surface(file)
-    switched(file, collision=False)
+        build_surface(wok)
+    switched(wok, collision=False)
 
 
-def test_patch_and_collision_object_are_two_things(scene: Scene) -> None:
+def test_patch_and_collision_object_are_two_things(scene: Varied) -> None:
     """A plate under a small patch takes away what the ground at its height does."""
-    place = {"target_vertices": 60, "half_angle_rad": 0.3, "position_m": "[0.465, -0.15, -0.14]"}
+    place = {"target_vertices": 60, "half_angle_rad": 0.3, "position_m": (0.465, -0.15, -0.14)}
     ground = build_surface(scene(height_m=-0.14, **place))
-    file = scene(height_m=-2.0, **place)
-    alone = build_surface(file)
-    file.write_text(
-        file.read_text() + '\n[collision_object]\nkind = "rectangle"\nsize_x_m = 3.0\n'
-        "size_y_m = 3.0\ntarget_vertices = 400\n"
-    )
-    beside = build_surface(file)
+    patch = scene(height_m=-2.0, **place)
+    alone = build_surface(patch)
+    plate = RectangleObject(size_x_m=3.0, size_y_m=3.0, target_vertices=400)
+    beside = build_surface(patch.with_object(patch.object, plate))
     changed = alone.reasons != beside.reasons
     assert changed.sum() > 100
     # The patch is what is covered, and no longer what is hit.
@@ -90,21 +84,15 @@ def test_patch_and_collision_object_are_two_things(scene: Scene) -> None:
     assert len(beside.surface.vertices) == len(alone.surface.vertices)
 
 
-def test_mesh_obstacle_is_like_the_primitive(scene: Scene, tmp_path: Path) -> None:
-    file = scene(target_vertices=300)
-    text = file.read_text()
-    size, center = 0.08, [0.24, 0.0, 0.2]
-    file.write_text(
-        f'{text}\n[[obstacle]]\nkind = "box"\nsize_m = [{size}, {size}, {size}]\n'
-        f"position_m = {center}\n"
-    )
-    primitive = build_surface(file)
+def test_mesh_obstacle_is_like_the_primitive(scene: Varied, tmp_path: Path) -> None:
+    wok = scene(target_vertices=300)
+    size, center = 0.08, (0.24, 0.0, 0.2)
+    box = BoxObstacle(size_m=(size, size, size), position_m=center)
+    primitive = build_surface(wok.with_obstacle(box))
     (tmp_path / "box.obj").write_text(obj((BOX - 0.5) * 1000 * size, OUTWARD))
-    file.write_text(
-        f'{text}\n[[obstacle]]\nkind = "mesh"\nfile = "box.obj"\nmeters_per_unit = 0.001\n'
-        f"position_m = {center}\n"
-    )
-    mesh = build_surface(file)
+    name = (tmp_path / "box.obj").as_posix()
+    shell = MeshObstacle(file=name, meters_per_unit=0.001, position_m=center)
+    mesh = build_surface(wok.with_obstacle(shell))
     assert (primitive.reasons == Reason.OBSTACLE_COLLISION).sum() > 100
     assert (primitive.reasons == mesh.reasons).all()
 

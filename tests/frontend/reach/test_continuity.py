@@ -10,7 +10,7 @@ from continuation import Follower
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import shorter_way
-from shipped import ROBOTS, WOK, edited
+from shipped import shipped
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import Crack
@@ -27,7 +27,7 @@ from cellcolor.frontend.reach.continuity import (
 )
 from cellcolor.frontend.reach.smooth import Measure, joint_step
 from cellcolor.frontend.reach.validity import Candidates, Reason
-from cellcolor.frontend.scene import Continuity
+from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.target.shapes import disc_mesh
 from cellcolor.frontend.target.surface import Surface
 
@@ -198,22 +198,15 @@ def test_two_configurations_of_one_color_are_reported() -> None:
 
 
 @pytest.fixture(scope="module")
-def around_wrist_singularities(tmp_path_factory: pytest.TempPathFactory) -> BuildResult:
+def around_wrist_singularities() -> BuildResult:
     """A small hemisphere beside the robot, with wrist singularities on it."""
-
-    file = tmp_path_factory.mktemp("tilted") / "scene.toml"
-    text = edited(
-        WOK.read_text(),
-        setup=f'"{ROBOTS / "ur5_polishing.toml"}"',
-        radius_m=0.115,
-        half_angle_rad=np.pi / 2,
-        position_m="[0.411, 0.156, 0.332]",
-        rpy_rad="[0.0, -1.342, -0.458]",
-        height_m=-0.3,
-        target_vertices=500,
+    scene = shipped("wok").varied(
+        object={"radius_m": 0.115, "half_angle_rad": np.pi / 2, "target_vertices": 500},
+        ground={"height_m": -0.3},
     )
-    file.write_text(text)
-    return build_surface(file)
+    return build_surface(
+        scene.moved(position_m=(0.411, 0.156, 0.332), rpy_rad=(0.0, -1.342, -0.458))
+    )
 
 
 def test_what_is_linked_can_be_followed(

@@ -9,7 +9,7 @@ import pytest
 import rescanning
 from hypothesis import given
 from hypothesis import strategies as st
-from shipped import ROBOTS, SCENES, edited
+from shipped import ROBOTS, edited, shipped
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline, OutOfTime
@@ -18,7 +18,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.reach.continuity import Coloring, color, node_links
 from cellcolor.frontend.reach.slivers import SliverReport, clean
-from cellcolor.frontend.scene import Slivers, load_setup
+from cellcolor.frontend.setup import Setup, Slivers
 from cellcolor.frontend.target.shapes import grid_mesh, rectangle
 
 
@@ -124,20 +124,11 @@ def test_out_of_time() -> None:
 
 
 @pytest.fixture(scope="module")
-def results(tmp_path_factory: pytest.TempPathFactory) -> dict[str, BuildResult]:
+def results() -> dict[str, BuildResult]:
     """The tilted hemisphere without a policy and with the shipped one."""
-    folder = tmp_path_factory.mktemp("slivers")
-    setup = (ROBOTS / "ur5_polishing.toml").read_text()
-    for name in ("ur5.urdf", "polishing_tool.urdf"):
-        setup = setup.replace(f'"{name}"', f'"{(ROBOTS / name).as_posix()}"')
-    built = {}
-    for name, text in (("raw", setup[: setup.index("[slivers]")]), ("policy", setup)):
-        (folder / "setup.toml").write_text(text)
-        scene = (SCENES / "hemisphere_tilted.toml").read_text()
-        file = folder / "scene.toml"
-        file.write_text(edited(scene, setup='"setup.toml"', target_vertices=1000))
-        built[name] = build_surface(file)
-    return built
+    policy = shipped("hemisphere_tilted", 1000)
+    raw = policy.with_setup(policy.setup.varied(slivers=None))
+    return {"raw": build_surface(raw), "policy": build_surface(policy)}
 
 
 def test_policy_takes_away_and_never_adds(results: dict[str, BuildResult]) -> None:
@@ -198,7 +189,7 @@ def test_thresholds_are_checked(tmp_path: Path) -> None:
     text = (ROBOTS / "ur5_polishing.toml").read_text()
     (tmp_path / "s.toml").write_text(edited(text, simplify_below_share=1.5))
     with pytest.raises(InputError, match="less than 1") as caught:
-        load_setup(tmp_path / "s.toml")
+        Setup.read(tmp_path / "s.toml")
     assert caught.value.field == "slivers.simplify_below_share"
 
 

@@ -13,7 +13,7 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.reach.continuity import link
 from cellcolor.frontend.reach.smooth import Measure, Motions, Probe, follow_edges
 from cellcolor.frontend.reach.validity import Candidates
-from cellcolor.frontend.scene import Continuity
+from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.target.surface import Surface
 
 POLICY = Continuity(

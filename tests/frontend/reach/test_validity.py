@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pinocchio as pin
@@ -14,30 +13,26 @@ from independent import arm_reason, clearances, possible_reasons
 from world import World
 
 from cellcolor.frontend import BuildResult, Reason, build_surface
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.prepared import robot_of
 from cellcolor.frontend.reach.validity import within_limits
-from cellcolor.frontend.scene import Setup
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.setup import Setup
 
-Scene = Callable[..., Path]
+Varied = Callable[..., Scene]
 
 
 @pytest.mark.parametrize("weak", [False, True])
-def test_reasons_agree_with_an_independent_loop(
-    setup: Setup, scene: Scene, tmp_path: Path, weak: bool
-) -> None:
+def test_reasons_agree_with_an_independent_loop(setup: Setup, scene: Varied, weak: bool) -> None:
     # Placed so that most reasons occur; once with small torque limits and little room for joint 3.
-    result = build_surface(
-        scene(
-            arm=lambda text: narrow_elbow(lowered_effort(text)) if weak else text,
-            target_vertices=200,
-            radius_m=0.22,
-            half_angle_rad=1.5,
-            position_m="[0.39, 0.03, 0.09]",
-        )
+    wok = scene(
+        arm=lambda text: narrow_elbow(lowered_effort(text)) if weak else text,
+        target_vertices=200,
+        radius_m=0.22,
+        half_angle_rad=1.5,
+        position_m=(0.39, 0.03, 0.09),
     )
-    robot = load_robot(
-        tmp_path / "ur5.urdf", "wrist_3_link", tmp_path / "polishing_tool.urdf", "tool_tip"
-    )
+    result, robot = build_surface(wok), robot_of(wok.setup)
     surface = result.surface
     world = World(robot, surface.vertices, surface.faces)
     unclear = 0
@@ -54,8 +49,8 @@ def test_reasons_agree_with_an_independent_loop(
     assert sum(count > 0 for count in counts.values()) >= 6
 
 
-def test_configurations_put_the_tool_on_the_surface(robot: Robot, scene: Scene) -> None:
-    result = build_surface(scene(target_vertices=200, rpy_rad="[0.2, -0.4, 1.0]"))
+def test_configurations_put_the_tool_on_the_surface(robot: Robot, scene: Varied) -> None:
+    result = build_surface(scene(target_vertices=200, rpy_rad=(0.2, -0.4, 1.0)))
     data, tip = robot.model.createData(), robot.model.getFrameId("tool_tip")
     center = np.array([0.465, -0.15, -0.04])
     rows, branches = np.nonzero(result.node_color >= 0)
@@ -67,7 +62,7 @@ def test_configurations_put_the_tool_on_the_surface(robot: Robot, scene: Scene) 
         assert np.allclose(pose.rotation[:, 2], -(vertex - center) / 0.2, atol=1e-9)
 
 
-def test_locked_joint_stays_where_the_setup_says(scene: Scene) -> None:
+def test_locked_joint_stays_where_the_setup_says(scene: Varied) -> None:
     result = build_surface(scene(setup={"locked_joint_6_rad": 0.7}, target_vertices=200))
     solved = result.reasons != Reason.NO_SOLUTION
     assert solved.sum() > 500
@@ -104,7 +99,7 @@ FREE = {
     ],
 )
 def test_a_constraint_alone_binds(
-    scene: Scene,
+    scene: Varied,
     reason: Reason,
     keys: dict[str, object],
     setup_keys: dict[str, object],
@@ -113,9 +108,7 @@ def test_a_constraint_alone_binds(
     small = {"target_vertices": 200}
     before = build_surface(scene(setup=FREE, height_m=-2.0, **small))
     changed = {"height_m": -2.0} | keys
-    after = build_surface(
-        scene(setup=FREE | setup_keys, arm=arm or (lambda text: text), **small, **changed)
-    )
+    after = build_surface(scene(setup=FREE | setup_keys, arm=arm, **small, **changed))
     assert counts(before)[reason.text] == 0
     assert counts(after)[reason.text] > 20
     # What one test takes away is missing in the later ones, and nothing else changes.
@@ -123,16 +116,16 @@ def test_a_constraint_alone_binds(
     assert (after.reasons[changed_verdicts] == reason).all()
 
 
-@pytest.mark.parametrize("gravity", ["[0.0, 0.0, 0.0]", "[0.0, 0.0, -9.81]"])
-def test_force_and_gravity_both_count(scene: Scene, gravity: str) -> None:
+@pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (0.0, 0.0, -9.81)])
+def test_force_and_gravity_both_count(scene: Varied, gravity: tuple[float, ...]) -> None:
     failed = []
     for force in (0.0, 30.0, 60.0):
         task = {"normal_force_n": force, "gravity_m_per_s2": gravity}
-        file = scene(setup=task, arm=lowered_effort, target_vertices=200)
-        failed.append(counts(build_surface(file))["torque"])
+        wok = scene(setup=task, arm=lowered_effort, target_vertices=200)
+        failed.append(counts(build_surface(wok))["torque"])
     # Without gravity only the push loads the joints. With it the surface carries some of the
     # arm's weight, so that pressing helps at first.
-    if gravity == "[0.0, 0.0, 0.0]":
+    if not any(gravity):
         assert failed[0] == 0 < failed[1] < failed[2]
     else:
         assert failed[0] > failed[1] > 0

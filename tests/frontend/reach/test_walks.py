@@ -9,20 +9,20 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from pathlib import Path
 
 import numpy as np
 import pytest
 from independent import shorter_way
-from shipped import ROBOTS, SCENES, at_resolution, edited
+from shipped import SCENES, shipped
 from world import PAIRS, World
 
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, Reason, build_surface
 from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.contact.primitives import SphereObstacle
+from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import joint_step
-from cellcolor.frontend.stage import Stage, prepare
 from cellcolor.frontend.target.surface import along_edges
 
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
@@ -57,39 +57,41 @@ def walks(result: BuildResult, count: int, seed: int) -> Iterator[tuple[list[int
         yield way, branch
 
 
-def follow(stage: Stage, way: list[int], branch: int) -> tuple[Array, Array, Array]:
+def follow(prepared: PreparedScene, way: list[int], branch: int) -> tuple[Array, Array, Array]:
     """Points, tool directions and configurations along a walk."""
     edges = np.array(list(itertools.pairwise(way)), dtype=np.int64).reshape(-1, 2)
-    pieces = np.ceil(stage.surface.lengths(edges) / MILLIMETER).astype(int)
+    pieces = np.ceil(prepared.surface.lengths(edges) / MILLIMETER).astype(int)
     rows = np.repeat(np.arange(len(edges)), pieces)
     at = np.concatenate([np.arange(count) / count for count in pieces] or [np.zeros(0)])
-    points, directions = along_edges(stage.surface, edges[rows], at)
-    return points, directions, stage.follow(points, directions, np.full(len(points), branch))
+    points, directions = along_edges(prepared.surface, edges[rows], at)
+    return points, directions, prepared.follow(points, directions, np.full(len(points), branch))
 
 
-def largest_part(stage: Stage, points: Array, directions: Array, branch: int, piece: int) -> float:
+def largest_part(
+    prepared: PreparedScene, points: Array, directions: Array, branch: int, piece: int
+) -> float:
     """Largest of 50 steps between two successive points: all of it for a jump."""
     at = np.linspace(0, 1, 51)[:, None]
     between = (1 - at) * points[piece] + at * points[piece + 1]
     turned = (1 - at) * directions[piece] + at * directions[piece + 1]
     turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-    joints = stage.follow(between, turned, np.full(len(at), branch))
+    joints = prepared.follow(between, turned, np.full(len(at), branch))
     return float(joint_step(joints[:-1], joints[1:]).max())
 
 
-def check_walks(name: str, folder: Path, vertices: int, count: int, with_coal: int) -> None:
-    file = at_resolution(name, folder, vertices)
-    result, stage = build_surface(file), prepare(file)
-    robot = stage.robot
+def check_walks(name: str, vertices: int, count: int, with_coal: int) -> None:
+    scene = shipped(name, vertices)
+    result, prepared = build_surface(scene), prepare(scene)
+    robot = prepared.robot
     all_points, all_directions, all_joints = [], [], []
     for way, branch in walks(result, count, seed=7):
-        points, directions, joints = follow(stage, way, branch)
+        points, directions, joints = follow(prepared, way, branch)
         if not len(points):
             continue
         # Beside a singularity a motion is fast, but in fifty parts of a piece it is even.
         step = joint_step(joints[:-1], joints[1:])
         for piece in {int(np.argmax(step)), *np.flatnonzero(step > FAST).tolist()}:
-            assert largest_part(stage, points, directions, branch, piece) < 0.1 * step[piece]
+            assert largest_part(prepared, points, directions, branch, piece) < 0.1 * step[piece]
         way_there = shorter_way(joints[:-1], joints[1:])
         assert stays_in_limits(robot.lower, robot.upper, joints[:-1], *way_there).all()
         all_points.append(points)
@@ -97,41 +99,41 @@ def check_walks(name: str, folder: Path, vertices: int, count: int, with_coal: i
         all_joints.append(joints)
     joints = np.concatenate(all_joints)
     assert len(joints) > 50 * count
-    reasons = stage.judge(joints).reasons
+    reasons = prepared.judge(joints).reasons
     assert (reasons == Reason.VALID).all(), {Reason(r).text for r in np.unique(reasons)}
     poses = forward(robot, joints)
     assert np.abs(poses.tip - np.concatenate(all_points)).max() < 1e-9
     assert np.abs(poses.tool_axis - np.concatenate(all_directions)).max() < 1e-9
     # Once more with other code, one by one.
-    world = World(robot, stage.surface.vertices, stage.surface.faces)
+    world = World(robot, prepared.surface.vertices, prepared.surface.faces)
     for q in np.random.default_rng(1).choice(joints, with_coal):
         world.place(q)
         assert world.to_itself(PAIRS) > -0.0005
         assert world.to_object() > 0
-        assert stage.scene.ground is not None
-        exempt = stage.setup.robot.may_touch_ground
-        assert world.to_ground(stage.scene.ground.height_m, exempt) > -0.0005
+        assert prepared.scene.ground is not None
+        exempt = prepared.setup.robot.may_touch_ground
+        assert world.to_ground(prepared.scene.ground.height_m, exempt) > -0.0005
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_some_walks(name: str, tmp_path: Path) -> None:
-    check_walks(name, tmp_path, vertices=300, count=40, with_coal=40)
+def test_some_walks(name: str) -> None:
+    check_walks(name, vertices=300, count=40, with_coal=40)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_a_thousand_walks(name: str, tmp_path: Path) -> None:
-    check_walks(name, tmp_path, vertices=1000, count=1000, with_coal=1000)
+def test_a_thousand_walks(name: str) -> None:
+    check_walks(name, vertices=1000, count=1000, with_coal=1000)
 
 
 @pytest.mark.parametrize(("name", "radius"), [("hemisphere_tilted", 0.105), ("wok", 0.2)])
 def test_deviation_from_the_sphere(name: str, radius: float) -> None:
     """A mesh edge of length h leaves the sphere by its sagitta, h^2 / (8 r) for short edges."""
-    stage = prepare(SCENES / f"{name}.toml")
-    edges, center = stage.surface.edges(), np.array(stage.scene.placement.position_m)
-    points, directions = along_edges(stage.surface, edges, np.full(len(edges), 0.5))
+    prepared = prepare(SCENES / f"{name}.toml")
+    edges, center = prepared.surface.edges(), np.array(prepared.scene.placement.position_m)
+    points, directions = along_edges(prepared.surface, edges, np.full(len(edges), 0.5))
     depth = radius - np.linalg.norm(points - center, axis=1)
-    length = stage.surface.lengths(edges)
+    length = prepared.surface.lengths(edges)
     assert depth == pytest.approx(length**2 / (8 * radius), rel=0.02)
     assert depth.max() < 0.0006
     # The interpolated normal is that of the sphere.
@@ -151,11 +153,11 @@ def linked_edges(result: BuildResult, edges: Array) -> Array:
     return linked
 
 
-def check_everywhere(name: str, folder: Path, vertices: int) -> None:
+def check_everywhere(name: str, vertices: int) -> None:
     """Every link at pieces of at most 1 mm, and 21 points of every face with three links."""
-    file = at_resolution(name, folder, vertices)
-    result, stage = build_surface(file), prepare(file)
-    surface = stage.surface
+    scene = shipped(name, vertices)
+    result, prepared = build_surface(scene), prepare(scene)
+    surface = prepared.surface
     edges = surface.edges()
     linked = linked_edges(result, edges)
     links, branch = np.nonzero(linked)
@@ -165,8 +167,8 @@ def check_everywhere(name: str, folder: Path, vertices: int) -> None:
         np.repeat(edges[links], count - 1, axis=0),
         np.tile(np.arange(1, count) / count, len(links)),
     )
-    joints = stage.follow(points, directions, np.repeat(branch, count - 1))
-    on_links = stage.judge(joints).reasons
+    joints = prepared.follow(points, directions, np.repeat(branch, count - 1))
+    on_links = prepared.judge(joints).reasons
 
     row_of = {(start, end): row for row, (start, end) in enumerate(edges.tolist())}
     sides = [
@@ -180,8 +182,8 @@ def check_everywhere(name: str, folder: Path, vertices: int) -> None:
     points = (weights @ surface.vertices[corners]).reshape(-1, 3)
     normals = (weights @ surface.normals[corners]).reshape(-1, 3)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    joints = stage.follow(points, -normals, np.repeat(branch, len(weights)))
-    in_faces = stage.judge(joints).reasons
+    joints = prepared.follow(points, -normals, np.repeat(branch, len(weights)))
+    in_faces = prepared.judge(joints).reasons
 
     print(
         f"\n{name}: {len(links)} links, {len(on_links)} points, {(on_links != 0).sum()} invalid;"
@@ -194,34 +196,27 @@ def check_everywhere(name: str, folder: Path, vertices: int) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
-def test_links_and_faces_everywhere(name: str, tmp_path: Path) -> None:
+def test_links_and_faces_everywhere(name: str) -> None:
     """More than is promised: inside a domain points are farther apart, and faces not looked at."""
-    check_everywhere(name, tmp_path, vertices=1000)
+    check_everywhere(name, vertices=1000)
 
 
-def test_an_obstacle_between_two_vertices_is_met(tmp_path: Path) -> None:
+def test_an_obstacle_between_two_vertices_is_met() -> None:
     """The elbow would pass through a sphere of 16 mm on an edge of 14 mm.
 
     It moves 100 mm on that edge. No vertex is invalid for the sphere, and no edge there lies at a
     domain's border.
     """
-    file = tmp_path / "scene.toml"
-    file.write_text(
-        edited(
-            (SCENES / "square.toml").read_text(),
-            setup=f'"{(ROBOTS / "ur5_polishing.toml").as_posix()}"',
-        )
-        + '\n[[obstacle]]\nkind = "sphere"\nradius_m = 0.008\n'
-        + "position_m = [-0.369, -0.149, 0.228]\n"
-    )
-    result, stage = build_surface(file), prepare(file)
-    edges = stage.surface.edges()
+    ball = SphereObstacle(radius_m=0.008, position_m=(-0.369, -0.149, 0.228))
+    scene = shipped("square").with_obstacle(ball)
+    result, prepared = build_surface(scene), prepare(scene)
+    edges = prepared.surface.edges()
     branch = result.branches.index("shoulder-left elbow-up wrist-flipped")
     rows = np.flatnonzero(linked_edges(result, edges)[:, branch])
     way = np.linspace(0, 1, 21)
     points, directions = along_edges(
-        stage.surface, np.repeat(edges[rows], len(way), axis=0), np.tile(way, len(rows))
+        prepared.surface, np.repeat(edges[rows], len(way), axis=0), np.tile(way, len(rows))
     )
-    joints = stage.follow(points, directions, np.full(len(points), branch))
+    joints = prepared.follow(points, directions, np.full(len(points), branch))
     assert len(rows) > 2000
-    assert (stage.judge(joints).reasons == Reason.VALID).all()
+    assert (prepared.judge(joints).reasons == Reason.VALID).all()

@@ -16,9 +16,13 @@ from scipy.spatial.transform import Rotation
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.scene import Placement
-from cellcolor.frontend.target.mesh_file import load_mesh
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.target.mesh_file import MeshObject, load_mesh
+from cellcolor.frontend.target.part import Part
+from cellcolor.frontend.target.placement import Placement
 from cellcolor.frontend.target.shapes import (
+    PipeObject,
+    RectangleObject,
     disc_mesh,
     grid_mesh,
     pipe,
@@ -140,35 +144,26 @@ def test_mesh_files(tmp_path: Path, suffix: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("table", "area"),
+    ("part", "area"),
     [
-        ('kind = "pipe"\nradius_m = 0.083\nlength_m = 0.315\narc_rad = 3.0', 0.083 * 3 * 0.315),
-        ('kind = "rectangle"\nsize_x_m = 0.3\nsize_y_m = 0.2', 0.06),
+        (PipeObject(radius_m=0.083, length_m=0.315, arc_rad=3.0, target_vertices=300), 0.0784),
+        (RectangleObject(size_x_m=0.3, size_y_m=0.2, target_vertices=300), 0.06),
     ],
 )
-def test_other_objects_in_scenes(
-    scene: Callable[..., Path], tmp_path: Path, table: str, area: float
-) -> None:
-    text = scene(position_m="[0.45, 0.1, 0.1]").read_text()
-    start, end = text.index("[object]"), text.index("[placement]")
-    text = f"{text[:start]}[object]\n{table}\ntarget_vertices = 300\n\n{text[end:]}"
-    (tmp_path / "scene.toml").write_text(text)
-    report = build_surface(tmp_path / "scene.toml").report
+def test_other_objects_in_scenes(scene: Callable[..., Scene], part: Part, area: float) -> None:
+    report = build_surface(scene(position_m=(0.45, 0.1, 0.1)).with_object(part)).report
     assert report.area_m2 == pytest.approx(area, rel=0.01)
     assert 200 < report.vertices < 400 and report.reachable > 100
 
 
 def test_mesh_scene_gives_what_the_generator_gives(
-    scene: Callable[..., Path], tmp_path: Path
+    scene: Callable[..., Scene], tmp_path: Path
 ) -> None:
     generated = build_surface(scene(target_vertices=500))
     cap = spherical_cap(200.0, 1.1344640137963142, *disc_mesh(500, 0.15, 1))
     trimesh.Trimesh(cap.vertices, cap.faces, process=False).export(tmp_path / "wok.ply")
-    text = (tmp_path / "scene.toml").read_text()
-    start, end = text.index("[object]"), text.index("[placement]")
-    table = '[object]\nkind = "mesh"\nfile = "wok.ply"\nmeters_per_unit = 0.001\n\n'
-    (tmp_path / "scene.toml").write_text(text[:start] + table + text[end:])
-    read = build_surface(tmp_path / "scene.toml")
+    part = MeshObject(file="wok.ply", meters_per_unit=0.001)
+    read = build_surface(scene().with_object(part).varied(folder=tmp_path))
     assert read.surface.colors == generated.surface.colors
     # Only normals differ, by the mesh's coarseness.
     assert np.mean(read.reasons == generated.reasons) > 0.98

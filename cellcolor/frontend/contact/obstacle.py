@@ -1,0 +1,55 @@
+"""What stands around: the kinds of ``[[obstacle]]`` in a scene."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from pathlib import Path
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.contact.solids import Solid, mesh_solid
+from cellcolor.frontend.registry import Registry
+from cellcolor.frontend.target.placement import Placement
+from cellcolor.frontend.target.surface import Faces
+
+__all__ = ["OBSTACLES", "Obstacle"]
+
+
+class Obstacle(Placement):
+    """A thing that neither the arm nor the tool may touch, and where it stands.
+
+    A kind that files can name has a key ``kind`` with its name, and is registered in ``OBSTACLES``
+    or by an entry point of the group ``cellcolor.obstacles``.
+    """
+
+    @abstractmethod
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> tuple[Array, Faces]:
+        """The obstacle's outside in its own frame: vertices (n, 3) in m and faces (m, 3).
+
+        Pictures show it, and the arm is held against it, unless :meth:`solid` says otherwise.
+
+        Args:
+            folder: what the names of files in the table are relative to.
+            deadline: when to give up.
+
+        Raises:
+            InputError: there is no such obstacle.
+            OutOfTime: the deadline came first.
+        """
+
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:
+        """What the arm is held against, in the world; arguments and errors as of the shell."""
+        vertices, faces = self.shell(folder, deadline)
+        return mesh_solid(self.placed(vertices), faces, deadline)
+
+
+OBSTACLES: Registry[Obstacle] = Registry(
+    "cellcolor.obstacles",
+    Obstacle,  # type: ignore[type-abstract]
+    {
+        "box": "cellcolor.frontend.contact.primitives:BoxObstacle",
+        "cylinder": "cellcolor.frontend.contact.primitives:CylinderObstacle",
+        "sphere": "cellcolor.frontend.contact.primitives:SphereObstacle",
+        "mesh": "cellcolor.frontend.contact.mesh_obstacle:MeshObstacle",
+    },
+)

@@ -1,0 +1,74 @@
+"""Kinds by name: those of this package, and those that other distributions register.
+
+A kind is imported when a scene or setup names it, and not before. Another distribution registers
+one by an entry point, in its ``pyproject.toml``::
+
+    [project.entry-points."cellcolor.parts"]
+    torus = "torus_part:Torus"
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.metadata import EntryPoint, entry_points
+from typing import Any, Generic, TypeVar
+
+from pydantic_core import PydanticCustomError
+
+from cellcolor.errors import InputError
+from cellcolor.frontend.tables import Table
+
+__all__ = ["Registry", "of_kind"]
+
+T = TypeVar("T")
+
+
+class Registry(Generic[T]):
+    """Classes by the name that files have for them."""
+
+    def __init__(self, group: str, base: type[T], own: Mapping[str, str]) -> None:
+        """``own`` are those of this package, ``module:class`` each; ``group`` has all others."""
+        self._group, self._base, self._own = group, base, own
+
+    def find(self, name: str) -> type[T]:
+        """The class of that name.
+
+        Raises:
+            InputError: there is none, there are two, or it cannot be imported or is no such class.
+        """
+        if name in self._own:
+            found = [EntryPoint(name, self._own[name], self._group)]
+        else:
+            others = entry_points(group=self._group, name=name)
+            found = list({point.value: point for point in others}.values())
+        if not found:
+            known = sorted({*self._own, *entry_points(group=self._group).names})
+            raise InputError(None, None, f"unknown kind {name!r}; known: {', '.join(known)}")
+        if len(found) > 1:
+            values = " and ".join(sorted(point.value for point in found))
+            raise InputError(None, None, f"{name!r} is registered twice: {values}")
+        (point,) = found
+        try:
+            loaded = point.load()
+        except Exception as error:  # whatever somebody else's module runs into
+            message = f"{name!r} ({point.value}) cannot be imported: {error!r}"
+            raise InputError(None, None, message) from error
+        if not (isinstance(loaded, type) and issubclass(loaded, self._base)):
+            message = f"{name!r} ({point.value}) is no {self._base.__name__}"
+            raise InputError(None, None, message)
+        return loaded
+
+
+def of_kind(registry: Registry[Any], content: object) -> Table:
+    """The table of the class that the content's ``kind`` names; for validators of pydantic."""
+    if not isinstance(content, Mapping):
+        raise PydanticCustomError("no_table", "must be a table with a kind")
+    kind = content.get("kind")
+    if not isinstance(kind, str):
+        raise PydanticCustomError("no_kind", "needs a kind, in quotation marks")
+    try:
+        found = registry.find(kind)
+    except InputError as error:
+        raise PydanticCustomError("kind", "{text}", {"text": error.message}) from error
+    table: Table = found.model_validate(content)
+    return table

@@ -1,0 +1,103 @@
+"""Setups: robot, tool, thresholds and continuity, which scenes share."""
+
+from __future__ import annotations
+
+from typing import Annotated, Self
+
+from pydantic import Field, FiniteFloat, model_validator
+from pydantic_core import PydanticCustomError
+
+from cellcolor.frontend.tables import FileTable, NotNegative, Positive, Table, Vector
+
+__all__ = ["Constraints", "Continuity", "RobotFiles", "Setup", "Slivers", "Task", "Thresholds"]
+
+
+class RobotFiles(Table):
+    """Arm and tool, and the joint that the task leaves free.
+
+    ``arm_urdf`` and ``tool_urdf`` are names of files, or URDF texts themselves, which begin with
+    ``<``.
+    """
+
+    arm_urdf: str
+    flange_link: str
+    tool_urdf: str
+    tip_link: str
+    locked_joint_6_rad: FiniteFloat
+    may_touch_ground: tuple[str, ...] = ()
+
+
+class Task(Table):
+    """What the tool has to do on each point, and how much room it needs there."""
+
+    normal_force_n: NotNegative
+    contact_radius_m: Annotated[FiniteFloat, Field(ge=0.001)] = 0.005
+    gravity_m_per_s2: Vector
+
+
+def _one_of_each(table: Table, *names: str) -> None:
+    """Hold a table to give each threshold once: as a share of reach^3, or in m^3 as NAME_m3."""
+    for name in names:
+        given = [key for key in (name, f"{name}_m3") if getattr(table, key) is not None]
+        if len(given) != 1:
+            message = f"give either {name} or {name}_m3"
+            raise PydanticCustomError("one_of_each", "{message}", {"message": message})
+
+
+class Thresholds(Table):
+    """What counts as well conditioned, as shares of the cube of the arm's reach or in m^3."""
+
+    min_manipulability: NotNegative | None = None
+    min_manipulability_m3: NotNegative | None = None
+    min_task_determinant: NotNegative | None = None
+    min_task_determinant_m3: NotNegative | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        _one_of_each(self, "min_manipulability", "min_task_determinant")
+        return self
+
+
+class Continuity(Table):
+    """When two configurations on neighboring vertices are joined by a continuous motion."""
+
+    base_step_rad: Positive
+    step_per_length_rad_per_m: NotNegative
+    near_singular_determinant: NotNegative | None = None
+    near_singular_determinant_m3: NotNegative | None = None
+    probe_spacing_m: Positive
+    validity_spacing_m: Positive | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        _one_of_each(self, "near_singular_determinant")
+        return self
+
+
+Share = Annotated[FiniteFloat, Field(ge=0, lt=1)]
+
+
+class Constraints(Table):
+    """The paper's three constraints (section III-A); each can be left out."""
+
+    collision: bool = True
+    force: bool = True
+    conditioning: bool = True
+
+
+class Slivers(Table):
+    """What happens to small cells; both thresholds are shares of the surface's area."""
+
+    simplify_below_share: Share = 0.0
+    uncover_below_share: Share = 0.0
+
+
+class Setup(FileTable):
+    """Robot, task, thresholds, continuity and sliver policy, shared by scenes."""
+
+    robot: RobotFiles
+    task: Task
+    thresholds: Thresholds
+    continuity: Continuity
+    constraints: Constraints = Constraints()
+    slivers: Slivers | None = None

@@ -1,0 +1,168 @@
+"""Tables: the strict, unchanging values that scenes and setups are made of.
+
+A table is the same whether a TOML file has it or Python makes it: every key is known, units stand
+in the names, and what a file may not say cannot be said in Python either.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any, Self
+
+import numpy as np
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat, ValidationError
+
+from cellcolor.errors import InputError
+from cellcolor.files.documents import read_text
+
+__all__ = [
+    "Coordinate",
+    "FileTable",
+    "Length",
+    "NotNegative",
+    "Position",
+    "Positive",
+    "Table",
+    "Vector",
+    "in_file",
+]
+
+Positive = Annotated[FiniteFloat, Field(gt=0)]
+NotNegative = Annotated[FiniteFloat, Field(ge=0)]
+Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+# Far beyond what an arm covers, well within what distances can be computed of.
+Length = Annotated[FiniteFloat, Field(ge=1e-6, le=1e6)]
+Coordinate = Annotated[FiniteFloat, Field(ge=-1e6, le=1e6)]
+Position = tuple[Coordinate, Coordinate, Coordinate]
+
+
+class Table(BaseModel):
+    """A table of a scene or setup.
+
+    Lists and arrays of numpy are taken for tuples.
+
+    Raises:
+        InputError: an unknown or missing key, a value of the wrong type or out of range; names the
+            key.
+    """
+
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    def __init__(self, /, **content: Any) -> None:
+        try:
+            self.__pydantic_validator__.validate_python(_settled(content), self_instance=self)
+        except ValidationError as error:
+            raise _fault(error) from error
+
+    # Without this mark pydantic would call __init__ for a table inside another one, and the error
+    # would not know where in the outer one it is.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    def varied(self, **changes: Any) -> Self:
+        """The same table with some keys changed.
+
+        A mapping for a key that holds a table changes keys of that table, unless it has a ``kind``
+        of its own: then it is a new one.
+
+        Raises:
+            InputError: as when the table is made; names the key.
+        """
+        content = {name: getattr(self, name) for name in type(self).model_fields}
+        for key, change in changes.items():
+            old = content.get(key)
+            if isinstance(change, Mapping) and isinstance(old, Table) and "kind" not in change:
+                try:
+                    change = old.varied(**change)
+                except InputError as error:
+                    place = f"{key}.{error.field}" if error.field else key
+                    raise InputError(None, place, error.message) from error
+            content[key] = change
+        return type(self)(**content)
+
+
+class FileTable(Table):
+    """A table that is a whole file, or could be.
+
+    Attributes:
+        folder: what the names of other files in it are relative to.
+        file: where it was read, for errors; None for one that was made or varied in Python.
+    """
+
+    folder: Annotated[Path, BeforeValidator(lambda name: Path(name)), Field(exclude=True)] = Path()
+    file: Annotated[Path | None, Field(exclude=True)] = None
+
+    @classmethod
+    def read(cls, file: str | PathLike[str]) -> Self:
+        """Read a TOML file.
+
+        Raises:
+            InputError: unreadable, not TOML, or what :class:`Table` refuses; names the file and
+                the key.
+        """
+        path = Path(file)
+        content = _toml(path)
+        for name in FileTable.model_fields:
+            if name in content:
+                raise InputError(str(path), name, "unknown key")
+        with in_file(path):
+            return cls(**content, folder=path.parent, file=path)
+
+    def varied(self, **changes: Any) -> Self:
+        """The same table with some keys changed; see :meth:`Table.varied`."""
+        return super().varied(**({"file": None} | changes))
+
+
+@contextmanager
+def in_file(file: Path | None) -> Iterator[None]:
+    """Name the file, if there is one, in errors that name none."""
+    try:
+        yield
+    except InputError as error:
+        if error.file or file is None:
+            raise
+        raise error.in_file(str(file)) from error
+
+
+def _toml(file: Path) -> dict[str, Any]:
+    text = read_text(file)
+    if _LONG_KEY.search(text):  # tomllib takes memory with the square of a key's parts
+        raise InputError(str(file), None, "not usable TOML: a key of more than 50 parts")
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(str(file), None, f"not TOML: {error}") from error
+    except RecursionError as error:
+        raise InputError(str(file), None, "not usable TOML: nested too deeply") from error
+    except ValueError as error:
+        message = "not usable TOML: a number with too many digits"
+        raise InputError(str(file), None, message) from error
+
+
+_LONG_KEY = re.compile(r"""(?<![\w-])(?:(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+\.[ \t]*+){50}""")
+
+
+def _settled(content: Any) -> Any:
+    """Lists and arrays as tuples, numbers of numpy as Python's; all else as it is.
+
+    Strict validation takes no list for a tuple, and TOML's arrays are lists.
+    """
+    if isinstance(content, dict):
+        return {key: _settled(item) for key, item in content.items()}
+    if isinstance(content, (np.ndarray, np.generic)) and content.ndim < 2:  # larger: of a mesh
+        content = content.tolist()
+    return tuple(map(_settled, content)) if isinstance(content, (list, tuple)) else content
+
+
+def _fault(error: ValidationError) -> InputError:
+    """The first fault: ``("object", "radius_m")`` as ``object.radius_m``."""
+    first = error.errors(include_url=False)[0]
+    key = ""
+    for part in first["loc"]:
+        key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else part
+    message = "unknown key" if first["type"] == "extra_forbidden" else first["msg"]
+    return InputError(None, key or None, message)

@@ -1,0 +1,46 @@
+"""What can be covered: the kinds of ``[object]`` in a scene."""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from pathlib import Path
+
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.registry import Registry
+from cellcolor.frontend.tables import Table
+from cellcolor.frontend.target.surface import Surface
+
+__all__ = ["PARTS", "Part"]
+
+
+class Part(Table):
+    """An object in its own frame: the keys of its table, and the surface that they describe.
+
+    A kind that files can name has a key ``kind`` with its name, and is registered in ``PARTS`` or
+    by an entry point of the group ``cellcolor.parts``.
+    """
+
+    @abstractmethod
+    def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
+        """The part's surface in its own frame.
+
+        Args:
+            folder: what the names of files in the table are relative to.
+            deadline: when to give up.
+
+        Raises:
+            InputError: there is no such surface.
+            OutOfTime: the deadline came first.
+        """
+
+
+PARTS: Registry[Part] = Registry(
+    "cellcolor.parts",
+    Part,  # type: ignore[type-abstract]
+    {
+        "spherical-cap": "cellcolor.frontend.target.shapes:CapObject",
+        "pipe": "cellcolor.frontend.target.shapes:PipeObject",
+        "rectangle": "cellcolor.frontend.target.shapes:RectangleObject",
+        "mesh": "cellcolor.frontend.target.mesh_file:MeshObject",
+    },
+)
