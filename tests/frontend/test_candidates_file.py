@@ -14,7 +14,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.frontend import Reason, build_surface
 from cellcolor.frontend.candidates_file import side_file
 from cellcolor.frontend.scene import Scene
-from cellcolor.pictures.by_reason import read_verdicts
+from cellcolor.pictures.by_reason import read_candidate_reasons
 
 
 def test_build_writes_it_beside_the_surface(
@@ -46,11 +46,13 @@ def test_more_colors_than_sixteen_bits_tell(scene: Callable[..., Scene], tmp_pat
     surface = replace(result.surface, meta={"side_file": "many.npz"})
     numbers = np.arange(result.node_color.size).reshape(result.node_color.shape) + 70_000
     (tmp_path / "many.npz").write_bytes(side_file(replace(result, node_color=numbers)))
-    assert np.array_equal(read_verdicts(surface, tmp_path / "many.json").node_color, numbers)
+    assert np.array_equal(
+        read_candidate_reasons(surface, tmp_path / "many.json").node_color, numbers
+    )
     with np.load(tmp_path / "many.npz") as side:
         old = dict(side) | {"node_color": result.node_color.astype(np.int16)}
     np.savez_compressed(tmp_path / "many.npz", **old)
-    read = read_verdicts(surface, tmp_path / "many.json").node_color
+    read = read_candidate_reasons(surface, tmp_path / "many.json").node_color
     assert np.array_equal(read, result.node_color) and read.min() == -1
 
 
