@@ -1,0 +1,221 @@
+"""``solve``: exit codes, what goes to standard output, and what is written."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from commands import json_lines, run
+from documents import INSTANCE
+from library import INSTANCES, PAPER
+
+from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.solution import Solution
+
+RING = PAPER / "ring.json"
+
+CORRIDORS = PAPER / "parallel-corridors.json"
+
+ZEROS = PAPER / "crossing-zeros.json"
+
+Capture = pytest.CaptureFixture[str]
+
+# Ctrl-C as soon as the search has a division: from another thread if it runs in one.
+INTERRUPTED = """
+import contextlib, signal, sys, threading
+import cellcolor.cli, cellcolor.cli.solve
+
+sent = threading.Event()
+
+@contextlib.contextmanager
+def watched(_file):
+    def report(segments, _bound):
+        searching = "dfs" in sys.argv or threading.current_thread() is not threading.main_thread()
+        if segments is not None and searching and not sent.is_set():
+            sent.set()
+            signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+    yield report
+
+cellcolor.cli.solve.progress_of = watched
+code = cellcolor.cli.main(sys.argv[1:])
+sys.exit(code if sent.is_set() else 99)
+"""
+
+
+class TestSolve:
+    def test_table(self, capsys: Capture) -> None:
+        assert run("solve", ZEROS) == 0
+        out, err = capsys.readouterr()
+        assert err == ""
+        rows = [line.split() for line in out.splitlines()]
+        assert ["segments", "2"] in rows
+        assert ["lift-offs", "1"] in rows
+        assert any(row[:2] == ["status", "optimal"] for row in rows)
+        assert "\x1b" not in out
+        assert "part of 0" in out
+
+    def test_a_table_has_200_segments_at_most(self, tmp_path: Path, capsys: Capture) -> None:
+        """250 cells apart from each other are 250 segments."""
+        path = tmp_path / "apart.json"
+        cells = tuple(Cell(number, (0,), ()) for number in range(250))
+        path.write_text(Instance("apart", ("red",), cells, ()).to_json(), encoding="utf-8")
+        assert run("solve", path) == 0
+        rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+        assert [row[:3] for row in rows if "red" in row] == [
+            [str(number), "red", str(number)] for number in range(200)
+        ]
+        assert ["…", "50", "more", "segments"] in rows
+        assert ["segments", "250"] in rows
+
+    def test_share_of_area(self, tmp_path: Path, capsys: Capture) -> None:
+        """Four neighbours of 1 m² and a divided cell of 4 m²: nobody knows whose its area is."""
+        instance = Instance.read(PAPER / "figsimpleexample.json")
+        cells = [replace(cell, area=1.0 if cell.id else 4.0) for cell in instance.cells]
+        path = tmp_path / "areas.json"
+        path.write_text(replace(instance, cells=tuple(cells)).to_json(), encoding="utf-8")
+        assert run("solve", path) == 0
+        out = capsys.readouterr().out
+        assert "share of area" in out
+        assert out.count("25.0–75.0 %") == 2
+        assert "where the cut runs through a divided cell is free" in out
+        assert run("solve", RING) == 0  # nothing is divided there
+        assert "where the cut runs" not in capsys.readouterr().out
+
+    def test_json_is_all_there_is(self, capsys: Capture) -> None:
+        assert run("solve", RING, CORRIDORS, "--json") == 0
+        out, err = capsys.readouterr()
+        assert err == ""
+        first, second = json_lines(out)
+        assert (first["file"], second["file"]) == (str(RING), str(CORRIDORS))
+        assert (first["segments"], second["segments"]) == (2, 3)
+        first.pop("file")
+        assert Solution.from_document(first).status == "optimal"
+
+    def test_search_space_surface(self, capsys: Capture) -> None:
+        assert run("solve", CORRIDORS, "--search-space", "surface", "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["search_space"], line["strands"], line["segments"]) == ("surface", 2, 2)
+        assert line["proved_for_surface"] is True
+
+    def test_one_strand_is_the_paper(self, capsys: Capture) -> None:
+        """Not proved for the surface, though nothing better exists with one strand: exit code 3."""
+        code = run("solve", CORRIDORS, "--search-space", "surface", "--strands", 1, "--json")
+        assert code == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["segments"], line["status"], line["surface_lower_bound"]) == (3, "feasible", 2)
+
+    @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
+    def test_solvers(self, solver: str, capsys: Capture) -> None:
+        assert run("solve", ZEROS, "--solver", solver, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["solver"], line["segments"]) == (solver, 2)
+
+    def test_surface_like_its_instance(self, tmp_path: Path, capsys: Capture) -> None:
+        """What build writes beside a surface is what solve makes of that surface."""
+        surface = tmp_path / "s.surface.json"
+        surface.write_text((PAPER / "ring.surface.json").read_text("utf-8"), encoding="utf-8")
+        assert run("build", surface, "-o", tmp_path / "s.json") == 0
+        capsys.readouterr()
+        assert run("solve", surface, tmp_path / "s.json", "--json") == 0
+        lines = json_lines(capsys.readouterr().out)
+        assert [line["segments"] for line in lines] == [2, 2]
+        assert lines[0]["instance"] == lines[1]["instance"]
+
+    def test_output_file(self, tmp_path: Path) -> None:
+        out = tmp_path / "solution.json"
+        assert run("solve", RING, "-o", out) == 0
+        assert Solution.read(out).segments == 2
+        assert list(tmp_path.iterdir()) == [out]
+        assert run("check", RING, out) == 0
+
+    def test_output_folder(self, tmp_path: Path) -> None:
+        folder = tmp_path / "new"
+        assert run("solve", RING, CORRIDORS, "-o", folder) == 0
+        assert sorted(path.name for path in folder.iterdir()) == [
+            "parallel-corridors.solution.json",
+            "ring.solution.json",
+        ]
+        assert Solution.read(folder / "ring.solution.json").segments == 2
+        assert run("solve", ZEROS, "-o", folder) == 0  # an existing folder, for one input too
+        assert Solution.read(folder / "crossing-zeros.solution.json").segments == 2
+
+    def test_a_bad_file_does_not_stop_the_others(self, tmp_path: Path, capsys: Capture) -> None:
+        bad = tmp_path / "bad.json"
+        bad.write_text("{", encoding="utf-8")
+        folder = tmp_path / "out"
+        assert run("solve", RING, bad, ZEROS, "--json", "-o", folder) == 2
+        out, err = capsys.readouterr()
+        first, second, third = json_lines(out)
+        assert (first["segments"], third["segments"]) == (2, 2)
+        assert set(second) == {"file", "error"}
+        assert second["file"] == str(bad)
+        (line,) = err.splitlines()
+        assert str(bad) in line
+        assert len(list(folder.iterdir())) == 2
+
+    def test_overview_of_several(self, capsys: Capture) -> None:
+        assert run("solve", RING, CORRIDORS) == 0
+        rows = [line.split()[:4] for line in capsys.readouterr().out.splitlines()]
+        assert [str(RING), "3", "2", "1"] in rows
+        assert [str(CORRIDORS), "6", "3", "2"] in rows
+
+    @pytest.mark.usefixtures("not_proved")
+    def test_not_proved(self, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "best.json"
+        assert run("solve", RING, "-o", out, "--json") == 3
+        assert Solution.read(out).status == "feasible"
+        assert json_lines(capsys.readouterr().out)[0]["segments"] == 2
+        assert run("solve", RING, tmp_path / "none.json") == 2  # 2 wins over 3
+
+    def test_time_limit(self, tmp_path: Path) -> None:
+        out = tmp_path / "best.json"
+        hub = INSTANCES / "random" / "hub_44.json"
+        assert run("solve", hub, "--solver", "dfs", "--time-limit", 0.05, "-o", out) == 3
+        solution = Solution.read(out)
+        assert solution.status in ("feasible", "unknown")
+        assert run("check", hub, out) == 0
+
+    @pytest.mark.parametrize(
+        ("instance", "options"),
+        [
+            # What is found first has more segments than the proof will leave.
+            (INSTANCES / "random" / "hub_44.json", []),
+            (INSTANCES / "random" / "hub_24.json", ["--solver", "dfs"]),
+        ],
+        ids=["cp-sat", "dfs"],
+    )
+    def test_interrupt(self, instance: Path, options: list[str], tmp_path: Path) -> None:
+        """Ctrl-C ends the search, the best found is written, and the files after it are left."""
+        arguments = ["solve", instance, RING, "-o", tmp_path, *options]
+        done = subprocess.run(
+            [sys.executable, "-c", INTERRUPTED, *map(str, arguments)], check=False
+        )
+        assert done.returncode == 3
+        (written,) = tmp_path.iterdir()
+        assert Solution.read(written).status == "feasible"
+        assert run("check", instance, written) == 0
+
+    def test_empty_instance(self, tmp_path: Path, capsys: Capture) -> None:
+        empty = INSTANCE | {"cells": [], "edges": [], "known": {}}
+        empty.pop("surface")
+        path = tmp_path / "empty.json"
+        path.write_text(json.dumps(empty), encoding="utf-8")
+        for solver in ("cp-sat", "dfs"):
+            assert run("solve", path, "--json", "--solver", solver) == 0
+            (line,) = json_lines(capsys.readouterr().out)
+            assert (line["segments"], line["lift_offs"], line["cells"]) == (0, 0, [])
+        assert run("solve", path) == 0
+
+    def test_progress_only_for_people(
+        self, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+        monkeypatch.setenv("TERM", "xterm")
+        assert run("solve", RING, "--json") == 0
+        out, err = capsys.readouterr()
+        assert "ring.json" in err
+        assert len(json_lines(out)) == 1

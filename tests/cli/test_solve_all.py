@@ -1,0 +1,198 @@
+"""``solve --all``: every optimal scheme, as many as asked for."""
+
+from __future__ import annotations
+
+import io
+import json
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+import pytest
+from commands import json_lines, run
+from library import PAPER
+
+import cellcolor.cli.commands
+import cellcolor.cli.solve
+import cellcolor.solvers.checked
+import cellcolor.solvers.cpsat.schemes.enumeration
+from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
+from cellcolor.deadline import OutOfTime
+
+ZEROS = PAPER / "crossing-zeros.json"
+
+Capture = pytest.CaptureFixture[str]
+
+
+def _free(cells: int, colors: int) -> Instance:
+    """Cells without borders, each with all colors."""
+    own = tuple(range(colors))
+    return Instance("free", tuple(map(str, own)), tuple(Cell(i, own, ()) for i in range(cells)), ())
+
+
+class TestAllSchemes:
+    @pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
+    def test_all(self, solver: str, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "all.jsonl"
+        assert run("solve", ZEROS, "--all", "--solver", solver, "-o", out, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (3, True)
+        solution, *schemes = json_lines(out.read_text(encoding="utf-8"))
+        assert (solution["format"], solution["schemes"]) == ("cellcolor/solution", 3)
+        assert [scheme["format"] for scheme in schemes] == ["cellcolor/scheme"] * 3
+        assert len({scheme_key(division) for division in read_schemes(out)}) == 3
+        assert list(tmp_path.iterdir()) == [out]
+        assert run("check", ZEROS, out) == 0
+
+    def test_table(self, capsys: Capture) -> None:
+        assert run("solve", PAPER / "figeasycell3.json", "--all") == 0
+        rows = [line.split() for line in capsys.readouterr().out.splitlines()]
+        assert ["schemes", "3", "(all", "of", "them)"] in rows
+
+    @pytest.mark.parametrize(("limit", "schemes", "complete"), [(1, 1, False), (2, 2, False)])
+    def test_limit(
+        self, limit: int, schemes: int, complete: bool, tmp_path: Path, capsys: Capture
+    ) -> None:
+        out = tmp_path / "some.jsonl"
+        assert run("solve", ZEROS, "--all", "--limit", limit, "-o", out, "--json") == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (schemes, complete)
+        assert len(list(read_schemes(out))) == limit
+        assert run("check", ZEROS, out) == 0
+
+    def test_limit_that_is_just_enough(self, capsys: Capture) -> None:
+        assert run("solve", ZEROS, "--all", "--limit", 3, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (3, True)
+
+    @pytest.mark.parametrize(
+        ("cells", "colors", "code", "complete"),
+        # Cells without a border are painted in any of their colors: 1000 and 1024 schemes.
+        [(3, 10, 0, True), (10, 2, 3, False)],
+    )
+    def test_a_thousand_unless_asked_for_more(
+        self,
+        cells: int,
+        colors: int,
+        code: int,
+        complete: bool,
+        tmp_path: Path,
+        capsys: Capture,
+    ) -> None:
+        path, out = tmp_path / "free.json", tmp_path / "all.jsonl"
+        path.write_text(_free(cells, colors).to_json(), encoding="utf-8")
+        assert run("solve", path, "--all", "-o", out, "--json") == code
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (1000, complete)
+        assert len({scheme_key(division) for division in read_schemes(out)}) == 1000
+        assert run("solve", path, "--all", "--limit", 1024, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out.splitlines()[-1])
+        assert (line["schemes"], line["complete"]) == (colors**cells, True)
+
+    def test_progress_counts_schemes(
+        self, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+        monkeypatch.setenv("TERM", "xterm")
+        assert run("solve", ZEROS, "--all", "--json") == 0
+        out, err = capsys.readouterr()
+        assert "3 schemes so far" in err
+        assert json_lines(out)[0]["schemes"] == 3
+
+    @pytest.mark.parametrize("ctrl_c", [False, True])
+    def test_stopped(
+        self,
+        ctrl_c: bool,
+        tmp_path: Path,
+        capsys: Capture,
+        monkeypatch: pytest.MonkeyPatch,
+    ) -> None:
+        """What was found before the end of the time, or Ctrl-C, is written."""
+        enumerate_schemes = cellcolor.solvers.checked.enumerate_schemes
+
+        def interrupted(*arguments: Any) -> Iterator[Division]:
+            yield next(iter(enumerate_schemes(*arguments)))
+            if ctrl_c:
+                signal.raise_signal(signal.SIGINT)
+            raise OutOfTime("time")
+
+        monkeypatch.setattr(cellcolor.solvers.checked, "enumerate_schemes", interrupted)
+        out = tmp_path / "some.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out, "--json") == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["status"], line["schemes"], line["complete"]) == ("optimal", 1, False)
+        assert len(list(read_schemes(out))) == 1
+        assert list(tmp_path.iterdir()) == [out]
+
+    @pytest.mark.parametrize("moment", ["before", "within", "after"])
+    def test_a_signal_while_a_scheme_is_written(
+        self, moment: str, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The solution counts exactly the schemes that follow it, all of them whole."""
+
+        class Spool(io.BytesIO):
+            def write(self, line: Any) -> int:
+                if not self.getvalue():
+                    return super().write(line)
+                if moment != "before":
+                    super().write(line[: len(line) // 2] if moment == "within" else line)
+                signal.raise_signal(signal.SIGINT)
+                raise AssertionError("the signal was not heard")
+
+        monkeypatch.setattr(cellcolor.cli.solve, "_spool", lambda _: nullcontext(Spool()))
+        out = tmp_path / "some.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out) == 3
+        assert (Solution.read(out).schemes, len(list(read_schemes(out)))) == (1, 1)
+        assert run("check", ZEROS, out) == 0
+        assert "1 schemes" in capsys.readouterr().out
+
+    def test_too_large(
+        self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """The minimum is found all the same, and the solution says why there are no schemes."""
+        monkeypatch.setattr(cellcolor.solvers.cpsat.schemes.enumeration, "_MOST_LITERALS", 1)
+        out = tmp_path / "none.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out) == 3
+        solution = Solution.read(out)
+        assert (solution.status, solution.schemes, solution.complete) == ("optimal", 0, False)
+        (note,) = solution.notes
+        assert note.startswith("The model of all schemes was not built")
+        assert note in capsys.readouterr().out
+        assert run("check", ZEROS, out) == 0
+
+    @pytest.mark.usefixtures("not_proved")
+    def test_no_schemes_of_what_is_not_proved(self, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "none.jsonl"
+        assert run("solve", ZEROS, "--all", "-o", out, "--json") == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (0, False)
+        assert list(read_schemes(out)) == []
+
+    def test_cell_with_several_live_loops(self, tmp_path: Path, capsys: Capture) -> None:
+        out = tmp_path / "x.jsonl"
+        """The depth-first search lists no schemes of such cells."""
+        command = ("solve", PAPER / "annulus.json", "--all", "--solver", "dfs", "-o", out)
+        assert run(*command) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert "annulus.json: cells[1].loops: " in line
+        assert not out.exists()
+
+    def test_several_loops_of_which_one_is_live(self, tmp_path: Path, capsys: Capture) -> None:
+        """Rule 5 speaks of live darts only: an unreachable hole does not count."""
+        hole = {
+            "format": "cellcolor/instance",
+            "version": 1,
+            "name": "hole",
+            "colors": ["red"],
+            "cells": [{"id": 0, "colors": [0], "loops": [[1], [2]]}],
+            "edges": [{"id": 1, "left": 0, "right": -1}, {"id": 2, "left": 0, "right": -1}],
+        }
+        path = tmp_path / "hole.json"
+        path.write_text(json.dumps(hole), encoding="utf-8")
+        assert run("solve", path, "--all", "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["segments"], line["schemes"], line["complete"]) == (1, 1, True)

@@ -1,0 +1,104 @@
+"""Scenes with the arm in a picture: the collision object, and the arm itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from library import INSTANCES
+from numpy.typing import NDArray
+from pages import (
+    needs_frontend,
+    points,
+    show,
+    small_wok,
+    traces,
+)
+
+pytest.importorskip("matplotlib")
+pytest.importorskip("plotly")
+
+
+@needs_frontend
+class TestScene:
+    def test_collision_object(self, tmp_path: Path) -> None:
+        """A smaller cap in the same frame is what must not be hit."""
+        cap = {"kind": '"spherical-cap"', "radius_m": 0.15, "half_angle_rad": 1.0}
+        keys = [f"{key} = {value}" for key, value in (cap | {"target_vertices": 61}).items()]
+        scene = small_wok(tmp_path, "\n".join(["[collision_object]", *keys]))
+        show(
+            scene,
+            "--vertex",
+            0,
+            "--branch",
+            self.valid_at_the_top(scene),
+            "-o",
+            tmp_path / "x.html",
+        )
+        found = {t["name"]: points(t) for t in traces(tmp_path / "x.html") if t["type"] == "mesh3d"}
+        center = np.array([0.465, -0.15, -0.04])
+        distances = np.linalg.norm(found["collision object"] - center, axis=1)
+        np.testing.assert_allclose(distances, 0.15, atol=1e-9)
+        assert len(found["collision object"]) == 61
+
+    def valid_at_the_top(self, scene: Path) -> str:
+        from cellcolor.frontend import build_surface
+
+        result = build_surface(scene)
+        return result.branches[int(np.flatnonzero(result.reasons[0] == 0)[0])]
+
+    def test_arm(self, tmp_path: Path) -> None:
+        """Every link where Pinocchio has it, on the surface of its shapes."""
+        import pinocchio as pin
+
+        from cellcolor.frontend import build_surface
+        from cellcolor.frontend.arm.robot import load_robot
+
+        scene = small_wok(tmp_path)
+        result = build_surface(scene)
+        vertex, branch = (int(k) for k in np.argwhere(result.node_color >= 0)[40])
+        name = result.branches[branch]
+        show(scene, "--vertex", vertex, "--branch", name, "-o", tmp_path / "x.html")
+        found = {t["name"]: points(t) for t in traces(tmp_path / "x.html") if t["type"] == "mesh3d"}
+
+        robots = INSTANCES.parent / "models" / "robots"
+        robot = load_robot(
+            robots / "ur5.urdf", "wrist_3_link", robots / "polishing_tool.urdf", "tool_tip"
+        )
+        data, shapes = robot.model.createData(), robot.geometry.createData()
+        q = result.configurations[vertex, branch]
+        pin.updateGeometryPlacements(robot.model, data, robot.geometry, shapes, q)
+        depth: dict[str, list[NDArray[np.float64]]] = {}
+        for number, shape in enumerate(robot.geometry.geometryObjects):
+            link = robot.model.frames[shape.parentFrame].name
+            pose = shapes.oMg[number]
+            local = (found[link] - pose.translation) @ pose.rotation
+            if hasattr(shape.geometry, "halfLength"):
+                half, radius = shape.geometry.halfLength, shape.geometry.radius
+                side = np.hypot(local[:, 0], local[:, 1]) - radius
+                depth.setdefault(link, []).append(np.maximum(side, np.abs(local[:, 2]) - half))
+            else:
+                off = np.linalg.norm(local, axis=1) - shape.geometry.radius
+                depth.setdefault(link, []).append(off)
+        for link, distances in depth.items():
+            # On the surface of at least one shape, or inside another of the same link.
+            assert np.max(np.min(distances, axis=0)) < 1e-9, link
+            assert np.min(np.abs(distances)) < 1e-9, link
+            assert np.percentile(np.min(np.abs(distances), axis=0), 95) < 1e-9, link
+        for trace in traces(tmp_path / "x.html"):
+            if trace["name"] in depth:  # wound outward, or light would fall on the inside
+                a, b, c = (points(trace)[trace[corner]] for corner in "ijk")
+                assert np.einsum("ij,ij->", a, np.cross(b, c)) > 0
+        assert set(found) == {*depth, "object", "obstacles", f"vertex {vertex}"}
+        np.testing.assert_allclose(
+            (found[f"vertex {vertex}"].min(axis=0) + found[f"vertex {vertex}"].max(axis=0)) / 2,
+            result.surface.vertices[vertex],
+            atol=1e-3,
+        )
+        box, corner = found["obstacles"][:8], found["obstacles"][8:]
+        np.testing.assert_allclose(np.ptp(box, axis=0), [0.1, 0.2, 0.3])
+        np.testing.assert_allclose(box.mean(axis=0), [-0.5, 0.0, 0.2], atol=1e-12)
+        expected = np.array([-0.6, 0.5, 0.1]) + np.vstack([np.zeros(3), 0.1 * np.eye(3)])
+        assert sorted(corner.round(9).tolist()) == sorted(expected.round(9).tolist())
+        assert found["object"].shape == result.surface.vertices.shape
