@@ -1,4 +1,10 @@
-"""The cyclic lists of live darts that a division is written in, strands and seams put in."""
+"""The cyclic lists of live darts that a division is written in, strands and seams put in.
+
+A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
+one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). Both solvers put them
+in by code of their own (``dfs/graph.py``, ``cpsat/model/dart_graph.py``). That is on purpose: a
+mistake made in only one of the three is found out by the others.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
 """Borders between the areas of a labelled surface, walked with the area on the left.
 
+An area is a cell, or what no color reaches, or what lies beyond the border of the mesh.
+
 The curves live on the dual of the mesh: a border crosses every mesh edge whose two ends belong
 to different areas, and every crack, and runs from triangle to triangle. Each border loop of the
 mesh itself is closed with a virtual vertex outside, so that every mesh edge has two triangles.

@@ -1,4 +1,9 @@
-"""Lower bounds that hold for any division of the physical surface: set cover, strangers."""
+"""Lower bounds that hold for any division of the physical surface: set cover and strangers.
+
+A color region is a connected component of the cells that have a color. Every segment lies in one,
+so there are as many segments as regions are needed to touch all cells; and cells of which no two
+lie in a common region, strangers to each other, are in different segments.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +21,7 @@ if TYPE_CHECKING:
 __all__ = ["Cover", "Region", "color_regions", "greedy_strangers", "set_cover", "strangers"]
 
 Region = tuple[int, frozenset[int]]
-"""A color, and the cells of one connected component of the part of the surface it reaches."""
+"""A color region: the color, and its cells."""
 
 EFFORT = 5.0
 """Deterministic seconds for a cover or for strangers; nearly all take a thousandth of that."""

@@ -10,7 +10,10 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.interface import PORTFOLIO, Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
-__all__ = ["Runner"]
+__all__ = ["Runner", "SolveWithSeed"]
+
+SolveWithSeed = Callable[[cp_model.CpModel, int], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
+"""Solves a model with a seed, within limits that it knows; hands back the solver and its status."""
 
 
 class Runner:

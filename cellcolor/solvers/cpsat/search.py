@@ -1,4 +1,9 @@
-"""The search for the fewest segments of one part: cover, plans, routes, and the full model."""
+"""The search for the fewest segments of one part: cover, plans, routes, and the full model.
+
+A part is what live edges connect (``parts``). A strand is one of the parallel corridors by which
+segments may cross an edge, or a seam between two loops of a cell (docs/semantics.md, sections 4
+and 5).
+"""
 
 from __future__ import annotations
 
@@ -35,7 +40,8 @@ from cellcolor.solvers.interface import PORTFOLIO, Options
 __all__ = ["PartSearch"]
 
 FEW_STRANDS = 2
-"""Seams are tried this narrow first, which is enough when the result meets the bound."""
+"""Strands of a seam in the first models. More would only be needed if their result did not meet the
+lower bound."""
 
 PLAN_EFFORT = 0.05
 """Deterministic seconds for a plan; most take a hundredth of that."""
@@ -151,7 +157,8 @@ class PartSearch:
                 self._raise(self.bound + 1)
                 continue
             self._planned = [segment.region for segment in plan]
-            # Looking for segments that cross takes longer than routing when none do.
+            # Looking for segments that cross takes longer than routing when none do. With 0 rings
+            # a cell is painted whole, with 1 it has room for cutting paths.
             for rings in (0, 1):
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
             if self.done or not planner.find_partings(plan):

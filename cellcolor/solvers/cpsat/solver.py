@@ -33,7 +33,8 @@ from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, 
 __all__ = ["CpSatSolver", "model_alone"]
 
 RESERVES = 4
-"""Times what it takes to put a division together: kept back for what follows the search."""
+"""The search ends before the deadline by so many times what it takes to put a division together:
+that is needed once more for the answer, then by the checker, and for writing the file."""
 
 _Stage = Callable[[PartSearch, Deadline], None]
 
@@ -107,7 +108,6 @@ class _Search:
         options, deadline = self._options, self._options.deadline
         begun = time.monotonic()
         self._whole = self._put_together()
-        # That much again for the answer, and as much for the checker and for writing it.
         deadline = deadline.earlier(RESERVES * (time.monotonic() - begun))
         self._options = options = replace(options, deadline=deadline)
         self._runner = Runner(options)

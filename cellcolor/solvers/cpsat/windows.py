@@ -8,7 +8,7 @@ that large neighborhood search (Shaw, CP 1998) gets on where the model of the wh
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ortools.sat.python import cp_model
@@ -18,6 +18,7 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import Dart, DartGraph
 from cellcolor.solvers.cpsat.model.full import full_model, model_size, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
+from cellcolor.solvers.cpsat.model_runs import SolveWithSeed
 from cellcolor.union_find import UnionFind
 
 __all__ = ["improve"]
@@ -30,8 +31,6 @@ LARGEST_WINDOW = 30_000
 
 FRUITLESS = 3
 """Tries for each segment of a division before nothing better is expected."""
-
-Solve = Callable[[cp_model.CpModel, int], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +52,7 @@ class _Window:
 
 
 def improve(
-    graph: DartGraph, painting: Painting, solve: Solve, seed: int, deadline: Deadline
+    graph: DartGraph, painting: Painting, solve: SolveWithSeed, seed: int, deadline: Deadline
 ) -> Iterator[Painting]:
     """Better and better divisions of a graph, each with a segment less at least.
 
@@ -184,7 +183,7 @@ def _shown(darts: Sequence[int], blocks: Sequence[Block], dart: int) -> Block:
 
 
 def _solved(
-    window: _Window, graph: DartGraph, painting: Painting, solve: Solve, seed: int
+    window: _Window, graph: DartGraph, painting: Painting, solve: SolveWithSeed, seed: int
 ) -> Painting | None:
     """The whole painting with the window's cells solved anew; None if nothing was found."""
     built = full_model(window.graph, _regions(window.graph))

@@ -1,8 +1,9 @@
 """The paper's depth-first enumerative solver, to be read beside sections IV and V.
 
-``cells`` enumerates the schemes of one cell (section IV), ``search`` paints the graph cell by cell
-(section V), ``segments`` carries the cost (section V-A), ``zeros`` checks what a complete painting
-shows across its edges in state 0, ``graph`` is the topological graph as all of them see it.
+``cell_schemes`` enumerates the schemes of one cell (section IV), ``search`` paints the graph cell
+by cell (section V), ``segment_counts`` carries the cost (section V-A), ``zero_darts`` checks what a
+complete painting shows across its edges in state 0, ``graph`` is the topological graph as all of
+them see it.
 """
 
 from cellcolor.solvers.dfs.cell_schemes import code, divisions

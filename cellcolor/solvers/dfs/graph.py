@@ -1,7 +1,10 @@
 """The topological graph as the reference solver walks it (paper, section III-C).
 
 Dead darts are gone, edges may be several parallel strands, the loops of a cell with holes are made
-one cyclic list by seams, and colors are split into the regions that a segment cannot leave.
+one cyclic list by seams (docs/semantics.md, sections 4 and 5), and colors are split into the
+regions that a segment cannot leave. The CP-SAT solver (``cpsat/model/dart_graph.py``) and the
+checker (``dart_lists.py``) put strands and seams in by code of their own. That is on purpose: a
+mistake made in only one of the three is found out by the others.
 """
 
 from __future__ import annotations

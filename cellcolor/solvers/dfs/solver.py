@@ -28,8 +28,8 @@ _DEEPEST = 700
 """Levels of the recursion over cells and darts that Python's stack has room for."""
 
 _KEPT = 200_000
-"""Painted cells, of all schemes of all parts of the graph, that are kept to be combined; they
-take some hundred megabytes at most."""
+"""The most painted cells that are kept, all schemes of all parts of the graph together, while the
+schemes of different parts are combined; they take some hundred megabytes at most."""
 
 
 class ReferenceSolver:

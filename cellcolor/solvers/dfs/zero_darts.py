@@ -1,4 +1,4 @@
-"""Whether the zeros of a complete painting can be placed so that none of them is a lie.
+"""Whether the zeros (darts in state 0) of a complete painting can be given to sub-cells rightly.
 
 An edge in state 0 is one across which the painting does not continue. So wherever the zeros of a
 gap between two sub-cells are put (section IV-C, "the 0s can be freely moved outside the bracket"),

@@ -1,6 +1,7 @@
 """The model's constraints, a group a function.
 
-``DEFINING`` are needed for a right answer; ``REDUNDANT`` only make the proof quick.
+``DEFINING`` are needed for a right answer; ``REDUNDANT`` only make the proof quick. How darts,
+links and pointers make segments is told in ``variables``.
 """
 
 from __future__ import annotations
@@ -128,7 +129,7 @@ def cover(
 def most_links(
     model: cp_model.CpModel, graph: DartGraph, v: Variables, _: Sequence[Region]
 ) -> None:
-    """No cell can have more links than its best non-crossing merging of equal colors."""
+    """No cell has more links than can be drawn in it between darts of common colors."""
     for cell in graph.lists:
         found = [
             link
@@ -183,10 +184,10 @@ def forced_roots(
 def first_petal(
     model: cp_model.CpModel, graph: DartGraph, v: Variables, regions: Sequence[Region]
 ) -> None:
-    """Of the cells with one dart around a sub-cell, only the first can be the segment's root.
+    """Of the petals around a sub-cell only the first can be the root of the segment.
 
-    They are all undivided, so that the tree can be hung up at any of them instead; unless its root
-    is fixed.
+    A petal is a cell with a single live dart. It is never divided, so that a tree which has its
+    root in one petal can have it in any other one as well, unless it is fixed (``fixed_roots``).
     """
     fixed = fixed_roots(graph, regions)
     petal = [graph.darts[dart.twin].cell for dart in graph.darts]

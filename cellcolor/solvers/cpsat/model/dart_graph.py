@@ -1,4 +1,10 @@
-"""The instance as the model sees it: one cyclic list of live darts a cell, strands put in."""
+"""The instance as the model sees it: one cyclic list of live darts a cell, strands put in.
+
+A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
+one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). The reference solver
+(``dfs/graph.py``) and the checker (``dart_lists.py``) put strands and seams in by code of their
+own. That is on purpose: a mistake made in only one of the three is found out by the others.
+"""
 
 from __future__ import annotations
 
@@ -31,7 +37,7 @@ class Dart(NamedTuple):
 
 @dataclass(frozen=True)
 class DartGraph:
-    """A rotation system of live darts.
+    """The live darts with their order around each cell, which is all that a model is built from.
 
     Attributes:
         darts: all live darts.

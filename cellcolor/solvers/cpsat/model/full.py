@@ -29,7 +29,8 @@ __all__ = [
 ]
 
 MANY_DARTS = 300
-"""Of a cell: with more of them all are taken to have a common color, which is quicker."""
+"""Darts of a cell beyond which its terms are not counted one by one: then any two of its darts are
+taken to have a color in common, which gives a number that is too large rather than too small."""
 
 LARGEST_MODEL = 1e6
 """Terms of a model that is built: with 8 workers OR-Tools takes up to 2.2 kB for each."""

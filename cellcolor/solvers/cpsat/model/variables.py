@@ -31,7 +31,7 @@ class Variables:
         alone: per cell: it has no dart in state 1, and is a segment of its own.
         rank: per dart: falls along every pointer, strictly across edges.
         bridges: per two darts on loops of one cell that no seam connects: they are in one
-            sub-cell, and the first points at the second (see ``apart``).
+            sub-cell, and the first points at the second (see ``loops_apart``).
     """
 
     joined: dict[tuple[int, int], cp_model.IntVar]

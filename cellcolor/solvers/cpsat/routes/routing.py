@@ -22,7 +22,9 @@ from cellcolor.solvers.cpsat.routes.segment_plans import SegmentPlan
 __all__ = ["route"]
 
 FIRST_PRICE, PRICE_FACTOR, HIGHEST_PRICE = 0.5, 1.3, 50.0
-"""Of a node that other nets use, per net; it grows from round to round."""
+"""What a node costs for each other net that uses it, in units of an unused node. The price begins
+low, so that nets find their shortest ways, and rises by the factor after each round with nodes that
+are shared."""
 
 
 def route(

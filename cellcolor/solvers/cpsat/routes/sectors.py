@@ -13,7 +13,7 @@ __all__ = ["RefinedGraph", "painting_of_nodes", "refined"]
 
 @dataclass(frozen=True, slots=True)
 class RefinedGraph:
-    """Small areas that are painted whole: a planar graph in which paths cannot cross.
+    """Cells cut into nodes, which are painted whole: a planar graph in which paths cannot cross.
 
     A cell with n darts has a ring of n sectors along its border, one a dart, perhaps more rings
     within that one, and a center; without rings it is all center. Sub-cells made of sectors and

@@ -1,14 +1,14 @@
-"""Plans: which color regions get how many segments, and which segment touches which cell.
+"""Segment plans: which color regions get how many segments, and which cells each of them touches.
 
-A plan looks at segments two at a time only. It can be made in milliseconds where the full model
-takes seconds; where there is none with so many segments, there is no division of the surface with
-so many either (docs/solver.md, "Plans").
+A segment plan looks at segments two at a time only. It can be made in milliseconds where the full
+model takes seconds; where there is none with so many segments, there is no division of the surface
+with so many either (docs/solver.md, "Plans").
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -19,6 +19,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.conflicts import Parting, RegionPair, Side
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.cpsat.model_runs import SolveWithSeed
 
 __all__ = ["PlannedSegment", "Planner", "SegmentPlan", "Undecided"]
 
@@ -39,20 +40,20 @@ class PlannedSegment:
 SegmentPlan = tuple[PlannedSegment, ...]
 
 MOST_LITERALS = 100_000
-"""For the merged cells that segments touch."""
+"""Literals of the largest model that is built: one for each merged cell
+(``bounds/merged_cells.py``) and each segment that may touch it."""
 
 MOST_PARTED = 2_000
-"""Literals of the constraints that keep segments from crossing. Around a cell with many petals
-nearly all is in conflict, which the full model bounds better; where plans help they are few."""
+"""The most literals in the constraints that keep segments from crossing. With more the planner
+gives up: around a cell with many petals, which are cells with a single live dart, nearly every two
+segments are in conflict, and there the full model has the better bound."""
 
 MOST_PARTINGS = 200
-"""Found at a time, before the next plan is made with them."""
+"""How many are looked for in a plan before the next plan is made that heeds them."""
 
 MOST_STARTS = 5
 """Merged cells of a segment from which curves are drawn to its other ones, if one such merged cell
 does not show that the segment crosses another."""
-
-Solve = Callable[[cp_model.CpModel, int], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
 
 _Touched = dict[tuple[int, int], dict[int, cp_model.IntVar]]
 
@@ -77,7 +78,7 @@ class Planner:
         instance: Instance,
         regions: Sequence[Region],
         fewest: int,
-        solve: Solve,
+        solve: SolveWithSeed,
         deadline: Deadline,
     ) -> None:
         self._instance = instance

@@ -2,8 +2,10 @@
 
 Everything in it is a function of the scheme, so that the search never meets one twice: the color
 that a dart in state 0 has before and after it, and a certificate of the segments (breadth-first
-distances from the segment's first dart). Rule 5 is in it as far as it is certain; what hangs on
-the choices of several gaps together is sorted out as the solutions come.
+distances from the segment's first dart). Rule 5 (docs/semantics.md, section 3), that no edge in
+state 0 has to show one joinable color on both sides, is in the model only where a dart has no
+choice what to show; what hangs on the choices of several runs of such darts is looked at solution
+by solution.
 """
 
 from __future__ import annotations
@@ -35,10 +37,11 @@ from cellcolor.solvers.interface import Options
 __all__ = ["optimal_schemes"]
 
 _AHEAD = 100
-"""Schemes that may wait to be taken; with so many the search pauses."""
+"""Schemes that are found ahead of whoever takes them. With so many waiting the search pauses."""
 
 _MOST_LITERALS = 20_000_000
-"""In the constraints that grow with the cube of a cell's darts; some gigabytes in the search."""
+"""Literals in the constraints that grow with the cube of a cell's darts. So many take some
+gigabytes during the search; a larger model is not built."""
 
 
 def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iterator[Division]:

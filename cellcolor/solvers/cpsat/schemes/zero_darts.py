@@ -1,4 +1,9 @@
-"""Rule 5 of a scheme: can all edges in state 0 show two colors, or one that cannot join?"""
+"""Rule 5 of a scheme: can all edges in state 0 show two colors, or one that cannot join?
+
+A dart in state 0, a zero, shows the color of the sub-cell that it is given to: the one before it or
+the one after it along the border (docs/semantics.md, section 3). The reference solver and the
+checker decide the same by code of their own, so that they can be held to each other.
+"""
 
 from __future__ import annotations
 
