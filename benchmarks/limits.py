@@ -198,10 +198,9 @@ def _read_answer(run: Run, said: str, complaints: str) -> None:
     except (IndexError, ValueError):
         answer = {}
     if "status" in answer:
-        run.status, run.segments = answer["status"], answer["segments"]
-        run.bound = answer["lower_bound"]
-        if "surface" in run.variant:
-            run.bound = answer["surface_lower_bound"]
+        # Out of time before there was a graph, the answer has a status and an error only.
+        run.status, run.segments = answer["status"], answer.get("segments")
+        run.bound = answer.get("surface_lower_bound" if "surface" in run.variant else "lower_bound")
     elif "valid" in answer:
         run.status = "optimal" if answer["lower_bound"] == answer["upper_bound"] else "feasible"
         run.segments, run.bound = answer["upper_bound"], answer["lower_bound"]
