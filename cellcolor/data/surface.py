@@ -182,7 +182,10 @@ class LabelledSurface:
 
     @cached_property
     def left_of(self) -> dict[tuple[int, int], int]:
-        """``{(i, j): k}`` for every triangle (i, j, k): see :func:`directed_edges`."""
+        """``{(i, j): k}`` for every triangle (i, j, k).
+
+        See :func:`~cellcolor.data.mesh.directed_edges`.
+        """
         return directed_edges(self.faces, len(self.vertices))
 
     @cached_property

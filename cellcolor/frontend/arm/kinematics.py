@@ -113,7 +113,7 @@ def manipulability(linear: Array) -> Array:
 
 
 def task_determinant(linear: Array, angular: Array, tool_axis: Array) -> Array:
-    """|det| (n,) of the 5x5 Jacobian of tip position and tool direction, m^3.
+    """Absolute determinant (n,) of the 5x5 Jacobian of tip position and tool direction, m^3.
 
     The direction has two rows, the angular velocity across the tool axis; which two
     perpendicular ones does not change the absolute value. Unlike translational manipulability

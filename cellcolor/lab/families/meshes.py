@@ -15,7 +15,9 @@ Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 """Vertices, (n, 3) in metres, and faces, (m, 3), counter-clockwise seen from outside."""
 
 Topology = Literal["disc", "annulus", "sphere", "torus", "double torus"]
+"""What a mesh is as a surface: how many borders and handles it has."""
 SHAPES: tuple[Topology, ...] = get_args(Topology)
+"""All of them."""
 
 LEAST_SIZE = 6
 

@@ -1,0 +1,111 @@
+"""How Sphinx makes the site: ``sphinx-build -W -n docs OUT`` (``.ci/run`` does)."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from pkgutil import walk_packages
+from typing import Any
+
+from sphinx.application import Sphinx
+from sphinx.ext.napoleon import Config, GoogleDocstring
+
+import cellcolor
+from cellcolor import __version__
+
+project = "cellcolor"
+author = "the cellcolor authors"
+project_copyright = "the cellcolor authors, MIT licence"
+release = version = __version__
+
+extensions = [
+    "myst_nb",
+    "sphinx.ext.autodoc",
+    "sphinx_copybutton",
+]
+exclude_patterns = ["_build"]
+
+# Markdown: every heading can be linked to as on GitHub, and a link to nothing is a warning.
+myst_heading_anchors = 3
+myst_enable_extensions = ["colon_fence"]
+suppress_warnings = ["myst.header"]  # a page may begin below its second level of headings
+
+# The code of the tutorials is run anew for each build; an error in it ends the build.
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 60
+nb_merge_streams = True
+
+# The reference is made of the docstrings of every module that there is (_write_reference).
+autodoc_default_options = {"members": True, "ignore-module-all": True}
+autodoc_member_order = "bysource"
+autodoc_typehints = "signature"
+python_use_unqualified_type_names = True
+toc_object_entries = False  # hundreds of functions in the table of contents of every page
+maximum_signature_line_length = 88
+
+nitpicky = True
+# Names of other packages: no inventory of theirs is fetched while the site is built.
+nitpick_ignore_regex = [
+    (
+        r"py:.*",
+        r"(annotated_types|click|collections|coal|concurrent|contextlib|datetime|enum|fcl|hppfcl"
+        r"|importlib|logging|matplotlib|mpl_toolkits|multiprocessing|networkx|np|numpy|nx|ortools"
+        r"|pathlib|pin|pinocchio|plotly|pydantic|re|rich|scipy|threading|trimesh|types|typing|xml)(\..*)?",
+    ),
+    # Type variables, names for type checkers only, what annotated_types says of numbers, and
+    # halves of a signature that Sphinx cannot read because of a dataclass's default factory.
+    (r"py:class", r"(.*\.)?(T|_\w+|FieldInfo|NoneType|Handler)|Ge|Gt|Le|Lt|[\d.e-]+|dict\[str"),
+]
+
+html_theme = "furo"
+html_title = f"cellcolor {version}"
+html_show_sphinx = False
+html_copy_source = False
+
+
+class _Docstring(GoogleDocstring):
+    """Google's style, with attributes as a list: ``width, height: in m`` is one entry for two."""
+
+    def _parse_attributes_section(self, section: str) -> list[str]:
+        return self._format_fields("Attributes", self._consume_fields())
+
+
+def _read_docstring(
+    app: Sphinx, what: str, name: str, value: Any, options: Any, lines: list[str]
+) -> None:
+    """Turn a docstring into reStructuredText, but leave the one of a plain value as it is.
+
+    Napoleon would take what stands before the colon in such a docstring for the value's type.
+    """
+    if what not in ("attribute", "data", "property"):
+        lines[:] = _Docstring(lines, Config(), app, what, name, value, options).lines()
+
+
+def _write_reference(_app: Sphinx) -> None:
+    """Write a page for each room of the package, with all of its modules."""
+    folder = Path(__file__).parent / "_api"
+    folder.mkdir(exist_ok=True)
+    pages: dict[str, list[str]] = {}
+    for module in walk_packages(cellcolor.__path__, "cellcolor."):
+        room = module.name.split(".")[1]
+        if room != "__main__":  # importing it runs the command
+            pages.setdefault(room, []).append(module.name)
+    for old in {path.stem for path in folder.glob("*.rst")} - pages.keys():
+        (folder / f"{old}.rst").unlink()
+    for room, modules in pages.items():
+        title = f"cellcolor.{room}"
+        lines = [title, "=" * len(title), ""]
+        for name in modules:
+            if name != title:
+                lines += ["", name.removeprefix(f"{title}."), "-" * len(name), ""]
+            lines.append(f".. automodule:: {name}")
+        text = "\n".join(lines) + "\n"
+        page = folder / f"{room}.rst"
+        if not page.exists() or page.read_text() != text:  # Sphinx reads anew what is newer
+            page.write_text(text)
+
+
+def setup(app: Sphinx) -> None:
+    """Tell Sphinx of the docstrings' style and of the reference."""
+    app.connect("builder-inited", _write_reference)
+    app.connect("autodoc-process-docstring", _read_docstring)
