@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from pkgutil import walk_packages
 from typing import Any
@@ -26,8 +27,6 @@ exclude_patterns = ["_build"]
 
 # Markdown: every heading can be linked to as on GitHub, and a link to nothing is a warning.
 myst_heading_anchors = 3
-myst_enable_extensions = ["colon_fence"]
-suppress_warnings = ["myst.header"]  # a page may begin below its second level of headings
 
 # The code of the tutorials is run anew for each build; an error in it ends the build.
 nb_execution_mode = "force"
@@ -45,13 +44,10 @@ maximum_signature_line_length = 88
 
 nitpicky = True
 # Names of other packages: no inventory of theirs is fetched while the site is built.
+_OTHERS = "annotated_types click coal fcl matplotlib mpl_toolkits networkx numpy ortools pinocchio"
+_OTHERS += " plotly pydantic rich scipy trimesh np nx pin"
 nitpick_ignore_regex = [
-    (
-        r"py:.*",
-        r"(annotated_types|click|collections|coal|concurrent|contextlib|datetime|enum|fcl|hppfcl"
-        r"|importlib|logging|matplotlib|mpl_toolkits|multiprocessing|networkx|np|numpy|nx|ortools"
-        r"|pathlib|pin|pinocchio|plotly|pydantic|re|rich|scipy|threading|trimesh|types|typing|xml)(\..*)?",
-    ),
+    (r"py:.*", rf"({'|'.join([*_OTHERS.split(), *sys.stdlib_module_names])})(\..*)?"),
     # Type variables, names for type checkers only, what annotated_types says of numbers, and
     # halves of a signature that Sphinx cannot read because of a dataclass's default factory.
     (r"py:class", r"(.*\.)?(T|_\w+|FieldInfo|NoneType|Handler)|Ge|Gt|Le|Lt|[\d.e-]+|dict\[str"),
@@ -66,7 +62,7 @@ html_copy_source = False
 class _Docstring(GoogleDocstring):
     """Google's style, with attributes as a list: ``width, height: in m`` is one entry for two."""
 
-    def _parse_attributes_section(self, section: str) -> list[str]:
+    def _parse_attributes_section(self, section: str) -> list[str]:  # noqa: ARG002
         return self._format_fields("Attributes", self._consume_fields())
 
 
