@@ -1,0 +1,82 @@
+"""The pages lead to what there is, on GitHub too, and their figures are what the scripts draw."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("matplotlib", reason="the extra 'viz' is not installed")
+
+import numpy as np
+from PIL import Image
+
+ROOT = Path(__file__).resolve().parents[2]
+FIGURES = ROOT / "docs" / "figures"
+FENCED = re.compile(r"^( *)(`{3,}).*?^\1\2$", re.MULTILINE | re.DOTALL)
+PAGES = sorted(
+    [*ROOT.glob("*.md"), *(p for p in ROOT.glob("docs/**/*.md") if "_build" not in p.parts)]
+)
+TERMS = ["point", "color", "crack", "cell", "edge", "dart", "cutting-path", "sub-cell"]
+TERMS += ["scheme", "strand", "seam", "hub", "petal", "segment"]
+
+
+def links(page: Path) -> list[str]:
+    """What a page links to or shows, without other sites."""
+    text = re.sub(r"`[^`\n]*`", "", FENCED.sub("", page.read_text(encoding="utf-8")))
+    found = re.findall(r"\]\(\s*([^)\s]+)\s*\)", text)
+    return [link for link in found if not re.match(r"[a-z]+:", link)]
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors that GitHub makes of a page's headings."""
+    text = FENCED.sub("", page.read_text(encoding="utf-8"))
+    headings = re.findall(r"^#+ +(.*)$", text, re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_links_of_a_page_lead_somewhere(page: Path) -> None:
+    for link in links(page):
+        path, _, anchor = link.partition("#")
+        target = (page.parent / path).resolve() if path else page
+        assert target.exists(), f"{page.name} links to {link}"
+        if anchor and target.suffix == ".md":
+            assert anchor in anchors(target), f"{page.name} links to {link}"
+
+
+def test_a_broken_link_is_found(tmp_path: Path) -> None:
+    page = tmp_path / "page.md"
+    page.write_text("# One, two\n[a](#one-two) [b](none.md)\n```\n[c](code)\n```\n`[d](code)`\n")
+    assert links(page) == ["#one-two", "none.md"]
+    assert anchors(page) == {"one-two"}
+
+
+def test_each_term_has_a_figure_and_each_figure_a_page() -> None:
+    concepts = ROOT / "docs" / "concepts.md"
+    shown = {Path(link).stem for link in links(concepts) if link.startswith("figures/")}
+    assert shown == set(TERMS)
+    used = {Path(link).name for page in PAGES for link in links(page) if "figures/" in link}
+    assert {path.name for path in FIGURES.glob("*.png")} == used
+
+
+def test_figures_of_the_concepts_are_what_the_script_draws(tmp_path: Path) -> None:
+    subprocess.run(
+        [sys.executable, FIGURES / "draw.py", tmp_path],
+        check=True,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+    )
+    assert {path.stem for path in tmp_path.iterdir()} == set(TERMS)
+    for name in TERMS:
+        drawn, stored = (
+            np.asarray(Image.open(folder / f"{name}.png").convert("RGB"), dtype=float)
+            for folder in (tmp_path, FIGURES)
+        )
+        assert drawn.shape == stored.shape, name
+        # Other versions of Matplotlib and FreeType draw edges and letters a little differently.
+        different = (np.abs(drawn - stored).max(axis=2) > 64).mean()
+        assert different < 0.02, f"{name}: out of date, run  python docs/figures/draw.py"
