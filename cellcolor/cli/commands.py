@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 import cellcolor as package
+from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
 
 if TYPE_CHECKING:
@@ -232,6 +233,12 @@ def bench(files: tuple[Path, ...], time_limit: float) -> int:
     type=_PATH,
     help="The picture, in the format of its ending.",
 )
+@click.option(
+    "--view",
+    metavar="NAME",
+    type=click.Choice(list(PICTURES)),
+    help=f"The picture: {', '.join(PICTURES)}. The options below choose one as well.",
+)
 @click.option("--color", metavar="NAME|ID", help="Where one color is available.")
 @click.option(
     "--reason", is_flag=True, help="Why points are out of reach, at best or in one --branch."
@@ -244,6 +251,7 @@ def bench(files: tuple[Path, ...], time_limit: float) -> int:
 def show(
     files: tuple[Path, ...],
     output: Path,
+    view: str | None,
     color: str | None,
     reason: bool,
     graph: bool,
@@ -254,21 +262,27 @@ def show(
 
     With a solution after what was solved: by segment.
     """
-    asked = [color is not None, reason, graph, vertex is not None, len(files) > 1]
     if len(files) > 2:
         raise click.UsageError("one file to show, or one and its solution")
-    if sum(asked) > 1:
+    implied = {
+        "color": color is not None,
+        "reasons": reason,
+        "graph": graph,
+        "arm": vertex is not None,
+        "segments": len(files) > 1,
+    }
+    asked = [name for name, is_asked in implied.items() if is_asked]
+    if view is not None and (reason or graph):
+        raise click.UsageError("--view goes without --reason and --graph")
+    if view is None and len(asked) > 1:
         raise click.UsageError(
             "one of --color, --reason, --graph, --vertex and a solution at a time"
         )
-    if vertex is not None and branch is None:
-        raise click.UsageError("--vertex needs --branch")
-    if branch is not None and vertex is None and not reason:
-        raise click.UsageError("--branch goes with --vertex or --reason")
 
     from cellcolor.cli.show import View, show_files
 
-    return show_files(files, output, View(color, reason, graph, vertex, branch))
+    picture = view or (asked[0] if asked else "cells")
+    return show_files(files, output, View(picture, color, vertex, branch))
 
 
 @cellcolor.command()

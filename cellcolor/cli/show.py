@@ -2,45 +2,49 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import click
+
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.extras import extras_for
-from cellcolor.cli.inputs import instance_of, is_scene, read_graph
+from cellcolor.cli.inputs import is_scene, read_graph
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import say
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import Decomposition, decomposition_of, locate
 from cellcolor.errors import InputError
 from cellcolor.files.writing import HTML, PNG, SVG, Output, check_output, write
+from cellcolor.pictures.interface import Given
+from cellcolor.pictures.registry import make_picture
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
+    from cellcolor.data.solution import Solution
     from cellcolor.frontend import BuildResult
-    from cellcolor.pictures.picture import Picture2D, Picture3D
+    from cellcolor.pictures.by_reason import CandidateReasons
+    from cellcolor.pictures.interface import Drawn, Part, Picture
 
 _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What the command line asked to see; at most one of the first four.
+    """What the command line asked to see.
 
     Attributes:
-        color: the domain of this color, by name or number.
-        reason: why vertices are out of reach.
-        graph: the topological graph.
-        vertex: the arm on this vertex.
-        branch: of the arm, or of the reasons.
+        picture: its name.
+        color: of a domain, by name or number.
+        vertex: that the arm is on.
+        branch: of the arm, or of the reasons, by name or number.
     """
 
+    picture: str
     color: str | None
-    reason: bool
-    graph: bool
     vertex: int | None
     branch: str | None
 
@@ -63,12 +67,6 @@ class _Subject:
     instance: Instance | None = None
     result: BuildResult | None = None
 
-    def graph(self) -> Instance:
-        """The topological graph."""
-        if self.instance is not None:
-            return self.instance
-        return instance_of(self.mesh(), self.path)
-
     def mesh(self) -> LabelledSurface:
         """The labelled surface.
 
@@ -80,6 +78,44 @@ class _Subject:
             raise InputError(str(self.path), "surface", message)
         return self.surface
 
+    @cached_property
+    def decomposition(self) -> Decomposition:
+        """The topological graph on the surface.
+
+        Raises:
+            InputError: there is no surface, or it cannot be decomposed.
+        """
+        surface = self.mesh()
+        if self.instance is not None and self.instance.surface is not None:
+            return locate(surface, self.instance, self.instance.surface.vertex_cell)
+        try:
+            return decomposition_of(surface)
+        except InputError as error:
+            raise error.in_file(str(self.path)) from error
+
+    @cached_property
+    def reasons(self) -> CandidateReasons:
+        """What became of the candidates of a scene, or of the one that the surface is of."""
+        from cellcolor.pictures.by_reason import CandidateReasons, read_candidate_reasons
+
+        if self.result is None:
+            return read_candidate_reasons(self.mesh(), self.surface_path)
+        from cellcolor.frontend import Reason
+
+        result = self.result
+        names = tuple(reason.text for reason in Reason)
+        return CandidateReasons(result.branches, names, result.reasons, result.node_color)
+
+    def build(self) -> BuildResult:
+        """What the front end found.
+
+        Raises:
+            InputError: this is no scene.
+        """
+        if self.result is None:
+            raise InputError(str(self.path), "format", "the arm is in a scene (.toml)")
+        return self.result
+
 
 def show_files(files: tuple[Path, ...], output: Path, view: View) -> Exit:
     """Draw one picture."""
@@ -88,20 +124,23 @@ def show_files(files: tuple[Path, ...], output: Path, view: View) -> Exit:
         raise InputError(str(output), None, "must end in .html, .png or .svg")
     check_output(output, kind, files)
     with extras_for(files[0]):
+        picture = make_picture(view.picture)
+        claim = files[1] if len(files) > 1 else None
+        _check_options(picture, view, claim)
         subject = _read(files[0])
     with extras_for(output):
-        picture = _picture(subject, files[1] if len(files) > 1 else None, view)
+        drawn = _drawn(picture, subject, claim, view)
         if output.suffix == ".html":
             from cellcolor.pictures import interactive
 
-            content = interactive.render(picture)
+            content = interactive.render(drawn)
         else:
             from cellcolor.pictures import static
 
-            content = static.render(picture, output.suffix[1:])
+            content = static.render(drawn, output.suffix[1:])
     INTERRUPTS.check()
     write([Output(output, kind, [content])], files)
-    say(f"wrote {output}: {picture.title}")
+    say(f"wrote {output}: {drawn.title}")
     return Exit.DONE
 
 
@@ -138,106 +177,86 @@ def _same_surface(path: Path, instance: Instance, surface: LabelledSurface) -> N
             raise InputError(str(path), field, "the surface has other colors there")
 
 
-def _picture(subject: _Subject, claim: Path | None, view: View) -> Picture2D | Picture3D:
-    from cellcolor.pictures import by_cell_and_color as paintings
-    from cellcolor.pictures.mesh_picture import draw_surface
+def _check_options(picture: Picture, view: View, claim: Path | None) -> None:
+    """Refuse what the picture does not take, and the lack of what it needs.
 
-    if view.graph:
-        return _graph(subject)
-    if view.vertex is not None:
-        return _arm(subject, view.vertex, view.branch or "")
-    surface = subject.mesh()
-    if view.color is not None:
-        color = _number(surface.colors, view.color, subject.surface_path, "colors")
-        return draw_surface(surface, paintings.by_color(surface, color))
-    if view.reason:
-        return _reasons(subject, view.branch)
-    if claim is not None:
-        return _solution(subject, claim)
-    instance = subject.graph()
-    return draw_surface(surface, paintings.by_cell(surface, instance, _cells(instance)))
+    Raises:
+        click.UsageError: an option, or the solution, is missing or too much.
+    """
+    options: dict[Part, tuple[object, str]] = {
+        "color": (view.color, "--color"),
+        "vertex": (view.vertex, "--vertex"),
+        "branch": (view.branch, "--branch"),
+        "solution": (claim, "a solution"),
+    }
+    for part, (given, name) in options.items():
+        if given is None and part in picture.needs:
+            raise click.UsageError(f"the picture {view.picture} needs {name}")
+        if given is not None and part not in picture.needs + picture.takes:
+            raise click.UsageError(f"the picture {view.picture} does not take {name}")
 
 
-def _number(names: tuple[str, ...], asked: str, path: Path, field: str) -> int:
+def _drawn(picture: Picture, subject: _Subject, claim: Path | None, view: View) -> Drawn:
+    """The picture, drawn of the parts that it declares."""
+
+    def vertex() -> int:
+        count, asked = len(subject.mesh().vertices), view.vertex or 0
+        if asked < count:
+            return asked
+        raise InputError(str(subject.path), "--vertex", f"{asked} is not among 0 to {count - 1}")
+
+    def color() -> int:
+        return _number(subject.mesh().colors, view.color, subject.surface_path, "colors")
+
+    def branch() -> int:
+        return _number(subject.reasons.branches, view.branch, subject.path, "--branch")
+
+    make: dict[Part, Callable[[], object]] = {
+        "build": subject.build,
+        "surface": subject.mesh,
+        "graph": lambda: subject.instance or subject.decomposition.instance,
+        "decomposition": lambda: subject.decomposition,
+        "solution": lambda: _solution(subject, claim),
+        "reasons": lambda: subject.reasons,
+        "color": color,
+        "vertex": vertex,
+        "branch": branch,
+    }
+    missing: set[Part] = set()
+    if subject.surface is None:
+        missing |= {"surface", "decomposition"}
+    if subject.result is None:
+        missing.add("build")
+    asked: dict[Part, object] = {"color": view.color, "vertex": view.vertex, "branch": view.branch}
+    missing |= {part for part, given in (asked | {"solution": claim}).items() if given is None}
+    parts = {part: make[part]() for part in make if part in picture.needs}
+    parts |= {part: make[part]() for part in picture.takes if part not in missing}
+    try:
+        return picture.draw(Given(parts))
+    except InputError as error:
+        raise (error if error.file else error.in_file(str(subject.path))) from error
+
+
+def _number(names: tuple[str, ...], asked: str | None, path: Path, field: str) -> int:
     """The number of something given by name or by number."""
     if asked in names:
         return names.index(asked)
-    if asked.isdecimal() and int(asked) < len(names):
+    if asked is not None and asked.isdecimal() and int(asked) < len(names):
         return int(asked)
     known = ", ".join(f"{number} {name!r}" for number, name in enumerate(names)) or "none"
     raise InputError(str(path), field, f"no {asked!r} among {known}")
 
 
-def _cells(instance: Instance) -> NDArray[np.int64]:
-    """The cell of each vertex of the instance's surface, which it has."""
-    import numpy as np
-
-    assert instance.surface is not None
-    return np.array(instance.surface.vertex_cell, dtype=np.int64)
-
-
-def _graph(subject: _Subject) -> Picture2D:
-    from cellcolor.pictures.topological_graph import draw_graph, places_on
-
-    instance = subject.graph()
-    if subject.surface is None:
-        return draw_graph(instance)
-    cells = _cells(instance)
-    return draw_graph(instance, places_on(subject.surface, cells, len(instance.cells)))
-
-
-def _solution(subject: _Subject, claim: Path) -> Picture3D:
+def _solution(subject: _Subject, claim: Path | None) -> Solution:
+    """The solution in a file, which has a division that is valid for the subject."""
     from cellcolor.checker.division import check_solution
     from cellcolor.data.solution import Solution
-    from cellcolor.pictures.by_segment import by_solution
-    from cellcolor.pictures.mesh_picture import draw_surface
 
-    instance, surface = subject.graph(), subject.mesh()
+    assert claim is not None
     solution = Solution.read(claim)
-    problems = check_solution(instance, solution).problems
+    problems = check_solution(subject.instance or subject.decomposition.instance, solution).problems
     if problems:
         raise InputError(str(claim), None, f"no valid solution of {subject.path}: {problems[0]}")
     if solution.cells is None:
         raise InputError(str(claim), "cells", "no division was found")
-    return draw_surface(surface, by_solution(surface, instance, _cells(instance), solution))
-
-
-def _reasons(subject: _Subject, branch: str | None) -> Picture3D:
-    from cellcolor.pictures.by_reason import CandidateReasons, by_reason, read_candidate_reasons
-    from cellcolor.pictures.mesh_picture import draw_surface
-
-    surface = subject.mesh()
-    if subject.result is None:
-        verdicts = read_candidate_reasons(surface, subject.surface_path)
-    else:
-        from cellcolor.frontend import Reason
-
-        result = subject.result
-        names = tuple(reason.text for reason in Reason)
-        verdicts = CandidateReasons(result.branches, names, result.reasons, result.node_color)
-    if branch is None:
-        return draw_surface(surface, by_reason(surface, verdicts))
-    number = _number(verdicts.branches, branch, subject.path, "--branch")
-    return draw_surface(surface, by_reason(surface, verdicts, number))
-
-
-def _arm(subject: _Subject, vertex: int, branch: str) -> Picture3D:
-    if subject.result is None:
-        raise InputError(str(subject.path), "format", "the arm is in a scene (.toml)")
-    from cellcolor.frontend import Reason
-    from cellcolor.pictures.arm import arm_at
-
-    result = subject.result
-    count = len(result.surface.vertices)
-    if vertex >= count:
-        raise InputError(str(subject.path), "--vertex", f"{vertex} is not among 0 to {count - 1}")
-    number = _number(result.branches, branch, subject.path, "--branch")
-    reasons = [Reason(code) for code in result.reasons[vertex]]
-    if reasons[number] != Reason.VALID:
-        valid = [n for n, r in zip(result.branches, reasons, strict=True) if r == Reason.VALID]
-        message = (
-            f"{result.branches[number]!r} is not valid on vertex {vertex}: "
-            f"{reasons[number].text}; valid there: {', '.join(valid) or 'none'}"
-        )
-        raise InputError(str(subject.path), "--branch", message)
-    return arm_at(subject.path, result, vertex, number)
+    return solution

@@ -9,7 +9,6 @@ mesh itself is closed with a virtual vertex outside, so that every mesh edge has
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 from cellcolor.data.instance import OUTSIDE
@@ -63,25 +62,27 @@ class Borders:
     """All borders of a division of the mesh into areas.
 
     Args:
-        mesh: the mesh, its holes closed.
+        surface: the labelled surface.
+        mesh: its mesh, the holes closed.
         cell_of: the cell of each vertex, virtual ones included; ``OUTSIDE`` where unreachable.
-        joinable: the colors that may continue across a mesh edge, given either way round.
-        cracked: whether any color is cracked along a mesh edge, given either way round.
+
+    Attributes:
+        steps: all mesh edges that a border crosses, each in both directions.
     """
 
-    def __init__(
-        self,
-        mesh: ClosedMesh,
-        cell_of: list[int],
-        joinable: Callable[[int, int], frozenset[int]],
-        cracked: Callable[[int, int], bool],
-    ) -> None:
+    def __init__(self, surface: LabelledSurface, mesh: ClosedMesh, cell_of: list[int]) -> None:
         self._mesh = mesh
         self._cell_of = cell_of
-        self._joinable = joinable
+        self._cracked = surface.cracked
+        self._colors = [frozenset(colors) for colors in surface.vertex_colors]
+        self._colors += [frozenset()] * (mesh.vertex_count - mesh.real_count)
         self.steps: set[Step] = {
-            (a, b) for a, b in mesh.third if cell_of[a] != cell_of[b] or cracked(a, b)
+            (a, b) for a, b in mesh.third if cell_of[a] != cell_of[b] or surface.cracked(a, b)
         }
+
+    def joinable(self, a: int, b: int) -> frozenset[int]:
+        """The colors that may continue across a mesh edge, given either way round."""
+        return (self._colors[a] & self._colors[b]) - self._cracked(a, b)
 
     def following(self, step: Step) -> Step:
         """The next step of a walk along the border with the same area on the left."""
@@ -102,7 +103,7 @@ class Borders:
 
     def _kind(self, step: Step) -> tuple[int, int, frozenset[int]]:
         u, v = step
-        return self._cell_of[u], self._cell_of[v], self._joinable(u, v)
+        return self._cell_of[u], self._cell_of[v], self.joinable(u, v)
 
     def curves(self, deadline: Deadline = NEVER) -> list[Curve]:
         """The topological edges, each with an area other than ``OUTSIDE`` on its left.

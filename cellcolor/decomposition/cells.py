@@ -13,13 +13,21 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
 from cellcolor.decomposition.coverage import coverage_of
+from cellcolor.decomposition.on_mesh import Decomposition
 from cellcolor.errors import InputError
 
 
 def decompose(
     surface: LabelledSurface, path: PurePath | str | None = None, deadline: Deadline = NEVER
 ) -> Instance:
-    """The topological graph of a labelled surface (paper, section III-C).
+    """The topological graph of a labelled surface: that of :func:`decomposition_of`."""
+    return decomposition_of(surface, path, deadline).instance
+
+
+def decomposition_of(
+    surface: LabelledSurface, path: PurePath | str | None = None, deadline: Deadline = NEVER
+) -> Decomposition:
+    """The topological graph of a labelled surface (paper, section III-C), and where it lies there.
 
     Cells are numbered by their smallest vertex. Areas and lengths are those of the barycentric
     dual of the mesh: a vertex owns a third of each of its triangles.
@@ -35,14 +43,8 @@ def decompose(
     """
     deadline.check()
     mesh = ClosedMesh(surface)
-    sets = [frozenset(colors) for colors in surface.vertex_colors]
-    sets += [frozenset()] * (mesh.vertex_count - mesh.real_count)
-
-    def joinable(a: int, b: int) -> frozenset[int]:
-        return (sets[a] & sets[b]) - surface.cracked(a, b)
-
     cell_of, firsts = _cells(surface, mesh, deadline)
-    borders = Borders(mesh, cell_of, joinable, lambda a, b: bool(surface.cracked(a, b)))
+    borders = Borders(surface, mesh, cell_of)
     curves = borders.curves(deadline)
     loops = _loops(borders, curves, cell_of, deadline)
     _check_planar(surface, cell_of, firsts, borders, loops, deadline)
@@ -57,14 +59,16 @@ def decompose(
     lengths = measure.lengths(curves)
     for number, (curve, length) in enumerate(zip(curves, lengths, strict=True), start=1):
         left, right = curve.steps[0]
-        shared, joined = sets[left] & sets[right], joinable(left, right)
-        colors = None if shared == joined else tuple(sorted(joined))
+        colors = None
+        if surface.cracked(left, right):
+            colors = tuple(sorted(borders.joinable(left, right)))
         edges.append(Edge(number, cell_of[left], cell_of[right], colors, length))
     deadline.check()
+    vertex_cell = tuple(cell_of[: mesh.real_count])
     reference = None
     if path is not None:
-        reference = SurfaceReference(str(path), tuple(cell_of[: mesh.real_count]), surface.sha256)
-    return Instance(
+        reference = SurfaceReference(str(path), vertex_cell, surface.sha256)
+    instance = Instance(
         surface.name,
         surface.colors,
         cells,
@@ -73,6 +77,7 @@ def decompose(
         reference,
         coverage=coverage_of(surface),
     )
+    return Decomposition(instance, dict(enumerate(curves, start=1)), vertex_cell)
 
 
 def _cells(

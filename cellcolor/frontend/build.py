@@ -15,6 +15,7 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.data.comparing import same_members
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.report import BuildReport, make_report
@@ -42,6 +43,8 @@ class BuildResult:
             those that a sliver policy took away.
         report: the same in numbers for people.
         stages: what each stage of the build has made.
+        scene: what was built.
+        robot: the arm and tool of its setup.
     """
 
     surface: LabelledSurface
@@ -51,6 +54,8 @@ class BuildResult:
     node_color: NDArray[np.int64]
     report: BuildReport
     stages: Stages = field(compare=False)  # what came of them is compared
+    scene: Scene = field(compare=False)
+    robot: Robot = field(compare=False)
 
     def __eq__(self, other: object) -> bool:
         return same_members(self, other) if isinstance(other, BuildResult) else NotImplemented
@@ -96,6 +101,8 @@ def build_surface(
         node_color=stages.cleaned.coloring.node_color,
         report=report,
         stages=stages,
+        scene=prepared.scene,
+        robot=prepared.robot,
     )
 
 

@@ -8,18 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import BuildResult
+from cellcolor.errors import InputError
+from cellcolor.frontend import BuildResult, Reason
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.obstacle import Obstacle
-from cellcolor.frontend.prepared import robot_of
-from cellcolor.frontend.scene import Scene
+from cellcolor.pictures.interface import Given, Part
 from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
-__all__ = ["arm_at"]
+__all__ = ["ArmPicture", "arm_at"]
 
 _AROUND = 20
 _ALONG = 10
@@ -29,17 +29,39 @@ Triangles = NDArray[np.int64]
 Mesh = tuple[Array, Triangles]
 
 
-def arm_at(scene_path: Path, result: BuildResult, vertex: int, branch: int) -> Picture3D:
+class ArmPicture:
+    """The arm on a vertex."""
+
+    needs: tuple[Part, ...] = ("build", "vertex", "branch")
+    takes: tuple[Part, ...] = ()
+
+    def draw(self, given: Given) -> Picture3D:
+        """The arm in the configuration that was found valid there.
+
+        Raises:
+            InputError: the branch has no valid configuration on the vertex.
+        """
+        result, vertex, branch = given.build, given.vertex, given.branch
+        reasons = [Reason(code) for code in result.reasons[vertex]]
+        if reasons[branch] != Reason.VALID:
+            valid = [n for n, r in zip(result.branches, reasons, strict=True) if r == Reason.VALID]
+            message = (
+                f"{result.branches[branch]!r} is not valid on vertex {vertex}: "
+                f"{reasons[branch].text}; valid there: {', '.join(valid) or 'none'}"
+            )
+            raise InputError(None, "--branch", message)
+        return arm_at(result, vertex, branch)
+
+
+def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     """The arm with its tool on a vertex.
 
     Args:
-        scene_path: the scene that ``result`` was built from.
         result: what the front end found; the branch has a solution on the vertex.
         vertex: index of a vertex.
         branch: index of a branch.
     """
-    scene = Scene.read(scene_path)
-    robot = robot_of(scene.setup)
+    scene, robot = result.scene, result.robot
     configuration = result.configurations[vertex, branch]
     poses = forward(robot, configuration[None])
 

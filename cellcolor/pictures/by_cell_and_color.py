@@ -4,23 +4,59 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass
+from cellcolor.decomposition import Decomposition
+from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, FAINT, GREY, assign
+from cellcolor.pictures.picture import Picture3D
 
-__all__ = ["bare_areas", "bare_labels", "by_cell", "by_color", "color_key", "neighboring", "shares"]
+__all__ = [
+    "CellPicture",
+    "ColorPicture",
+    "bare_areas",
+    "bare_labels",
+    "by_cell",
+    "by_color",
+    "color_key",
+    "neighboring",
+    "shares",
+]
 
 
-def by_cell(surface: LabelledSurface, instance: Instance, cells: Labels) -> SurfaceView:
+class CellPicture:
+    """The surface by cell."""
+
+    needs: tuple[Part, ...] = ("surface", "decomposition")
+    takes: tuple[Part, ...] = ()
+
+    def draw(self, given: Given) -> Picture3D:
+        """Every cell in a color of its own."""
+        return draw_surface(given.surface, by_cell(given.surface, given.decomposition))
+
+
+class ColorPicture:
+    """The domain of one color."""
+
+    needs: tuple[Part, ...] = ("surface", "color")
+    takes: tuple[Part, ...] = ()
+
+    def draw(self, given: Given) -> Picture3D:
+        """Where the color is available, and where others are."""
+        return draw_surface(given.surface, by_color(given.surface, given.color))
+
+
+def by_cell(surface: LabelledSurface, decomposition: Decomposition) -> SurfaceView:
     """Every cell in a color of its own, or at least in another one than its neighbors.
 
     Args:
         surface: the surface.
-        instance: its topological graph.
-        cells: (n,) the cell of each vertex, ``OUTSIDE`` where unreachable.
+        decomposition: its topological graph, on the mesh.
     """
+    instance = decomposition.instance
+    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
     count = len(instance.cells)
     labels = np.where(cells == OUTSIDE, bare_labels(surface, count), cells)
     share = shares(surface, labels, count + 2)

@@ -13,12 +13,26 @@ from cellcolor.data.shares import GIVEN_UP
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.pictures.by_cell_and_color import shares
-from cellcolor.pictures.mesh_picture import SurfaceView, VertexClass
+from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.mesh_picture import SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import FAINT, REASONS
+from cellcolor.pictures.picture import Picture3D
 
-__all__ = ["CandidateReasons", "by_reason", "read_candidate_reasons"]
+__all__ = ["CandidateReasons", "ReasonPicture", "by_reason", "read_candidate_reasons"]
 
 _VALID = 0
+
+
+class ReasonPicture:
+    """Why vertices are out of reach."""
+
+    needs: tuple[Part, ...] = ("surface", "reasons")
+    takes: tuple[Part, ...] = ("branch",)
+
+    def draw(self, given: Given) -> Picture3D:
+        """At best, or in the branch that is given."""
+        branch = given.branch if "branch" in given else None
+        return draw_surface(given.surface, by_reason(given.surface, given.reasons, branch))
 
 
 @dataclass(frozen=True)

@@ -7,45 +7,57 @@ nearest joined border, which shows the sub-cells' places and not the cut.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Mapping
 
 import networkx as nx
 import numpy as np
 
 from cellcolor.data.darts import DartName, strand_of
-from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.shares import percent, shares_of
 from cellcolor.data.solution import CellDivision, Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.decomposition.borders import Borders, ClosedMesh, Step
-from cellcolor.decomposition.coverage import coverage_of
+from cellcolor.decomposition import Decomposition
+from cellcolor.decomposition.borders import Curve
 from cellcolor.pictures.by_cell_and_color import bare_areas, bare_labels, neighboring, shares
-from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass
+from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, assign
+from cellcolor.pictures.picture import Picture3D
 
-__all__ = ["by_solution"]
+__all__ = ["SegmentPicture", "by_solution"]
 
 _CUT = "#666666"
-Curves = dict[int, tuple[Step, ...]]
+
+
+class SegmentPicture:
+    """The surface by the segments of a solution."""
+
+    needs: tuple[Part, ...] = ("surface", "decomposition", "solution")
+    takes: tuple[Part, ...] = ()
+
+    def draw(self, given: Given) -> Picture3D:
+        """Every segment in a color of its own."""
+        painting = by_solution(given.surface, given.decomposition, given.solution)
+        return draw_surface(given.surface, painting)
 
 
 def by_solution(
-    surface: LabelledSurface, instance: Instance, cells: Labels, solution: Solution
+    surface: LabelledSurface, decomposition: Decomposition, solution: Solution
 ) -> SurfaceView:
     """Every segment in a color of its own.
 
     Args:
         surface: the surface.
-        instance: its topological graph.
-        cells: (n,) the cell of each vertex, ``OUTSIDE`` where unreachable.
-        solution: a valid solution of the instance, one that was found.
+        decomposition: its topological graph, on the mesh.
+        solution: a valid solution of the graph, one that was found.
     """
+    instance, curves = decomposition.instance, decomposition.curves
+    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
     count = solution.segments or 0
     labels = bare_labels(surface, count + 1)
     color: dict[int, int] = {}
     near: list[int] = []
     cut: list[int] = []
-    curves = _curves(surface, instance, cells)
     for cell in solution.cells or ():
         own = np.flatnonzero(cells == cell.id)
         color |= {sub.segment: sub.color for sub in cell.subcells}
@@ -55,7 +67,7 @@ def by_solution(
         painted = _nearest(surface, own, cell, solution.strands, curves)
         labels[own] = count if painted is None else painted
         (cut if painted is None else near).append(cell.id)
-    share = shares_of(_measured(surface, instance, cells), solution)
+    share = shares_of(instance, solution)
     bare = shares(surface, labels, count + 3)[count + 1 :]
     fills = assign(neighboring(surface, labels, count))
     areas = [
@@ -91,47 +103,8 @@ def by_solution(
     )
 
 
-def _measured(surface: LabelledSurface, instance: Instance, cells: Labels) -> Instance:
-    """The instance with the areas and the coverage that its surface gives it."""
-    reached = cells != OUTSIDE
-    areas = surface.vertex_areas[reached]
-    areas = np.bincount(cells[reached], areas, len(instance.cells))
-    own = tuple(
-        replace(cell, area=float(area)) for cell, area in zip(instance.cells, areas, strict=True)
-    )
-    return replace(instance, cells=own, coverage=coverage_of(surface))
-
-
 def _listed(cells: list[int]) -> str:
     return ("cell " if len(cells) == 1 else "cells ") + ", ".join(map(str, cells))
-
-
-def _curves(surface: LabelledSurface, instance: Instance, cells: Labels) -> Curves | None:
-    """Where each edge lies on the mesh; None if the graph was not made in this package's way.
-
-    Edges are numbered in the order in which the decomposition finds their curves; that each has
-    its sides and joinable colors is checked.
-    """
-    mesh = ClosedMesh(surface)
-    outside = mesh.vertex_count - mesh.real_count
-    area = [*cells.tolist(), *[OUTSIDE] * outside]
-    sets = [*map(frozenset, surface.vertex_colors), *[frozenset[int]()] * outside]
-
-    def joinable(a: int, b: int) -> frozenset[int]:
-        return (sets[a] & sets[b]) - surface.cracked(a, b)
-
-    curves = Borders(mesh, area, joinable, lambda a, b: bool(surface.cracked(a, b))).curves()
-    found = {number: curve.steps for number, curve in enumerate(curves, start=1)}
-    if len(found) != len(instance.edges):
-        return None
-    for edge in instance.edges:
-        if edge.id not in found:
-            return None
-        left, right = found[edge.id][0]
-        same = (area[left], area[right]) == (edge.left, edge.right)
-        if not same or joinable(left, right) != frozenset(instance.joinable(edge.id)):
-            return None
-    return found
 
 
 def _nearest(
@@ -139,15 +112,13 @@ def _nearest(
     own: Labels,
     cell: CellDivision,
     strands: int,
-    curves: Curves | None,
+    curves: Mapping[int, Curve],
 ) -> Labels | None:
     """The segment of each vertex of a divided cell, by the nearest joined dart.
 
     Distances are measured along mesh edges inside the cell. None if a sub-cell has no dart whose
-    place is known (it hangs on a seam only).
+    place is known: it hangs on a seam only, or no curve is known.
     """
-    if curves is None:
-        return None
     source: dict[int, int] = {}
     for sub in cell.subcells:
         vertices = {v for dart in sub.darts for v in _along(dart, strands, curves)}
@@ -167,10 +138,10 @@ def _nearest(
     return np.array([segment[vertex] for vertex in own.tolist()], dtype=np.int64)
 
 
-def _along(dart: DartName, strands: int, curves: Curves) -> list[int]:
+def _along(dart: DartName, strands: int, curves: Mapping[int, Curve]) -> list[int]:
     """The vertices on a dart's own side of its edge, or of one of its strands; [] for a seam."""
     name, strand = strand_of(dart)
-    steps = curves.get(abs(name), ())
+    steps = curves[abs(name)].steps if abs(name) in curves else ()
     count = len(steps)
     if strands > 1 and count:
         # Strands share the edge evenly; a short edge's strands share vertices.

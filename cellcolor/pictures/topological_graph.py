@@ -12,15 +12,30 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.pictures.mesh_picture import Labels, vertex_normals
+from cellcolor.decomposition import Decomposition
+from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import INK, LINES
 from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
 
-__all__ = ["draw_graph", "places_on"]
+__all__ = ["GraphPicture", "draw_graph", "places_on"]
 
 _DEAD = "dead edge"
 _POINTS_WIDE = 480.0
 _SAMPLES = 33
+
+
+class GraphPicture:
+    """The topological graph."""
+
+    needs: tuple[Part, ...] = ("graph",)
+    takes: tuple[Part, ...] = ("surface", "decomposition")
+
+    def draw(self, given: Given) -> Picture2D:
+        """The graph, its nodes near where their cells are if there is a surface."""
+        if "surface" not in given:
+            return draw_graph(given.graph)
+        return draw_graph(given.graph, places_on(given.surface, given.decomposition))
 
 
 def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
@@ -98,14 +113,15 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
     return Picture2D(title, tuple(curves), tuple(shapes), tuple(texts), tuple(notes))
 
 
-def places_on(surface: LabelledSurface, cells: Labels, count: int) -> Array:
-    """The middles (count, 2) of the cells, as seen from before the surface.
+def places_on(surface: LabelledSurface, decomposition: Decomposition) -> Array:
+    """The middles (cells, 2) of the cells, as seen from before the surface.
 
     Args:
         surface: the surface.
-        cells: (n,) the cell of each vertex, ``OUTSIDE`` where unreachable.
-        count: number of cells; each has a vertex.
+        decomposition: its topological graph; each cell has a vertex.
     """
+    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
+    count = len(decomposition.instance.cells)
     inside = cells != OUTSIDE
     sums = np.zeros((count, 3))
     np.add.at(sums, cells[inside], surface.vertices[inside])

@@ -1,0 +1,120 @@
+"""What every picture is given, and what it declares that it needs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
+
+from cellcolor.pictures.picture import Picture2D, Picture3D
+
+if TYPE_CHECKING:
+    from cellcolor.data.instance import Instance
+    from cellcolor.data.solution import Solution
+    from cellcolor.data.surface import LabelledSurface
+    from cellcolor.decomposition import Decomposition
+    from cellcolor.frontend import BuildResult
+    from cellcolor.pictures.by_reason import CandidateReasons
+
+__all__ = ["Drawn", "Given", "Part", "Picture"]
+
+Drawn: TypeAlias = Picture2D | Picture3D
+"""What a picture consists of, before any library draws it."""
+
+Part = Literal[
+    "surface",
+    "graph",
+    "decomposition",
+    "solution",
+    "reasons",
+    "build",
+    "color",
+    "branch",
+    "vertex",
+]
+"""What a picture can be drawn of; the attributes of :class:`Given` say what each is."""
+
+
+class Given:
+    """What one picture is drawn of: the parts that it declares, and no others.
+
+    A part that is not there raises KeyError: it was not declared, or may be missing.
+    """
+
+    def __init__(self, parts: Mapping[Part, Any]) -> None:
+        self._parts = parts
+
+    def __contains__(self, part: Part) -> bool:
+        return part in self._parts
+
+    @property
+    def surface(self) -> LabelledSurface:
+        """The labelled surface."""
+        surface: LabelledSurface = self._parts["surface"]
+        return surface
+
+    @property
+    def graph(self) -> Instance:
+        """The topological graph."""
+        graph: Instance = self._parts["graph"]
+        return graph
+
+    @property
+    def decomposition(self) -> Decomposition:
+        """The topological graph and where it lies on the surface."""
+        decomposition: Decomposition = self._parts["decomposition"]
+        return decomposition
+
+    @property
+    def solution(self) -> Solution:
+        """A solution of the graph with a division, which the checker has found valid."""
+        solution: Solution = self._parts["solution"]
+        return solution
+
+    @property
+    def reasons(self) -> CandidateReasons:
+        """What became of every candidate of the scene that the surface was built from."""
+        reasons: CandidateReasons = self._parts["reasons"]
+        return reasons
+
+    @property
+    def build(self) -> BuildResult:
+        """All that the front end found when it built the scene."""
+        build: BuildResult = self._parts["build"]
+        return build
+
+    @property
+    def color(self) -> int:
+        """The number of a color of the surface."""
+        color: int = self._parts["color"]
+        return color
+
+    @property
+    def branch(self) -> int:
+        """The number of an inverse-kinematic branch."""
+        branch: int = self._parts["branch"]
+        return branch
+
+    @property
+    def vertex(self) -> int:
+        """The index of a vertex of the surface."""
+        vertex: int = self._parts["vertex"]
+        return vertex
+
+
+class Picture(Protocol):
+    """One way to look at a surface, a graph, a solution or an arm."""
+
+    @property
+    def needs(self) -> tuple[Part, ...]:
+        """What it cannot be drawn without."""
+
+    @property
+    def takes(self) -> tuple[Part, ...]:
+        """What it uses besides, where there is such a thing."""
+
+    def draw(self, given: Given) -> Drawn:
+        """The picture.
+
+        Raises:
+            InputError: these parts cannot be drawn together; names the part.
+        """
