@@ -48,6 +48,24 @@ class TestScene:
         result = build_surface(scene)
         return result.branches[int(np.flatnonzero(result.reasons[0] == 0)[0])]
 
+    def test_nothing_is_read_again(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        """Scene, setup and robot are in the build: their files may have gone."""
+        from cellcolor.frontend import build_surface
+        from cellcolor.pictures.arm import arm_at
+
+        result = build_surface(INSTANCES / "scenes" / "square.toml")
+        vertex, branch = (int(k) for k in np.argwhere(result.node_color >= 0)[0])
+
+        def read(*_: object, **__: object) -> None:
+            raise AssertionError("a file is read")
+
+        monkeypatch.setattr("builtins.open", read)
+        monkeypatch.setattr("io.open", read)
+        monkeypatch.setattr("pathlib.Path.open", read)
+        monkeypatch.setattr("pathlib.Path.read_text", read)
+        picture = arm_at(result, vertex, branch)
+        assert {"object", f"vertex {vertex}"} < {layer.name for layer in picture.layers}
+
     def test_arm(self, tmp_path: Path) -> None:
         """Every link where Pinocchio has it, on the surface of its shapes."""
         import pinocchio as pin

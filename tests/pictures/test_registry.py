@@ -1,0 +1,104 @@
+"""Pictures by name: ``--view``, and what each declares that it needs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from commands import run
+from pages import DRAWN, saved, side_file
+
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.errors import InputError
+from cellcolor.pictures.interface import Given
+from cellcolor.pictures.registry import PICTURES, make_picture
+
+pytest.importorskip("matplotlib")
+Capture = pytest.CaptureFixture[str]
+
+
+def test_unknown_names_list_what_there_is() -> None:
+    with pytest.raises(InputError, match="view: there is no 'pie'; there are arm, cells, color, "):
+        make_picture("pie")
+
+
+def test_a_picture_gets_what_it_declares_and_nothing_else() -> None:
+    assert Given({"surface": DRAWN}).surface is DRAWN
+    assert "graph" not in Given({"surface": DRAWN})
+    with pytest.raises(KeyError, match="graph"):
+        _ = Given({"surface": DRAWN}).graph
+
+
+@pytest.mark.parametrize(
+    ("view", "option"),
+    [
+        (["cells"], []),
+        (["color", "--color", "1"], ["--color", "1"]),
+        (["graph"], ["--graph"]),
+        (["reasons"], ["--reason"]),
+        (["reasons", "--branch", "1"], ["--reason", "--branch", "1"]),
+    ],
+    ids=lambda value: " ".join(value) or "none",
+)
+def test_a_name_draws_what_its_option_does(
+    view: list[str], option: list[str], tmp_path: Path
+) -> None:
+    path, _ = side_file(tmp_path)
+    one, other = tmp_path / "one.svg", tmp_path / "other.svg"
+    assert run("show", path, "-o", one, "--view", *view) == 0
+    assert run("show", path, "-o", other, *option) == 0
+    assert one.read_bytes() == other.read_bytes()
+
+
+def test_segments_by_name(tmp_path: Path) -> None:
+    path, solution = saved(DRAWN, tmp_path), tmp_path / "solution.json"
+    assert run("solve", path, "-o", solution) == 0
+    one, other = tmp_path / "one.svg", tmp_path / "other.svg"
+    assert run("show", path, solution, "-o", one, "--view", "segments") == 0
+    assert run("show", path, solution, "-o", other) == 0
+    assert one.read_bytes() == other.read_bytes()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--view", "pie"], "'pie' is not one of 'arm', 'cells'"),
+        (["--view", "color"], "the picture color needs --color"),
+        (["--view", "segments"], "the picture segments needs a solution"),
+        (["--view", "cells", "--color", "1"], "the picture cells does not take --color"),
+        (["--view", "cells", "--branch", "1"], "the picture cells does not take --branch"),
+        (["--view", "cells", "--graph"], "--view goes without --reason and --graph"),
+    ],
+    ids=lambda value: " ".join(value[1:]) if isinstance(value, list) else "",
+)
+def test_usage(arguments: list[str], message: str, tmp_path: Path, capsys: Capture) -> None:
+    path = saved(DRAWN, tmp_path)
+    capsys.readouterr()
+    assert run("show", path, "-o", tmp_path / "x.svg", *arguments) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("cellcolor show: ") and message in line
+    assert not (tmp_path / "x.svg").exists()
+
+
+def test_every_picture_declares_parts_that_there_are() -> None:
+    pytest.importorskip("pinocchio")
+    parts = {name for name, value in vars(Given).items() if isinstance(value, property)}
+    for name in PICTURES:
+        picture = make_picture(name)
+        assert set(picture.needs + picture.takes) <= parts
+        assert not set(picture.needs) & set(picture.takes)
+
+
+def test_a_surface_is_decomposed_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Graph and decomposition are of one making, also where both are asked for."""
+    from cellcolor.decomposition import cells
+
+    made = []
+    real = cells.ClosedMesh
+    monkeypatch.setattr(cells, "ClosedMesh", lambda surface: made.append(surface) or real(surface))
+    path, solution = saved(DRAWN, tmp_path), tmp_path / "solution.json"
+    assert run("solve", path, "-o", solution) == 0
+    for arguments in ([path, "--view", "graph"], [path, solution]):
+        made.clear()
+        assert run("show", *arguments, "-o", tmp_path / "x.svg") == 0
+        assert len(made) == 1 and isinstance(made[0], LabelledSurface)
