@@ -16,7 +16,7 @@ from cellcolor.pictures.picture import Picture3D
 __all__ = [
     "CellPicture",
     "ColorPicture",
-    "bare_areas",
+    "bare_classes",
     "bare_labels",
     "by_cell",
     "by_color",
@@ -61,18 +61,18 @@ def by_cell(surface: LabelledSurface, decomposition: Decomposition) -> SurfaceVi
     labels = np.where(cells == OUTSIDE, bare_labels(surface, count), cells)
     share = shares(surface, labels, count + 2)
     fills = assign(neighboring(surface, cells, count))
-    areas = [
+    classes = [
         VertexClass(f"cell {cell.id} {_ids(cell.colors)}  {share[cell.id]}", fill, str(cell.id))
         for cell, fill in zip(instance.cells, fills, strict=True)
     ]
-    areas += bare_areas(*share[count:])
+    classes += bare_classes(*share[count:])
     notes = ["Cell: {available colors}, share of the surface."]
     if count > len(AREAS):
         notes.append("Fills repeat: the numbers tell cells apart.")
     cracks = surface.crack_colors
     title = f"{surface.name}: {count} cells"
     return SurfaceView(
-        title, labels, areas, cracks=cracks, notes=(*notes, *color_key(surface.colors))
+        title, labels, classes, cracks=cracks, notes=(*notes, *color_key(surface.colors))
     )
 
 
@@ -84,20 +84,20 @@ def by_color(surface: LabelledSurface, color: int) -> SurfaceView:
     labels = np.where(covered == 2, bare_labels(surface, 2), covered)
     share = shares(surface, labels, 4)
     name = surface.colors[color]
-    areas = [
+    classes = [
         VertexClass(f"{name}  {share[0]}", AREAS[0]),
         VertexClass(f"other colors only  {share[1]}", AREAS[2]),
-        *bare_areas(*share[2:]),
+        *bare_classes(*share[2:]),
     ]
     cracks = [pair for pair, colors in surface.crack_colors.items() if color in colors]
     note = "Shares of the surface. Cracks are those of this color."
     return SurfaceView(
-        f"{surface.name}: color {color}, {name}", labels, areas, cracks=cracks, notes=(note,)
+        f"{surface.name}: color {color}, {name}", labels, classes, cracks=cracks, notes=(note,)
     )
 
 
 def bare_labels(surface: LabelledSurface, first: int) -> Labels:
-    """The classes (n,) of vertices without colors, as if all were: see :func:`bare_areas`.
+    """The classes (n,) of vertices without colors, as if all were: see :func:`bare_classes`.
 
     Args:
         surface: the surface.
@@ -108,7 +108,7 @@ def bare_labels(surface: LabelledSurface, first: int) -> Labels:
     return labels
 
 
-def bare_areas(unreachable: str, given_up: str) -> list[VertexClass]:
+def bare_classes(unreachable: str, given_up: str) -> list[VertexClass]:
     """What no segment covers, with their shares as text."""
     return [
         VertexClass(f"{UNREACHABLE}  {unreachable}", FAINT),

@@ -53,7 +53,7 @@ class CandidateReasons:
 
 
 def read_candidate_reasons(surface: LabelledSurface, path: Path) -> CandidateReasons:
-    """The reasons_of in the side file that ``build`` writes beside a scene's surface.
+    """The candidates' reasons in the side file that ``build`` writes beside a scene's surface.
 
     Args:
         surface: the labelled surface.
@@ -116,7 +116,7 @@ def by_reason(
     names[_VALID] = "reachable" if branch is None else "valid"
     fills = [REASONS[(code - 1) % len(REASONS)] for code in range(given_up + 1)]
     fills[_VALID] = FAINT
-    areas = [
+    classes = [
         VertexClass(f"{names[code]}  {share[code]}, {counts[code]} vertices", fills[code])
         for code in range(given_up + 1)
     ]
@@ -125,4 +125,4 @@ def by_reason(
     if branch is None:
         notes.insert(0, "Reason of the branch that came farthest through the tests.")
     title = f"{surface.name}: reach of {who}"
-    return SurfaceView(title, labels, areas, notes=tuple(notes))
+    return SurfaceView(title, labels, classes, notes=tuple(notes))

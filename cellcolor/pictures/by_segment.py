@@ -18,7 +18,7 @@ from cellcolor.data.solution import CellDivision, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Curve
-from cellcolor.pictures.by_cell_and_color import bare_areas, bare_labels, neighboring, shares
+from cellcolor.pictures.by_cell_and_color import bare_classes, bare_labels, neighboring, shares
 from cellcolor.pictures.interface import Given, Part
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, assign
@@ -70,7 +70,7 @@ def by_solution(
     share = shares_of(instance, solution)
     bare = shares(surface, labels, count + 3)[count + 1 :]
     fills = assign(neighboring(surface, labels, count))
-    areas = [
+    classes = [
         VertexClass(
             f"segment {number}: {instance.colors[color[number]]}  "
             f"{percent(*share.segments[number])}",
@@ -79,8 +79,8 @@ def by_solution(
         )
         for number in range(count)
     ]
-    areas.append(VertexClass("cut between segments", _CUT))
-    areas += bare_areas(*bare)
+    classes.append(VertexClass("cut between segments", _CUT))
+    classes += bare_classes(*bare)
     notes = [f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells."]
     if not share.certain:
         notes.append("Ranges: where the cut runs through a divided cell is free.")
@@ -99,7 +99,7 @@ def by_solution(
         f"{lift_offs} lift-off{'' if lift_offs == 1 else 's'}"
     )
     return SurfaceView(
-        title, labels, areas, borders=cells, cracks=surface.crack_colors, notes=tuple(notes)
+        title, labels, classes, borders=cells, cracks=surface.crack_colors, notes=tuple(notes)
     )
 
 

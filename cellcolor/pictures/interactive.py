@@ -62,7 +62,7 @@ def _plain(text: str) -> str:
 
 def _space(picture: Picture3D) -> list[Any]:
     traces = [_mesh(layer) for layer in picture.layers]
-    traces += [_pieces(line) for line in picture.segments]
+    traces += [_pieces(line) for line in picture.lines]
     if picture.texts:
         # A little before the surface, which would cut through the letters otherwise.
         size = max(float(np.ptp(layer.points, axis=0).max()) for layer in picture.layers)
@@ -95,7 +95,7 @@ def _mesh(layer: Layer) -> Any:
         i=i,
         j=j,
         k=k,
-        color=layer.color,
+        color=layer.rgb,
         flatshading=True,
         lighting=solid if layer.solid else flat,
         name=_plain(layer.name),
@@ -108,7 +108,7 @@ def _mesh(layer: Layer) -> Any:
 def _pieces(line: SpaceLines) -> Any:
     gap = np.full((len(line.ends), 1, 3), np.nan)
     x, y, z = np.concatenate([line.ends, gap], axis=1).reshape(-1, 3).T
-    look = {"color": line.color, "width": 2}
+    look = {"color": line.rgb, "width": 2}
     return go.Scatter3d(
         x=x, y=y, z=z, mode="lines", line=look, name=_plain(line.name), hoverinfo="skip"
     )
@@ -117,15 +117,15 @@ def _pieces(line: SpaceLines) -> Any:
 def _plane(picture: Picture2D) -> list[Any]:
     traces: list[Any] = []
     named: set[str] = set()
-    for curve in picture.curves:
-        look = {"color": curve.color, "width": curve.width, "dash": "4px" if curve.dashed else None}
+    for curve in picture.lines:
+        look = {"color": curve.rgb, "width": curve.width, "dash": "4px" if curve.dashed else None}
         shown = curve.name not in named
         named.add(curve.name)
         traces.append(_outline(curve.points, curve.name, shown, line=look, legendgroup=curve.name))
     ink = {"color": INK, "width": 0.7}
-    for shape in picture.shapes:
+    for shape in picture.outlines:
         closed = np.concatenate([shape.points, shape.points[:1]])
-        traces.append(_outline(closed, "", False, line=ink, fill="toself", fillcolor=shape.color))
+        traces.append(_outline(closed, "", False, line=ink, fill="toself", fillcolor=shape.rgb))
     for size in sorted({size for _, _, size in picture.texts}):
         own = [(text, at) for text, at, own_size in picture.texts if own_size == size]
         x, y = np.array([at for _, at in own]).T

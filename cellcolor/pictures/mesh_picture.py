@@ -1,4 +1,4 @@
-"""A mesh with a class per vertex as a picture: areas, borders, cracks, numbers.
+"""A mesh with a class per vertex as a picture: fills, borders, cracks, numbers.
 
 A class owns the barycentric dual of its vertices, as in the decomposition: a triangle with
 different classes at its corners is cut from its center to the middles of its edges.
@@ -30,10 +30,10 @@ Labels = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class VertexClass:
-    """A class of vertices: its name for the legend, its color, and a number to write on it."""
+    """A class of vertices: its name for the legend, its fill, and a number to write on it."""
 
     name: str
-    color: str
+    rgb: str
     number: str | None = None
 
 
@@ -43,8 +43,8 @@ class SurfaceView:
 
     Attributes:
         title: one line.
-        labels: (n,) the area of each vertex, an index of ``areas``.
-        areas: those without any vertex are left out of the picture.
+        labels: (n,) the class of each vertex, an index of ``classes``.
+        classes: those without any vertex are left out of the picture.
         borders: (n,) vertex classes between which black lines run; None takes ``labels``.
         cracks: mesh edges to mark, as pairs of vertices.
         notes: lines under the legend.
@@ -52,31 +52,33 @@ class SurfaceView:
 
     title: str
     labels: Labels
-    areas: Sequence[VertexClass]
+    classes: Sequence[VertexClass]
     borders: Labels | None = None
     cracks: Collection[tuple[int, int]] = ()
     notes: tuple[str, ...] = ()
 
 
-def draw_surface(surface: LabelledSurface, painting: SurfaceView) -> Picture3D:
-    """The painted surface."""
+def draw_surface(surface: LabelledSurface, view: SurfaceView) -> Picture3D:
+    """The surface as the view wants it."""
     vertices, faces = surface.vertices, surface.faces
     normals = vertex_normals(vertices, faces)
-    points, triangles, owner = mesh_picture_parts(vertices, faces, painting.labels)
+    points, triangles, owner = mesh_picture_parts(vertices, faces, view.labels)
     layers = []
-    for number, area in enumerate(painting.areas):
+    for number, own_class in enumerate(view.classes):
         own = triangles[owner == number]
         if len(own):
             used, renumbered = np.unique(own, return_inverse=True)
-            layers.append(Layer(area.name, area.color, points[used], renumbered.reshape(own.shape)))
-    classes = painting.labels if painting.borders is None else painting.borders
-    segments = _lines(vertices, faces, normals, classes, set(painting.cracks))
+            layers.append(
+                Layer(own_class.name, own_class.rgb, points[used], renumbered.reshape(own.shape))
+            )
+    bordered = view.labels if view.borders is None else view.borders
+    segments = _lines(vertices, faces, normals, bordered, set(view.cracks))
     return Picture3D(
-        painting.title,
+        view.title,
         tuple(layers),
         segments,
-        tuple(_numbers(surface, painting, normals)),
-        painting.notes,
+        tuple(_numbers(surface, view, normals)),
+        view.notes,
         _towards(normals),
     )
 
@@ -154,25 +156,25 @@ def _lines(
     )
 
 
-def _numbers(surface: LabelledSurface, painting: SurfaceView, normals: Array) -> list[Text]:
-    """Each area's number at the vertex deepest inside of it."""
-    labels = painting.labels
+def _numbers(surface: LabelledSurface, view: SurfaceView, normals: Array) -> list[Text]:
+    """The number of each class at the vertex deepest inside of it."""
+    labels = view.labels
     depth = _depth(surface, labels)
     texts = []
-    for label, area in enumerate(painting.areas):
+    for label, own_class in enumerate(view.classes):
         own = np.flatnonzero(labels == label)
-        if area.number is None or not len(own):
+        if own_class.number is None or not len(own):
             continue
         deepest = own[depth[own] == depth[own].max()]
         middle = surface.vertices[own].mean(axis=0)
         offsets = np.linalg.norm(surface.vertices[deepest] - middle, axis=1)
         vertex = deepest[np.argmin(offsets)]
-        texts.append(Text(area.number, surface.vertices[vertex], normals[vertex]))
+        texts.append(Text(own_class.number, surface.vertices[vertex], normals[vertex]))
     return texts
 
 
 def _depth(surface: LabelledSurface, labels: Labels) -> Labels:
-    """Mesh edges from each vertex to the nearest border of its area or of the mesh."""
+    """Mesh edges from each vertex to the nearest border of its class or of the mesh."""
     ends = np.array(list(surface.left_of), dtype=np.int64).reshape(-1, 2)
     first, second = ends[:, 0], ends[:, 1]
     rim = [a for a, b in surface.left_of if (b, a) not in surface.left_of]
@@ -187,7 +189,7 @@ def _depth(surface: LabelledSurface, labels: Labels) -> Labels:
         for a, b in ((first, second), (second, first)):
             depth[b[(depth[a] == level) & (depth[b] < 0)]] = level + 1
         level += 1
-        if not (depth == level).any():  # a part of the surface of one area, without a rim
+        if not (depth == level).any():  # a part of the surface with one class and without a rim
             depth[depth < 0] = 0
     return depth
 

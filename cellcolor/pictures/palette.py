@@ -46,14 +46,14 @@ WARNING = "#CC3311"
 
 
 def assign(neighbors: Mapping[int, Set[int]], palette: tuple[str, ...] = AREAS) -> list[str]:
-    """A color for each of the areas 0, 1, …; neighbors differ as long as the palette allows.
+    """A fill for each of the classes 0, 1, …; neighbors differ as long as the palette allows.
 
     Args:
-        neighbors: the areas next to each area; all areas are keys.
-        palette: the colors; while there are no more areas than colors none is used twice.
+        neighbors: the classes next to each class; all of them are keys.
+        palette: the fills; while there are no more classes than fills none is used twice.
 
     Returns:
-        one color per area, in the order of the areas.
+        one fill for each class, in their order.
     """
     uses = [0] * len(palette)
     chosen: dict[int, int] = {}

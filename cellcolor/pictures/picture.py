@@ -1,4 +1,8 @@
-"""What a picture consists of, before any library draws it."""
+"""What a picture consists of, before any library draws it.
+
+What a thing is filled or drawn with is called its ``rgb``: a color is a class of configurations
+here (docs/semantics.md, section 1).
+"""
 
 from __future__ import annotations
 
@@ -14,18 +18,18 @@ __all__ = ["Layer", "Outline", "Picture2D", "Picture3D", "PlaneLine", "SpaceLine
 
 @dataclass(frozen=True)
 class Layer:
-    """Triangles of one color, one entry of the legend.
+    """Triangles with one fill, one entry of the legend.
 
     Attributes:
         name: what the legend says.
-        color: ``#RRGGBB``.
+        rgb: ``#RRGGBB``.
         points: (n, 3) in m.
         triangles: (m, 3) int64 rows of ``points``, counter-clockwise seen from outside.
-        solid: shade it by its direction to the light; flat areas keep the legend's color.
+        solid: shade it by its direction to the light; what is flat keeps the fill of the legend.
     """
 
     name: str
-    color: str
+    rgb: str
     points: Array
     triangles: NDArray[np.int64]
     solid: bool = False
@@ -36,7 +40,7 @@ class SpaceLines:
     """Straight pieces of one kind of line in space: (k, 2, 3) in m."""
 
     name: str
-    color: str
+    rgb: str
     ends: Array
 
 
@@ -55,8 +59,8 @@ class Picture3D:
 
     Attributes:
         title: one line.
-        layers: areas and solids.
-        segments: borders, cracks, the ground.
+        layers: classes of vertices, and solids.
+        lines: borders, cracks, the ground.
         texts: numbers on the surface.
         notes: lines under the legend.
         towards: (3,) unit vector from the scene to the eye.
@@ -64,7 +68,7 @@ class Picture3D:
 
     title: str
     layers: tuple[Layer, ...]
-    segments: tuple[SpaceLines, ...]
+    lines: tuple[SpaceLines, ...]
     texts: tuple[Text, ...]
     notes: tuple[str, ...]
     towards: Array
@@ -75,7 +79,7 @@ class PlaneLine:
     """A line in the plane: points (k, 2), width in points; ``name`` groups legend entries."""
 
     name: str
-    color: str
+    rgb: str
     points: Array
     width: float
     dashed: bool = False
@@ -85,7 +89,7 @@ class PlaneLine:
 class Outline:
     """A filled outline in the plane: points (k, 2)."""
 
-    color: str
+    rgb: str
     points: Array
 
 
@@ -95,14 +99,14 @@ class Picture2D:
 
     Attributes:
         title: one line.
-        curves: drawn first; one legend entry for each name, in this order.
-        shapes: drawn over the curves.
+        lines: drawn first; one legend entry for each name, in this order.
+        outlines: drawn over the lines.
         texts: (text, (2,) place, size in points), drawn last.
         notes: lines under the legend.
     """
 
     title: str
-    curves: tuple[PlaneLine, ...]
-    shapes: tuple[Outline, ...]
+    lines: tuple[PlaneLine, ...]
+    outlines: tuple[Outline, ...]
     texts: tuple[tuple[str, Array, float], ...]
     notes: tuple[str, ...]

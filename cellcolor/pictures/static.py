@@ -83,9 +83,9 @@ def _space(figure: Figure, picture: Picture3D) -> list[Patch | Line2D]:
         inks.append(shades)
     # Seen in parallel, a shift towards the eye moves lines before their surface and nothing else.
     nearer = 0.03 * float(np.ptp(points, axis=0).max()) * picture.towards
-    for line in picture.segments:
+    for line in picture.lines:
         corners.append(line.ends[:, [0, 1, 1]] + nearer)
-        color = np.tile([*to_rgb(line.color), 1.0], (len(line.ends), 1))
+        color = np.tile([*to_rgb(line.rgb), 1.0], (len(line.ends), 1))
         fills.append(color)
         inks.append(color)
     faces = Poly3DCollection(
@@ -102,11 +102,10 @@ def _space(figure: Figure, picture: Picture3D) -> list[Patch | Line2D]:
         if float(text.outward @ picture.towards) > 0:
             axes.text(*text.at.tolist(), text.text, fontsize=8, ha="center", va="center")
     handles: list[Patch | Line2D] = [
-        Patch(color=layer.color, label=layer.name) for layer in picture.layers
+        Patch(color=layer.rgb, label=layer.name) for layer in picture.layers
     ]
     handles += [
-        Line2D([], [], color=line.color, linewidth=0.8, label=line.name)
-        for line in picture.segments
+        Line2D([], [], color=line.rgb, linewidth=0.8, label=line.name) for line in picture.lines
     ]
     return handles
 
@@ -134,7 +133,7 @@ def _frame(axes: Axes3D, points: Array, towards: Array) -> None:
 
 def _shades(layer: Layer) -> Array:
     """A color (m, 4) for each triangle."""
-    color = np.tile(np.array([*to_rgb(layer.color), 1.0]), (len(layer.triangles), 1))
+    color = np.tile(np.array([*to_rgb(layer.rgb), 1.0]), (len(layer.triangles), 1))
     if layer.solid:
         corners = layer.points[layer.triangles]
         normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -148,16 +147,16 @@ def _plane(figure: Figure, picture: Picture2D) -> list[Patch | Line2D]:
     axes.set_axis_off()
     axes.set_aspect("equal")
     lines = LineCollection(
-        [curve.points for curve in picture.curves],
-        colors=[curve.color for curve in picture.curves],
-        linewidths=[curve.width for curve in picture.curves],
-        linestyles=[(0, (3, 2)) if curve.dashed else "solid" for curve in picture.curves],
+        [curve.points for curve in picture.lines],
+        colors=[curve.rgb for curve in picture.lines],
+        linewidths=[curve.width for curve in picture.lines],
+        linestyles=[(0, (3, 2)) if curve.dashed else "solid" for curve in picture.lines],
     )
     lines.set_gid("edges")
     axes.add_collection(lines)
     shapes = PolyCollection(
-        [shape.points for shape in picture.shapes],
-        facecolors=[shape.color for shape in picture.shapes],
+        [shape.points for shape in picture.outlines],
+        facecolors=[shape.rgb for shape in picture.outlines],
         edgecolors=INK,
         linewidths=0.5,
         zorder=2,
@@ -168,8 +167,8 @@ def _plane(figure: Figure, picture: Picture2D) -> list[Patch | Line2D]:
         x, y = at.tolist()
         axes.text(x, y, text, fontsize=size, ha="center", va="center", zorder=3)
     axes.autoscale_view()
-    kinds = {curve.name: curve for curve in picture.curves}
+    kinds = {curve.name: curve for curve in picture.lines}
     return [
-        Line2D([], [], color=c.color, linestyle="--" if c.dashed else "-", label=name)
+        Line2D([], [], color=c.rgb, linestyle="--" if c.dashed else "-", label=name)
         for name, c in kinds.items()
     ]
