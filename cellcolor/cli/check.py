@@ -43,7 +43,7 @@ def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) ->
 
 
 def _is_plan(claim: Path) -> bool:
-    """A plan says so; all else is read as a solution, JSON Lines with schemes among it."""
+    """Whether a file says that it is a plan; anything else is read as a solution."""
     try:
         return read_document(claim).get("format") == plan_file.FORMAT
     except InputError:

@@ -1,4 +1,4 @@
-"""What is printed: without control characters, and never in vain without a word about it."""
+"""What is printed: without control characters; where nobody can get it, that is said."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""SHA-256 of a canonical JSON text: what two files have in common if they say the same."""
+"""Fingerprints: SHA-256 of a canonical JSON text, equal for files that say the same."""
 
 from __future__ import annotations
 

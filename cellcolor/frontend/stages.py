@@ -16,7 +16,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.contact.collision import longest_steps
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.between import at_domain_border, remains_valid
-from cellcolor.frontend.reach.continuity import Coloring, color, find_cracks, link, node_links
+from cellcolor.frontend.reach.continuity import Coloring, color_nodes, find_cracks, link, node_links
 from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity import Candidates, Verdicts
@@ -162,7 +162,7 @@ def _colored(
 ) -> Coloring:
     """The colors of some of the candidates, ``nodes`` (n, branches)."""
     pairs = node_links(links.edges, links.linked)
-    return color(nodes, candidates.configurations, pairs, prepared.branches)
+    return color_nodes(nodes, candidates.configurations, pairs, prepared.branches)
 
 
 def _cleaned(

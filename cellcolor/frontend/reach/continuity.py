@@ -24,7 +24,7 @@ from cellcolor.frontend.target.surface import Surface
 
 __all__ = [
     "Coloring",
-    "color",
+    "color_nodes",
     "find_cracks",
     "link",
     "node_links",
@@ -106,7 +106,7 @@ def link(
     return linked
 
 
-def color(
+def color_nodes(
     nodes: Mask, configurations: Array, links: Index, branch_names: tuple[str, ...]
 ) -> Coloring:
     """Connected components of linked nodes.

@@ -203,7 +203,7 @@ class _CellGraph:
 
     def _place(self, cell: int) -> int:
         while self._merged_into[cell] != cell:
-            # Halving the way for those who come after.
+            # Path halving: later look-ups have half as far to go.
             self._merged_into[cell] = self._merged_into[self._merged_into[cell]]
             cell = self._merged_into[cell]
         return cell

@@ -1,6 +1,6 @@
 """The cross-validation campaign: random instances, every solver held to every other.
 
 ``draw_case`` makes the instances, ``compare_solvers`` holds the solvers to each other and, on
-meshes, to ``vertices``, a search that never sees the graph; ``shrink`` makes a disagreement small,
-``run`` does all that for thousands of instances on several processes, ``summary`` counts.
+meshes, to ``vertex_colorings``, a search that never sees the graph; ``shrink`` makes a disagreement
+small, ``pool`` does all that for thousands of instances on several processes, ``summary`` counts.
 """

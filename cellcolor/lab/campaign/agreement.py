@@ -29,7 +29,9 @@ MOST_STATES = 6_000
 """Partial colorings of a mesh that the search over vertices keeps at a time."""
 
 _STRANDS = (2, 4)
-"""Corridors across an edge that are tried before a coloring with fewer segments counts as news."""
+"""Corridors that the solver may lead across an edge, tried in turn. A coloring of the vertices may
+need several, so it contradicts the solver only if it has fewer segments than with the most of
+them."""
 
 
 @dataclass(frozen=True, slots=True)

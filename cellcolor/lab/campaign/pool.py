@@ -27,7 +27,7 @@ from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 __all__ = ["Outcome", "Wrong", "campaign"]
 
 SHRINK_SECONDS = 60.0
-"""For making one disagreement small."""
+"""Seconds that are spent on making one disagreement small."""
 
 
 @dataclass(frozen=True, slots=True)

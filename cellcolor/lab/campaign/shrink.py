@@ -82,7 +82,7 @@ def _smaller_instances(instance: Instance) -> Iterator[Instance]:
 
 
 def _without_cell(instance: Instance, gone: int) -> Instance:
-    """Its place becomes unreachable."""
+    """The instance without a cell, whose place becomes unreachable."""
     number = {OUTSIDE: OUTSIDE, gone: OUTSIDE}
     for cell in instance.cells:
         number.setdefault(cell.id, len(number) - 2)
@@ -103,7 +103,7 @@ def _without_cell(instance: Instance, gone: int) -> Instance:
 
 
 def _without_edge(instance: Instance, gone: int) -> Instance:
-    """As if it were dead, and left out like dead edges may be."""
+    """The instance without an edge: as if it were dead, and left out as dead edges may be."""
     cells = []
     for cell in instance.cells:
         loops = (tuple(d for d in loop if abs(d) != gone) for loop in cell.loops)
@@ -143,7 +143,8 @@ def _smaller_surfaces(surface: LabelledSurface) -> Iterator[LabelledSurface]:
 
 
 def _recolored(surface: LabelledSurface, gone: dict[int, int | None]) -> LabelledSurface:
-    """Without a color at each of the given vertices, None for all of them there."""
+    """The surface without one color at each of the given vertices; None stands for all its
+    colors."""
     colors = tuple(
         tuple(c for c in own if gone[vertex] not in (None, c)) if vertex in gone else own
         for vertex, own in enumerate(surface.vertex_colors)

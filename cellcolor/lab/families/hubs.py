@@ -1,4 +1,8 @@
-"""Hubs: cells with all colors, ringed by petals with few."""
+"""Hubs: cells with all colors, ringed by petals with few.
+
+A petal is a cell at the border of a hub with one color or a few. Two petals of one color are joined
+by a corridor through the hub, and corridors may not cross: that makes hubs hard.
+"""
 
 from __future__ import annotations
 
@@ -219,9 +223,9 @@ def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> 
         return len(edges)
 
     def strip(near: int, far: int) -> tuple[list[int], list[int]]:
-        """Petals between two areas, as walks round each of the two meet them.
+        """Petals between two hubs, or a hub and the rim, as walks round each of the two meet them.
 
-        Looking from the near area to the far one they follow each other from right to left.
+        Looking from the near one to the far one they follow each other from right to left.
         """
         nears: list[int] = []
         fars: list[int] = []

@@ -82,7 +82,7 @@ def large_tree(seed: int) -> Instance:
 
 
 def large_hub_grid(seed: int) -> Instance:
-    """Up to a gross of hubs that share their petals."""
+    """Up to 144 hubs that share their petals."""
     rng = random.Random(f"grids {seed}")
     rows, columns = rng.randint(2, 12), rng.randint(2, 12)
     return hub_grid(seed, rows, columns, rng.randint(3, 8), rng.randint(1, 4))

@@ -19,7 +19,7 @@ from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.reach.continuity import (
     Coloring,
-    color,
+    color_nodes,
     find_cracks,
     link,
     node_links,
@@ -90,7 +90,7 @@ class Plane:
         return q, np.where(np.isnan(q[:, 0]), np.nan, self.determinant)
 
     def colored(self, links: Array, names: tuple[str, ...]) -> Coloring:
-        return color(self.candidates.valid, self.candidates.configurations, links, names)
+        return color_nodes(self.candidates.valid, self.candidates.configurations, links, names)
 
     def linked(self, policy: Continuity = POLICY) -> Array:
         return link(self.surface, self.edges, self.candidates, measure(policy), None, self.probe)

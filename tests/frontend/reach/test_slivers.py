@@ -16,7 +16,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
-from cellcolor.frontend.reach.continuity import Coloring, color, node_links
+from cellcolor.frontend.reach.continuity import Coloring, color_nodes, node_links
 from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.setup import Setup, Slivers
 from cellcolor.frontend.target.shapes import grid_mesh, rectangle
@@ -102,7 +102,7 @@ def test_like_looking_at_all_cells_again(
     edges = surface.edges()
     linked = nodes[edges[:, 0]] & nodes[edges[:, 1]] & (rng.random((len(edges), 4)) >= cracked)
     names = ("a", "b", "c", "d")
-    coloring = color(nodes, np.zeros((*nodes.shape, 6)), node_links(edges, linked), names)
+    coloring = color_nodes(nodes, np.zeros((*nodes.shape, 6)), node_links(edges, linked), names)
     # Whole numbers: their sums are exact, so that equal areas are equal in whatever order.
     areas = rng.integers(1, 4, len(x)).astype(float)
     policy = Slivers(simplify_below_share=below, uncover_below_share=below / 2)
