@@ -37,8 +37,8 @@ class SegmentPicture:
 
     def draw(self, given: Given) -> Picture3D:
         """Every segment in a color of its own."""
-        painting = by_solution(given.surface, given.decomposition, given.solution)
-        return draw_surface(given.surface, painting)
+        view = by_solution(given.surface, given.decomposition, given.solution)
+        return draw_surface(given.surface, view)
 
 
 def by_solution(
