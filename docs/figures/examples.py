@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline
-from cellcolor.decomposition import decompose
-from cellcolor.decomposition.borders import Borders, ClosedMesh
+from cellcolor.decomposition import decomposition_of
+from cellcolor.decomposition.borders import ClosedMesh
 from cellcolor.pictures.by_segment import by_solution
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -60,9 +60,9 @@ class Example:
             colors,
             () if cracked is None else _cracks(points, faces, colors, cracked),
         )
-        self.graph = decompose(self.surface, "example")
-        assert self.graph.surface is not None
-        self.cells = np.array(self.graph.surface.vertex_cell)
+        self.decomposition = decomposition_of(self.surface)
+        self.graph = self.decomposition.instance
+        self.cells = np.array(self.decomposition.vertex_cell)
 
     def best(self, space: str = "paper") -> Solution:
         """One of the best divisions of a search space."""
@@ -73,29 +73,18 @@ class Example:
 
     def segments(self, division: Solution) -> NDArray[np.int64]:
         """The segment of each point in a division, as ``cellcolor show`` paints it."""
-        return by_solution(self.surface, self.graph, self.cells, division).labels
+        return by_solution(self.surface, self.decomposition, division).labels
 
     @cached_property
     def edges(self) -> dict[int, Array]:
         """Each topological edge as a smooth line (k, 2), its left cell on the left."""
         mesh = ClosedMesh(self.surface)
-        outside = mesh.vertex_count - mesh.real_count
-        area = [*self.cells.tolist(), *[-1] * outside]
-        sets = [*map(frozenset, self.surface.vertex_colors), *[frozenset[int]()] * outside]
-        cracks = {(c.i, c.j): frozenset(c.colors) for c in self.surface.cracks}
-
-        def cracked(a: int, b: int) -> frozenset[int]:
-            return cracks.get((min(a, b), max(a, b)), frozenset())
-
-        def joinable(a: int, b: int) -> frozenset[int]:
-            return (sets[a] & sets[b]) - cracked(a, b)
 
         def middle(*vertices: int) -> Array:
             return self.points[[v for v in vertices if v < mesh.real_count]].mean(axis=0)
 
-        curves = Borders(mesh, area, joinable, lambda a, b: bool(cracked(a, b))).curves()
         lines = {}
-        for number, curve in enumerate(curves, start=1):
+        for number, curve in self.decomposition.curves.items():
             u, v = curve.steps[0]
             line = [middle(u, v, mesh.third[v, u])]
             for u, v in curve.steps:
