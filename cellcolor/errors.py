@@ -74,7 +74,7 @@ class BeatenBound(ContradictionError):
         self.segments = segments
         self.lower = lower
         super().__init__(
-            f"internal contradiction: a valid plan on {name!r} has {segments} segments, fewer "
+            f"internal contradiction: a valid plan on {name!r} has fewer segments, {segments}, "
             f"than the proven lower bound of {lower}; please report this surface and plan"
         )
 

@@ -18,6 +18,7 @@ docs/semantics.md, section 4): a bound of the search space ``paper`` may be beat
 
 from __future__ import annotations
 
+import time
 from dataclasses import dataclass
 
 from cellcolor.checker.vertex_plan import check_plan
@@ -141,7 +142,8 @@ def proven_range(
     Raises:
         InputError: a cell of the surface is not planar, or an option is out of its range.
     """
-    deadline = Deadline.after(time_limit)
+    started = time.monotonic()
+    deadline = Deadline.after(time_limit, started)
     corridors = STRANDS["surface"] if strands is None else strands
     # The paper's search space is the smaller one: where its optimum meets a bound for any
     # division, there is nothing left to search.
@@ -158,8 +160,10 @@ def proven_range(
     # One sub-cell a cell is a division of its own, whatever the solver finds.
     upper = len(instance.cells)
     lower = min(upper, 1)
-    for options in searches:
-        if lower == upper or deadline.over:
+    # A further search takes about as long as that for its first division alone.
+    enough = deadline.earlier(time.monotonic() - started)
+    for number, options in enumerate(searches):
+        if lower == upper or (enough if number else deadline).over:
             break
         solution = solve(instance, options)
         lower = max(lower, solution.surface_lower_bound)
@@ -181,17 +185,18 @@ def judge(
         surface: the labelled surface that was planned on.
         plan: one color per vertex, None exactly where the vertex has none.
         bounds: this surface's :func:`proven_range`, if known already.
-        time_limit: seconds for finding the range otherwise.
+        time_limit: seconds for all of this, most of which finding the range takes otherwise.
 
     Raises:
         BeatenBound: the plan is valid and beats the lower bound.
         InputError: a cell of the surface is not planar.
     """
+    deadline = Deadline.after(time_limit)
     report = check_plan(surface, plan)
     if report.segments is None:
         return Verdict(report.problems, None, bounds)
     if bounds is None:
-        bounds = proven_range(surface, time_limit=time_limit)
+        bounds = proven_range(surface, time_limit=deadline.left)
     if report.segments < bounds.lower:
         raise BeatenBound(surface.name, report.segments, bounds.lower)
     return Verdict((), report.segments, bounds)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,12 +14,20 @@ from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
 
+import cellcolor.checker.vertex_plan
+import cellcolor.decomposition
+import cellcolor.oracle
+import cellcolor.solvers.checked
+from cellcolor.checker.vertex_plan import PlanReport
 from cellcolor.cli import main
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import BeatenBound
 from cellcolor.oracle import ProvenRange, Verdict, judge, proven_range
+from cellcolor.solvers.interface import Options
 
 CORRIDORS = PAPER / "parallel-corridors.surface.json"
 RED, BLUE, GREEN = 0, 1, 2
@@ -127,6 +137,61 @@ def test_no_time_for_the_graph() -> None:
     assert proven_range(drawn("... ...", {".": []}), time_limit=1e-9) == ProvenRange(0, 0)
 
 
+class _Clock:
+    """What ``time.monotonic`` says while time passes only where a test lets it."""
+
+    def __init__(self) -> None:
+        self.now = 0.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+@pytest.mark.parametrize(
+    ("after_search", "expected"), [(59.0, ["paper"]), (57.0, ["paper", "surface"])]
+)
+def test_no_second_search_for_which_there_is_no_time(
+    after_search: float, expected: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of 60 s the graph takes 2, and so does the first division of any search."""
+    clock, searches = _Clock(), list[str]()
+    monkeypatch.setattr(time, "monotonic", clock)
+
+    def decompose(surface: LabelledSurface, deadline: Deadline) -> Instance:
+        clock.now += 2
+        return cellcolor.decomposition.decompose(surface, deadline=deadline)
+
+    def solve(instance: Instance, options: Options) -> Solution:
+        searches.append(options.search_space)
+        found = cellcolor.solvers.checked.solve(instance, replace(options, deadline=NEVER))
+        clock.now = after_search
+        return replace(found, surface_lower_bound=1)
+
+    monkeypatch.setattr(cellcolor.oracle, "decompose", decompose)
+    monkeypatch.setattr(cellcolor.oracle, "solve", solve)
+    proven_range(LabelledSurface.read(CORRIDORS), time_limit=60.0)
+    assert searches == expected
+
+
+def test_checking_the_plan_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The plan is checked in 2 s of 60."""
+    clock, limits = _Clock(), list[float | None]()
+    monkeypatch.setattr(time, "monotonic", clock)
+
+    def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
+        clock.now += 2
+        return cellcolor.checker.vertex_plan.check_plan(surface, plan)
+
+    def proven_range(_: LabelledSurface, time_limit: float | None) -> ProvenRange:
+        limits.append(time_limit)
+        return ProvenRange(1, 8)
+
+    monkeypatch.setattr(cellcolor.oracle, "check_plan", check_plan)
+    monkeypatch.setattr(cellcolor.oracle, "proven_range", proven_range)
+    judge(drawn("AA AA", {"A": [RED]}), Plan((RED,) * 4), time_limit=60.0)
+    assert limits == [58.0]
+
+
 def test_nothing_reachable() -> None:
     surface = drawn("... ...", {".": []})
     verdict = judge(surface, Plan((None,) * 6))
@@ -181,7 +246,7 @@ class TestCommand:
         plan = halves(LabelledSurface.read(CORRIDORS))
         assert self.check(CORRIDORS, plan, tmp_path) == 0
         out = capsys.readouterr().out
-        assert "2 segments, 1 lift-offs" in out
+        assert "2 segments, 1 lift-off\n" in out
         assert "exactly 2" in out
         assert "optimal" in out.split()
 

@@ -10,6 +10,7 @@ from cellcolor.data.bound import greatest
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
+from cellcolor.data.wording import count
 
 __all__ = ["claims", "number_problems"]
 
@@ -78,7 +79,7 @@ def _bound_problems(instance: Instance, solution: Solution, segments: int | None
     lower, surface = solution.lower_bound, solution.surface_lower_bound
     for name, bound in (("lower_bound", lower), ("surface_lower_bound", surface)):
         if bound > most:
-            problems.append(f"{name}: {bound} cannot be above the {most} segments {why}")
+            problems.append(f"{name}: {bound} cannot be above the {count(most, 'segment')} {why}")
     if lower < surface:
         # Whatever the search space, its divisions are divisions of the surface.
         problems.append(f"lower_bound: {lower} cannot be below surface_lower_bound, {surface}")
@@ -104,12 +105,13 @@ def _proof_problems(solution: Solution, segments: int | None) -> list[str]:
     if solution.proved_for_surface != proved:
         problems.append(
             f"proved_for_surface: must be {str(proved).lower()}, since surface_lower_bound is "
-            f"{surface} and the division has {segments} segments"
+            f"{surface} and the division has {count(segments, 'segment')}"
         )
     bound = solution.lower_bound if solution.search_space == "paper" else surface
     if solution.status == "optimal" and bound != segments:
         problems.append(
-            f"status: {segments} segments are not proved optimal by a lower bound of {bound}"
+            f"status: a division with {count(segments, 'segment')} is not proved optimal by a "
+            f"lower bound of {bound}"
         )
     return problems
 
@@ -134,19 +136,19 @@ def _scheme_problems(instance: Instance, solution: Solution) -> list[str]:
 
 
 def _cutting_problems(instance: Instance, solution: Solution) -> list[str]:
-    count, bound = solution.cutting_paths, solution.cutting_paths_lower_bound
+    paths, bound = solution.cutting_paths, solution.cutting_paths_lower_bound
     if solution.cells is None:
         # Of the fewest segments, that is, and how many these are is not known.
-        wrong = count is not None or bound
+        wrong = paths is not None or bound
         return ["cutting_paths: cannot be known without a division"] if wrong else []
-    if count is None and bound is None:
+    if paths is None and bound is None:
         return []
-    if count is None or bound is None:
+    if paths is None or bound is None:
         return ["cutting_paths: goes with cutting_paths_lower_bound"]
     problems = []
     own = cutting_paths(instance, solution.cells, solution.seams)
-    if count != own:
-        problems.append(f"cutting_paths: says {count}, the division has {own}")
+    if paths != own:
+        problems.append(f"cutting_paths: says {paths}, the division has {own}")
     if bound > own:
         problems.append(f"cutting_paths_lower_bound: {bound} cannot be above the {own} found")
     return problems

@@ -13,6 +13,7 @@ from cellcolor.cli.terminal import apart_from, complain, say
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
+from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.files.writing import (
     SIDE_FILE,
@@ -33,8 +34,8 @@ def build_instance(source: Path, output: Path) -> Exit:
     with apart_from(output):
         instance = (_build_scene if is_scene(source) else _build_surface)(source, output)
         say(
-            f"wrote {output}: {len(instance.cells)} cells, {len(instance.edges)} edges, "
-            f"{len(instance.colors)} colors"
+            f"wrote {output}: {count(len(instance.cells), 'cell')}, "
+            f"{count(len(instance.edges), 'edge')}, {count(len(instance.colors), 'color')}"
         )
     if instance.nothing_to_cover:
         complain(f"{source}: {nothing_to_cover(instance)}")

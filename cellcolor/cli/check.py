@@ -11,28 +11,38 @@ from cellcolor.checker.division import check_scheme, check_solution
 from cellcolor.checker.known_results import contradictions
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import instance_of, read_subject
-from cellcolor.cli.terminal import print_json, say
+from cellcolor.cli.terminal import complain, print_json, say
 from cellcolor.data import plan as plan_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import count
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
 
 
-def check_files(subject: Path, claim: Path, time_limit: float, as_json: bool) -> Exit:
+def check_files(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -> Exit:
     """Say whether a claim is valid, and what its numbers are.
 
     Args:
         subject: an instance, a labelled surface or a scene.
         claim: a solution of it, or a plan on its surface.
-        time_limit: seconds for the proven range that a plan is compared with.
+        deadline: when the proven range that a plan is compared with has to be there.
         as_json: one JSON object instead of lines.
     """
-    graph = read_subject(subject)
-    if isinstance(graph, LabelledSurface) and _is_plan(claim):
-        verdict = _check_plan(graph, subject, claim, time_limit)
+    is_plan = _is_plan(claim)
+    try:
+        graph = read_subject(subject, deadline if is_plan else NEVER)
+    except OutOfTime:
+        message = f"{subject}: unknown: the time limit came before there was a surface"
+        complain(message)
+        if as_json:
+            print_json({"file": str(claim), "error": message})
+        return Exit.STOPPED
+    if isinstance(graph, LabelledSurface) and is_plan:
+        verdict = _check_plan(graph, subject, claim, deadline)
     else:
         verdict = _check_solution(instance_of(graph, subject), claim)
     if as_json:
@@ -57,20 +67,22 @@ def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
     if report.valid:
         problems += contradictions(instance, solution)
     keys: set[SchemeKey] = set()
-    count = 0
-    for count, division in enumerate(read_schemes(claim), start=1):
+    schemes = 0
+    for schemes, division in enumerate(read_schemes(claim), start=1):
         scheme = check_scheme(instance, division)
         faults = [*scheme.problems, *scheme.not_canonical]
         if not faults and scheme.segments != solution.segments:
-            faults.append(f"has {scheme.segments} segments, the solution {solution.segments}")
+            faults.append(
+                f"has {count(scheme.segments or 0, 'segment')}, the solution {solution.segments}"
+            )
         key = scheme_key(division)
         if key in keys:
             faults.append("the same scheme stands in an earlier line")
         keys.add(key)
-        problems += [f"scheme {count}: {fault}" for fault in faults]
+        problems += [f"scheme {schemes}: {fault}" for fault in faults]
     # A solution alone may count schemes that it does not list; a list has to be whole.
-    if count and count != solution.schemes:
-        problems.append(f"schemes: says {solution.schemes}, {count} follow")
+    if schemes and schemes != solution.schemes:
+        problems.append(f"schemes: says {solution.schemes}, listed are {schemes}")
     verdict: dict[str, Any] = {
         "valid": not problems,
         "problems": problems,
@@ -79,18 +91,18 @@ def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
         "status": solution.status,
         "claimed": claims(instance, solution) if report.valid else {},
     }
-    return verdict | ({"schemes": count} if count else {})
+    return verdict | ({"schemes": schemes} if schemes else {})
 
 
 def _check_plan(
-    surface: LabelledSurface, subject: Path, claim: Path, time_limit: float
+    surface: LabelledSurface, subject: Path, claim: Path, deadline: Deadline
 ) -> dict[str, Any]:
     plan = Plan.read(claim)
 
     from cellcolor.oracle import judge
 
     try:
-        verdict = judge(surface, plan, time_limit=time_limit)
+        verdict = judge(surface, plan, time_limit=deadline.left)
     except InputError as error:
         raise error.in_file(str(subject)) from error
     bounds = verdict.bounds
@@ -111,11 +123,11 @@ def _print(claim: Path, verdict: dict[str, Any]) -> None:
     for problem in verdict["problems"]:
         say(f"  {problem}")
     if verdict["segments"] is not None:
-        say(f"  {verdict['segments']} segments, {verdict['lift_offs']} lift-offs")
+        say(f"  {count(verdict['segments'], 'segment')}, {count(verdict['lift_offs'], 'lift-off')}")
     if "status" in verdict:
         say(f"  status {verdict['status']}")
     if "schemes" in verdict:
-        say(f"  {verdict['schemes']} schemes")
+        say(f"  {count(verdict['schemes'], 'scheme')}")
     if verdict.get("claimed"):
         claimed = (f"{name} {json.dumps(value)}" for name, value in verdict["claimed"].items())
         say(f"  claimed, not verified: {', '.join(claimed)}")

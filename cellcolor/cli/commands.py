@@ -193,7 +193,7 @@ def solve(
     type=_SECONDS,
     default=60.0,
     show_default=True,
-    help="Seconds for the proven range that a plan is compared with.",
+    help="Seconds, reading included, for the proven range that a plan is compared with.",
 )
 @click.option("--json", "as_json", is_flag=True, help="One JSON object.")
 def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
@@ -201,9 +201,12 @@ def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
 
     FILE is an instance, a labelled surface or a scene; a plan needs one of the last two.
     """
-    from cellcolor.cli.check import check_files
+    begun = time.monotonic()
 
-    return check_files(subject, claim, time_limit, as_json)
+    from cellcolor.cli.check import check_files
+    from cellcolor.deadline import Deadline
+
+    return check_files(subject, claim, Deadline.after(time_limit, begun), as_json)
 
 
 @cellcolor.command()

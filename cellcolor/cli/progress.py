@@ -9,6 +9,7 @@ from pathlib import Path
 
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import shown
+from cellcolor.data.wording import count
 from cellcolor.solvers.interface import OnProgress
 
 
@@ -36,7 +37,7 @@ def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None] | None]:
         if show is None:
             yield None
             return
-        yield lambda count: show(f"{name}: {count} schemes so far")
+        yield lambda found: show(f"{name}: {count(found, 'scheme')} so far")
 
 
 @contextmanager

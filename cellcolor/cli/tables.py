@@ -16,6 +16,7 @@ from cellcolor.cli.terminal import shown
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, Shares, percent, shares_of
 from cellcolor.data.solution import Solution
+from cellcolor.data.wording import count
 
 _CELLS_SHOWN = 12
 _SEGMENTS_SHOWN = 200
@@ -34,7 +35,8 @@ def print_solution(instance: Instance, solution: Solution) -> None:
     out = console()
     out.print(
         Text(shown(instance.name), style="bold"),
-        f"{len(instance.cells)} cells, {len(instance.edges)} edges, {len(instance.colors)} colors",
+        f"{count(len(instance.cells), 'cell')}, {count(len(instance.edges), 'edge')}, "
+        f"{count(len(instance.colors), 'color')}",
     )
     if solution.cells:
         shares = shares_of(instance, solution)
@@ -84,8 +86,8 @@ def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
     parts: list[list[int]] = [[] for _ in shares.segments]
     colors = [0] * len(shares.segments)
     for cell in solution.cells or ():
-        for segment, count in Counter(sub.segment for sub in cell.subcells).items():
-            (whole if count == len(cell.subcells) else parts)[segment].append(cell.id)
+        for segment, number in Counter(sub.segment for sub in cell.subcells).items():
+            (whole if number == len(cell.subcells) else parts)[segment].append(cell.id)
         for sub in cell.subcells:
             colors[sub.segment] = sub.color
     for segment, share in enumerate(shares.segments[:_SEGMENTS_SHOWN]):
@@ -96,7 +98,7 @@ def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
             percent(*share),
         )
     if (more := len(shares.segments) - _SEGMENTS_SHOWN) > 0:
-        table.add_row("…", f"{more} more segments", "", "")
+        table.add_row("…", count(more, "more segment"), "", "")
     if shares.of == "surface":
         table.add_row("", UNREACHABLE, "", percent(shares.unreachable, shares.unreachable))
         if shares.given_up:

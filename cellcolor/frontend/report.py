@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cellcolor.data.wording import count
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity import Candidates, Reason
@@ -87,13 +88,15 @@ class BuildReport:
     def _slivers(self, slivers: SliverReport) -> str:
         share = 100 * slivers.given_up_area_m2 / self.area_m2
         return (
-            f"slivers  {slivers.simplified_cells} cells simplified; {slivers.given_up_cells} cells"
-            f" given up: {slivers.given_up_vertices} vertices, {share:.1f} % of the area uncovered"
+            f"slivers  {count(slivers.simplified_cells, 'cell')} simplified; "
+            f"{count(slivers.given_up_cells, 'cell')} given up: "
+            f"{count(slivers.given_up_vertices, 'vertex', 'vertices')}, "
+            f"{share:.1f} % of the area uncovered"
         )
 
 
 def _table(title: str, counts: dict[str, int]) -> list[str]:
-    return [title] + [f"  {reason:<18} {count:>7}" for reason, count in counts.items()]
+    return [title] + [f"  {reason:<18} {number:>7}" for reason, number in counts.items()]
 
 
 def make_report(

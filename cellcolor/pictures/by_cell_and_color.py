@@ -7,6 +7,7 @@ import numpy as np
 from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.pictures.interface import Given, Part
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
@@ -57,20 +58,20 @@ def by_cell(surface: LabelledSurface, decomposition: Decomposition) -> SurfaceVi
     """
     instance = decomposition.instance
     cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    count = len(instance.cells)
-    labels = np.where(cells == OUTSIDE, bare_labels(surface, count), cells)
-    share = shares(surface, labels, count + 2)
-    fills = assign(neighboring(surface, cells, count))
+    number = len(instance.cells)
+    labels = np.where(cells == OUTSIDE, bare_labels(surface, number), cells)
+    share = shares(surface, labels, number + 2)
+    fills = assign(neighboring(surface, cells, number))
     classes = [
         VertexClass(f"cell {cell.id} {_ids(cell.colors)}  {share[cell.id]}", fill, str(cell.id))
         for cell, fill in zip(instance.cells, fills, strict=True)
     ]
-    classes += bare_classes(*share[count:])
+    classes += bare_classes(*share[number:])
     notes = ["Cell: {available colors}, share of the surface."]
-    if count > len(AREAS):
+    if number > len(AREAS):
         notes.append("Fills repeat: the numbers tell cells apart.")
     cracks = surface.crack_colors
-    title = f"{surface.name}: {count} cells"
+    title = f"{surface.name}: {count(number, 'cell')}"
     return SurfaceView(
         title, labels, classes, cracks=cracks, notes=(*notes, *color_key(surface.colors))
     )

@@ -12,6 +12,7 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.pictures.interface import Given, Part
 from cellcolor.pictures.mesh_picture import vertex_normals
@@ -91,8 +92,8 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
                 for at in _gaps(cell.loops, angles)
             ]
         texts.append((str(cell.id), center, min(11.0, 0.45 * radius / unit)))
-        count = sum(map(len, cell.loops))
-        size = min(7.0, 2.0 * radius / unit / max(count, 6))
+        darts = sum(map(len, cell.loops))
+        size = min(7.0, 2.0 * radius / unit / max(darts, 6))
         for loop in cell.loops:
             for dart in loop:
                 at = center + 0.7 * radius * _direction(angles[dart])
@@ -108,8 +109,8 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
     ]
     if len(instance.colors) > len(LINES):
         notes.append("Line colors repeat: the numbers on the edges tell colors apart.")
-    count, edges = len(instance.cells), len(instance.edges)
-    title = f"{instance.name}: {count} cells, {edges} edges"
+    cells, edges = count(len(instance.cells), "cell"), count(len(instance.edges), "edge")
+    title = f"{instance.name}: {cells}, {edges}"
     return Picture2D(title, tuple(curves), tuple(shapes), tuple(texts), tuple(notes))
 
 

@@ -171,10 +171,10 @@ RED, BLUE = 0, 1
         ({"surface_lower_bound": 3, "proved_for_surface": False}, "surface_lower_bound: 3"),
         ({"proved_for_surface": False}, "proved_for_surface: must be true"),
         ({"surface_lower_bound": 1}, "proved_for_surface: must be false"),
-        ({"lower_bound": 1}, "status: 2 segments are not proved optimal"),
+        ({"lower_bound": 1}, "status: a division with 2 segments is not proved optimal"),
         (
             {"search_space": "surface", "surface_lower_bound": 1, "proved_for_surface": False},
-            "status: 2 segments are not proved optimal by a lower bound of 1",
+            "status: a division with 2 segments is not proved optimal by a lower bound of 1",
         ),
     ],
 )

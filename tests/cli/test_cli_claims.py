@@ -49,7 +49,7 @@ class TestWhatWasSolved:
         schemes = tmp_path / "all.jsonl"
         assert run("solve", surface, "--all", "-o", schemes) == 0
         assert run("check", surface, schemes) == 0
-        assert "1 schemes" in capsys.readouterr().out
+        assert "1 scheme\n" in capsys.readouterr().out
         assert run("check", PAPER / "ring.surface.json", schemes) == 1
         assert "instance.sha256" in capsys.readouterr().out
 

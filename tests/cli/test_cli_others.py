@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 from typing import Any
 
@@ -11,12 +12,16 @@ from commands import json_lines, run
 from documents import SURFACE
 from library import INSTANCES, PAPER
 
-from cellcolor.data.instance import Instance
+import cellcolor.cli.check
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 
 RING = PAPER / "ring.json"
 ZEROS = PAPER / "crossing-zeros.json"
+CORRIDORS = PAPER / "parallel-corridors.surface.json"
 Capture = pytest.CaptureFixture[str]
 
 
@@ -34,7 +39,7 @@ class TestBuild:
         assert (out.parent / instance.surface.path).resolve() == source.resolve()
         built = decompose(LabelledSurface.read(source), instance.surface.path)
         assert built.to_json() == out.read_text(encoding="utf-8")
-        assert f"{len(instance.cells)} cells" in capsys.readouterr().out
+        assert ": 1 cell, 2 edges, 2 colors\n" in capsys.readouterr().out
 
     def test_of_an_instance(self, tmp_path: Path, capsys: Capture) -> None:
         assert run("build", RING, "-o", tmp_path / "x.json") == 2
@@ -86,6 +91,19 @@ class TestCheck:
         assert line["valid"] is True
         assert (line["segments"], line["lift_offs"], line["schemes"]) == (2, 1, 3)
 
+    def test_one_is_no_plural(self, tmp_path: Path, capsys: Capture) -> None:
+        """Two cells in two colors that share none: one scheme with 2 segments, 1 lift-off."""
+        apart = tmp_path / "apart.json"
+        cells = (Cell(0, (0,), ((1,),)), Cell(1, (1,), ((-1,),)))
+        apart.write_text(Instance("apart", ("red", "blue"), cells, (Edge(1, 0, 1),)).to_json())
+        solution = tmp_path / "all.jsonl"
+        assert run("solve", apart, "--all", "-o", solution) == 0
+        assert "2 cells, 1 edge, 2 colors" in capsys.readouterr().out
+        assert run("check", apart, solution) == 0
+        lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+        assert "2 segments, 1 lift-off" in lines
+        assert "1 scheme" in lines
+
     def test_wrong_number(self, solved: Path, capsys: Capture) -> None:
         self.change(solved, 0, lambda d: d.update(segments=1, lift_offs=0))
         assert run("check", ZEROS, solved) == 1
@@ -113,7 +131,7 @@ class TestCheck:
         lines = solved.read_text(encoding="utf-8").splitlines()
         solved.write_text("\n".join(lines[:3]) + "\n", encoding="utf-8")
         assert run("check", ZEROS, solved) == 1
-        assert "schemes: says 3, 2 follow" in capsys.readouterr().out
+        assert "schemes: says 3, listed are 2" in capsys.readouterr().out
 
     def test_scheme_that_is_not_optimal(self, solved: Path, capsys: Capture) -> None:
         """A legal scheme with more segments than the solution has no place in its list."""
@@ -130,6 +148,35 @@ class TestCheck:
         self.change(solved, 3, lambda d: d.update(worse))
         assert run("check", ZEROS, solved) == 1
         assert "scheme 3: has 3 segments, the solution 2" in capsys.readouterr().out
+
+    def test_reading_counts_for_a_plan(
+        self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        """A plan's time is over when the surface has been read: a range is known all the same."""
+        plan = tmp_path / "plan.json"
+        surface = LabelledSurface.read(CORRIDORS)
+        plan.write_text(Plan(tuple(own[0] for own in surface.vertex_colors)).to_json())
+        read_subject = cellcolor.cli.check.read_subject
+
+        def slow(path: Path, deadline: Deadline) -> Instance | LabelledSurface:
+            subject = read_subject(path, deadline)
+            now = time.monotonic()
+            monkeypatch.setattr(time, "monotonic", lambda: now + 60)
+            return subject
+
+        monkeypatch.setattr(cellcolor.cli.check, "read_subject", slow)
+        assert run("check", CORRIDORS, plan, "--json") == 0
+        verdict = json_lines(capsys.readouterr().out)[0]
+        assert (verdict["lower_bound"], verdict["upper_bound"]) == (1, len(surface.vertices))
+
+    def test_no_time_to_build_a_scene(self, tmp_path: Path, capsys: Capture) -> None:
+        plan = tmp_path / "plan.json"
+        plan.write_text(Plan((0,)).to_json())
+        scene = INSTANCES / "scenes" / "square.toml"
+        assert run("check", scene, plan, "--time-limit", "1e-6", "--json") == 3
+        out, err = capsys.readouterr()
+        assert "unknown: the time limit came before there was a surface" in err
+        assert "the time limit" in json_lines(out)[0]["error"]
 
 
 class TestBench:

@@ -148,7 +148,7 @@ class TestAllSchemes:
         assert run("solve", ZEROS, "--all", "-o", out) == 3
         assert (Solution.read(out).schemes, len(list(read_schemes(out)))) == (1, 1)
         assert run("check", ZEROS, out) == 0
-        assert "1 schemes" in capsys.readouterr().out
+        assert "1 scheme\n" in capsys.readouterr().out
 
     def test_too_large(
         self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
