@@ -1,0 +1,103 @@
+"""The guides for adding something, followed to the letter in a copy of the package."""
+
+from __future__ import annotations
+
+import re
+import shlex
+import shutil
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from guides import ROOT, Block, blocks, follow, run
+from plugins import install
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.surface import LabelledSurface
+
+
+@pytest.fixture
+def clone(tmp_path: Path) -> Path:
+    """The package and its instances, where a guide may change them."""
+    ignored = shutil.ignore_patterns("__pycache__")
+    shutil.copytree(ROOT / "cellcolor", tmp_path / "cellcolor", ignore=ignored)
+    (tmp_path / "instances").symlink_to(ROOT / "instances")
+    return tmp_path
+
+
+def commands(found: list[Block]) -> list[list[str]]:
+    """The lines for the shell."""
+    lines = [block.text.splitlines() for block in found if block.language == "sh"]
+    return [shlex.split(line) for several in lines for line in several]
+
+
+def test_a_solver(tmp_path: Path) -> None:
+    """In a package of its own; ``pip install .`` leaves its module and entry points on the path."""
+    solver, project, _, race = found = blocks("add-a-solver")
+    source, site = tmp_path / "source", tmp_path / "site"
+    source.mkdir()
+    follow(solver, source)
+    follow(project, source)
+    pip, solve = commands(found)
+    assert pip == ["pip", "install", "."]
+    declared = tomllib.loads((source / "pyproject.toml").read_text("utf-8"))["project"]
+    (module,) = source.glob("*.py")
+    for group, entries in declared["entry-points"].items():
+        install(site, declared["name"], group, entries, **{module.stem: module.read_text("utf-8")})
+
+    done = run([*solve, "--json"], ROOT, site)
+    assert done.returncode == 3, done.stderr  # a division, and nothing proved
+    assert '"solver": "random", "status": "feasible"' in done.stdout
+    instance = Instance.read(ROOT / "instances" / "paper" / "ring.json")
+    found_segments = int(re.findall(r'"segments": (\d+)', done.stdout)[0])
+    assert 2 <= found_segments <= len(instance.cells)
+    refused = run([*solve, "--search-space", "surface"], ROOT, site)
+    assert refused.returncode == 2 and "the solver random searches paper" in refused.stderr
+
+    raced = run([sys.executable, "-c", race.text], ROOT, site)
+    assert raced.stdout.startswith(f"Run(segments={found_segments}, optimal=False"), raced.stderr
+
+
+def test_a_picture(clone: Path) -> None:
+    pytest.importorskip("matplotlib")
+    picture, line, _ = found = blocks("add-a-picture")
+    follow(picture, clone)
+    (show,) = commands(found)
+    before = run(show, clone, clone)
+    assert before.returncode == 2 and "'histogram' is not one of" in before.stderr
+    follow(line, clone)
+    done = run(show, clone, clone)
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr
+    surface = LabelledSurface.read(ROOT / "instances" / "paper" / "ring.surface.json")
+    sizes = {len(colors) for colors in surface.vertex_colors}
+    drawn = (clone / show[-1]).read_text("utf-8")
+    bars = drawn.partition('id="nodes"')[2].partition("</g>")[0]
+    assert bars.count("<path") == len(sizes)
+    for size in sizes:
+        count = sum(len(colors) == size for colors in surface.vertex_colors)
+        assert f"{size}: {count}" in drawn
+
+
+def test_a_family(clone: Path) -> None:
+    chains, top, line, _ = found = blocks("add-a-family")
+    for block in (chains, top, line):
+        follow(block, clone)
+    (campaign,) = commands(found)
+    done = run(campaign, clone, clone)
+    assert done.returncode == 0, done.stdout + done.stderr
+    row = next(row for row in done.stdout.splitlines() if row.strip().startswith("chains"))
+    # Instances, minima proved, scheme sets, always cut, meshes, alike, disagreements.
+    assert row.split()[1:8] == ["1", "1", "1", "0", "0", "0", "0"]
+    script = (
+        "from cellcolor.lab.families import SMALL\n"
+        "made = [SMALL['chains'](seed) for seed in (0, 0, 1)]\n"
+        "print(made[0].sha256 == made[1].sha256 != made[2].sha256)\n"
+    )
+    assert run([sys.executable, "-c", script], clone, clone).stdout == "True\n"
+
+
+@pytest.mark.parametrize("guide", ["add-a-solver", "add-a-picture", "add-a-family"])
+def test_one_screen(guide: str) -> None:
+    page = (ROOT / "docs" / "how-to" / f"{guide}.md").read_text("utf-8")
+    assert len(page.splitlines()) <= 80
