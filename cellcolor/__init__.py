@@ -1,7 +1,84 @@
 """cellcolor: the fewest lift-offs of a robot arm over a surface, with a proof.
 
 The problem is that of Yang, Valls Miro, Lai, Wang and Xiong, "Cellular Decomposition for
-Non-repetitive Coverage Task with Minimum Discontinuities" (2020). Terms are the paper's.
+Non-repetitive Coverage Task with Minimum Discontinuities" (2020). Terms are the paper's::
+
+    import cellcolor
+
+    result = cellcolor.solve("wok", time_limit=10)  # a scene, a surface, an instance
+    print(result)
+    result.plot("wok.html")
+
+What is public is in ``__all__`` and imported when it is first used (PEP 562): whoever imports the
+package waits for no library. ``__init__.pyi`` says the same to type checkers and editors.
 """
 
-__version__ = "0.1.0"
+from cellcolor.version import __version__
+
+_ROOMS = {
+    "cellcolor.data.bound": ("Bound",),
+    "cellcolor.data.coverage": ("Coverage",),
+    "cellcolor.data.instance": ("OUTSIDE", "Cell", "Edge", "Instance"),
+    "cellcolor.data.plan": ("Plan",),
+    "cellcolor.data.solution": ("CellDivision", "Solution", "SubCell"),
+    "cellcolor.data.surface": ("Crack", "LabelledSurface"),
+    "cellcolor.deadline": ("OutOfTime",),
+    "cellcolor.decomposition": ("decompose",),
+    "cellcolor.door.judging": ("check", "judge"),
+    "cellcolor.door.reading": ("read",),
+    "cellcolor.door.result": ("Result",),
+    "cellcolor.door.shipped": ("library",),
+    "cellcolor.door.showing": ("Drawing", "show"),
+    "cellcolor.door.solving": ("build", "solve"),
+    "cellcolor.errors": ("CellcolorError", "ContradictionError", "InputError", "TooLarge"),
+    "cellcolor.oracle": ("ProvenRange", "Verdict", "proven_range"),
+}
+_ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
+
+__all__ = [
+    "OUTSIDE",
+    "Bound",
+    "Cell",
+    "CellDivision",
+    "CellcolorError",
+    "ContradictionError",
+    "Coverage",
+    "Crack",
+    "Drawing",
+    "Edge",
+    "InputError",
+    "Instance",
+    "LabelledSurface",
+    "OutOfTime",
+    "Plan",
+    "ProvenRange",
+    "Result",
+    "Solution",
+    "SubCell",
+    "TooLarge",
+    "Verdict",
+    "__version__",
+    "build",
+    "check",
+    "decompose",
+    "judge",
+    "library",
+    "proven_range",
+    "read",
+    "show",
+    "solve",
+]
+
+
+def __getattr__(name: str) -> object:
+    if name not in _ROOM_OF:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from importlib import import_module
+
+    value = getattr(import_module(_ROOM_OF[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 import cellcolor
-from cellcolor.cli import extras
+from cellcolor.door import extras
 
 ROOT = Path(__file__).parents[1]
 TEXTS = [

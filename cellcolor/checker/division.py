@@ -22,6 +22,7 @@ from cellcolor.checker.several_loops import PaintedLoops, on_loops, unavoidable_
 from cellcolor.data.darts import Strand, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam, Solution
+from cellcolor.data.wording import count
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,6 +43,13 @@ class Report:
     def valid(self) -> bool:
         """Nothing is wrong; superfluous sub-cells are not wrong."""
         return not self.problems
+
+    def __str__(self) -> str:
+        if self.problems:
+            more = len(self.problems) - 1
+            rest = f" (and {count(more, 'other problem')})" if more else ""
+            return f"not valid: {self.problems[0]}{rest}"
+        return "valid" if self.segments is None else f"valid: {count(self.segments, 'segment')}"
 
     @property
     def is_scheme(self) -> bool:

@@ -7,13 +7,14 @@ from dataclasses import replace
 from pathlib import Path, PurePath
 
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.inputs import build_scene, graph_of, is_scene, read_graph
+from cellcolor.cli.inputs import open_file
 from cellcolor.cli.tables import nothing_to_cover
 from cellcolor.cli.terminal import apart_from, complain, say
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.wording import count
+from cellcolor.door.subject import Subject, is_scene
 from cellcolor.errors import InputError
 from cellcolor.files.writing import (
     SIDE_FILE,
@@ -51,19 +52,23 @@ def _build_scene(source: Path, output: Path) -> Instance:
     if not alone:
         check_output(surface_path, _SURFACE, [source])
         check_output(side_path, SIDE_FILE, [source])
-    scene = build_scene(source)
-    surface = replace(scene.surface, meta=scene.surface.meta | {"side_file": side_path.name})
-    instance = graph_of(surface, source, None if alone else surface_path.name)
+    built = open_file(source).built
+    assert built is not None
+    surface = replace(built.surface, meta=built.surface.meta | {"side_file": side_path.name})
+    named = Subject(source, built, surface)
+    instance = named.decomposed(None if alone else surface_path.name).instance
     files = [Output(output, _INSTANCE, [instance.to_json().encode()])]
     if not alone:
         # The instance last: it carries the fingerprint of its surface.
+        from cellcolor.frontend.candidates_file import side_file
+
         files = [
-            Output(side_path, SIDE_FILE, [scene.side_file()]),
+            Output(side_path, SIDE_FILE, [side_file(built)]),
             Output(surface_path, _SURFACE, [surface.to_json().encode()]),
             *files,
         ]
     write(files, [source])
-    for line in scene.report.split("\n"):
+    for line in str(built.report).split("\n"):
         say(line)
     for file in files[:-1]:
         say(f"wrote {file.path}")
@@ -71,11 +76,11 @@ def _build_scene(source: Path, output: Path) -> Instance:
 
 
 def _build_surface(source: Path, output: Path) -> Instance:
-    found = read_graph(source)
-    if isinstance(found, Instance):
+    found = open_file(source)
+    if found.given_instance is not None:
         raise InputError(str(source), "format", "is an instance already")
     relative = os.path.relpath(source.resolve(), output.parent.resolve())
     reference = None if is_stream(output) else PurePath(relative).as_posix()
-    instance = graph_of(found, source, reference)
+    instance = found.decomposed(reference).instance
     write([Output(output, _INSTANCE, [instance.to_json().encode()])], [source])
     return instance

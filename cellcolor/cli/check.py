@@ -7,18 +7,15 @@ from pathlib import Path
 from typing import Any
 
 from cellcolor.checker.claimed_numbers import claims
-from cellcolor.checker.division import check_scheme, check_solution
-from cellcolor.checker.known_results import contradictions
+from cellcolor.checker.division import check_scheme
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.inputs import instance_of, read_subject
+from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.terminal import complain, print_json, say
 from cellcolor.data import plan as plan_file
-from cellcolor.data.instance import Instance
-from cellcolor.data.plan import Plan
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
 
@@ -34,17 +31,17 @@ def check_files(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -
     """
     is_plan = _is_plan(claim)
     try:
-        graph = read_subject(subject, deadline if is_plan else NEVER)
+        opened = read_subject(subject, deadline if is_plan else NEVER)
     except OutOfTime:
         message = f"{subject}: unknown: the time limit came before there was a surface"
         complain(message)
         if as_json:
             print_json({"file": str(claim), "error": message})
         return Exit.STOPPED
-    if isinstance(graph, LabelledSurface) and is_plan:
-        verdict = _check_plan(graph, subject, claim, deadline)
+    if is_plan and opened.given_surface is not None:
+        verdict = _check_plan(opened, claim, deadline)
     else:
-        verdict = _check_solution(instance_of(graph, subject), claim)
+        verdict = _check_solution(opened, claim)
     if as_json:
         print_json({"file": str(claim)} | verdict)
     else:
@@ -60,12 +57,12 @@ def _is_plan(claim: Path) -> bool:
         return False
 
 
-def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
-    solution = Solution.read(claim)
-    report = check_solution(instance, solution)
+def _check_solution(subject: Subject, claim: Path) -> dict[str, Any]:
+    from cellcolor.door.judging import check
+
+    instance, solution = subject.graph(), Solution.read(claim)
+    report = check(subject, solution)
     problems = list(report.problems)
-    if report.valid:
-        problems += contradictions(instance, solution)
     keys: set[SchemeKey] = set()
     schemes = 0
     for schemes, division in enumerate(read_schemes(claim), start=1):
@@ -94,17 +91,10 @@ def _check_solution(instance: Instance, claim: Path) -> dict[str, Any]:
     return verdict | ({"schemes": schemes} if schemes else {})
 
 
-def _check_plan(
-    surface: LabelledSurface, subject: Path, claim: Path, deadline: Deadline
-) -> dict[str, Any]:
-    plan = Plan.read(claim)
+def _check_plan(subject: Subject, claim: Path, deadline: Deadline) -> dict[str, Any]:
+    from cellcolor.door.judging import judge_by
 
-    from cellcolor.oracle import judge
-
-    try:
-        verdict = judge(surface, plan, time_limit=deadline.left)
-    except InputError as error:
-        raise error.in_file(str(subject)) from error
+    verdict = judge_by(subject, claim, deadline)
     bounds = verdict.bounds
     return {
         "valid": verdict.valid,

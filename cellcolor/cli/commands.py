@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-import cellcolor as package
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
+from cellcolor.version import __version__
 
 if TYPE_CHECKING:
     from cellcolor.data.solution import SearchSpace
@@ -52,7 +52,17 @@ class _Commands(click.Group):
             formatter.write_dl(rows)
 
 
+class _Input(click.Path):
+    """A file to be read, or the name of a shipped one."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Path:
+        from cellcolor.door.shipped import find_file
+
+        return find_file(str(super().convert(value, param, ctx)))
+
+
 _PATH = click.Path(path_type=Path)
+_INPUT = _Input()
 _SECONDS = _Seconds()
 _SEED = click.option(
     "--seed",
@@ -65,7 +75,7 @@ _SEED = click.option(
 
 
 @click.group(name="cellcolor", cls=_Commands, invoke_without_command=True)
-@click.version_option(package.__version__, message="%(prog)s %(version)s")
+@click.version_option(__version__, message="%(prog)s %(version)s")
 @click.pass_context
 def cellcolor(context: click.Context) -> None:
     """The fewest lift-offs of a robot arm over a surface, with a proof."""
@@ -74,7 +84,7 @@ def cellcolor(context: click.Context) -> None:
 
 
 @cellcolor.command()
-@click.argument("source", metavar="SCENE.toml|SURFACE.json", type=_PATH)
+@click.argument("source", metavar="SCENE.toml|SURFACE.json", type=_INPUT)
 @click.option(
     "-o",
     "--output",
@@ -94,7 +104,7 @@ def build(source: Path, output: Path) -> int:
 
 
 @cellcolor.command()
-@click.argument("files", metavar="FILE…", nargs=-1, required=True, type=_PATH)
+@click.argument("files", metavar="FILE…", nargs=-1, required=True, type=_INPUT)
 @click.option(
     "-o", "--output", metavar="OUT", type=_PATH, help="A file for one input, a folder for several."
 )
@@ -155,7 +165,11 @@ def solve(
     seed: int,
     as_json: bool,
 ) -> int:
-    """Find the fewest segments of instances, labelled surfaces and scenes."""
+    """Find the fewest segments of instances, labelled surfaces and scenes.
+
+    FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
+    for the other commands as well; cellcolor.library() lists the names in Python.
+    """
     begun = time.monotonic()
     if strands is not None and search_space == "paper":
         raise click.UsageError("--strands goes with --search-space surface")
@@ -185,7 +199,7 @@ def solve(
 
 
 @cellcolor.command()
-@click.argument("subject", metavar="FILE", type=_PATH)
+@click.argument("subject", metavar="FILE", type=_INPUT)
 @click.argument("claim", metavar="SOLUTION.json|PLAN.json", type=_PATH)
 @click.option(
     "--time-limit",
@@ -210,7 +224,7 @@ def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
 
 
 @cellcolor.command()
-@click.argument("files", metavar="FILE…", nargs=-1, required=True, type=_PATH)
+@click.argument("files", metavar="FILE…", nargs=-1, required=True, type=_INPUT)
 @click.option(
     "--time-limit",
     metavar="S",
@@ -227,7 +241,7 @@ def bench(files: tuple[Path, ...], time_limit: float) -> int:
 
 
 @cellcolor.command()
-@click.argument("files", metavar="FILE [SOLUTION.json]", nargs=-1, required=True, type=_PATH)
+@click.argument("files", metavar="FILE [SOLUTION.json]", nargs=-1, required=True, type=_INPUT)
 @click.option(
     "-o",
     "--output",
@@ -282,10 +296,10 @@ def show(
             "one of --color, --reason, --graph, --vertex and a solution at a time"
         )
 
-    from cellcolor.cli.show import View, show_files
+    from cellcolor.cli.show import show_files
 
-    picture = view or (asked[0] if asked else "cells")
-    return show_files(files, output, View(picture, color, vertex, branch))
+    name = view or (asked[0] if asked else "cells")
+    return show_files(files, output, name, color, vertex, branch)
 
 
 @cellcolor.command()

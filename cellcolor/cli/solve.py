@@ -15,10 +15,8 @@ from typing import IO
 
 import click
 
-from cellcolor.checker.division import check_solution
 from cellcolor.checker.known_results import contradictions
 from cellcolor.cli.exits import Exit, worst
-from cellcolor.cli.extras import extras_for
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
@@ -29,6 +27,7 @@ from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.extras import extras_for
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.files.writing import (
     Output,
@@ -39,7 +38,7 @@ from cellcolor.files.writing import (
     kind_of_format,
     write,
 )
-from cellcolor.solvers.interface import PORTFOLIO, Options, Start
+from cellcolor.solvers.interface import PORTFOLIO, Options
 
 _SOLUTION = kind_of_format(solution_file.FORMAT)
 
@@ -113,7 +112,10 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             fault = {"error": "; ".join(wrong)} if wrong else {}
             print_json({"file": str(file)} | solution.to_document() | fault)
         else:
-            print_solution(instance, solution)
+            from cellcolor.solvers.bounds.witness import witness
+
+            cells = () if INTERRUPTS.seen else witness(instance, solution, deadline)
+            print_solution(instance, solution, cells)
         for problem in wrong:
             complain(f"{file}: contradiction: {problem}")
         if instance.nothing_to_cover:
@@ -157,25 +159,6 @@ def _warn_of_workers(workers: int | None) -> None:
         complain(f"{workers} workers share {cores} processors")
 
 
-def _start(instance: Instance, path: Path, options: Options) -> Start:
-    """A solution file as a start.
-
-    Raises:
-        InputError: it is not a valid solution of this instance with these strands.
-    """
-    solution = Solution.read(path)
-    problems = check_solution(instance, solution).problems
-    if problems:
-        raise InputError(str(path), None, f"is not valid: {problems[0]}")
-    if solution.cells is None:
-        raise InputError(str(path), "cells", "holds no division to start from")
-    if solution.strands != options.strands:
-        raise InputError(
-            str(path), "strands", f"is {solution.strands}, wanted are {options.strands}"
-        )
-    return Start(solution.cells, solution.seams)
-
-
 def _say_failed(request: Request, file: Path, message: str, **known: str) -> None:
     complain(message)
     if request.as_json:
@@ -214,12 +197,14 @@ def _solve(
     options: Options,
 ) -> Solution:
     """Solve one instance and write what was found."""
+    from cellcolor.door.solving import start_from
     from cellcolor.solvers.checked import check_able_to_list, solve
 
     if request.every:
         check_able_to_list(request.solver, instance)
     if request.warm_start is not None:
-        options = replace(options, start=_start(instance, request.warm_start, options))
+        start = start_from(request.warm_start, instance, options.strands)
+        options = replace(options, start=start)
     with progress_of(file) as report, end_the_search(), extras_for(file):
         solution = solve(instance, options, request.solver, report)
     if not request.every:

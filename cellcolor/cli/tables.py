@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,11 +13,12 @@ from rich.text import Text
 
 from cellcolor.cli.terminal import shown
 from cellcolor.data.instance import Instance
+from cellcolor.data.proof_wording import reason_of, witness_in_words
+from cellcolor.data.segment_rows import BASES, segment_rows
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, Shares, percent, shares_of
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 
-_CELLS_SHOWN = 12
 _SEGMENTS_SHOWN = 200
 _PLAIN_WIDTH = 200
 
@@ -30,8 +30,15 @@ def console() -> Console:
     )
 
 
-def print_solution(instance: Instance, solution: Solution) -> None:
-    """One solution: its segments, then what is known about their number."""
+def print_solution(instance: Instance, solution: Solution, witness: tuple[int, ...]) -> None:
+    """One solution: its segments, then what is known about their number.
+
+    Args:
+        instance: the topological graph.
+        solution: a valid solution of it.
+        witness: cells no two of which can be in one segment, as many as there are segments; none
+            where none are known.
+    """
     out = console()
     out.print(
         Text(shown(instance.name), style="bold"),
@@ -45,7 +52,7 @@ def print_solution(instance: Instance, solution: Solution) -> None:
             out.print("ranges: where the cut runs through a divided cell is free, between its ends")
             out.print()
     summary = Table(box=None, show_header=False, pad_edge=False)
-    for name, value in [*_summary(solution), *_witness(instance, solution)]:
+    for name, value in [*_summary(solution), *_because(instance, solution, witness)]:
         summary.add_row(Text(name, style="bold"), value)
     out.print(summary)
     out.print()
@@ -72,31 +79,15 @@ def print_overview(solved: Sequence[tuple[Path, Instance, Solution]]) -> None:
     console().print(table)
 
 
-_BASES = {"surface": "share of surface", "cells": "share of area", "number": "share of cells"}
-
-
 def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
     """Color, cells and share of each segment, and what is in none."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("segment", justify="right")
     table.add_column("color")
     table.add_column("cells", overflow="fold")
-    table.add_column(_BASES[shares.of], justify="right")
-    whole: list[list[int]] = [[] for _ in shares.segments]
-    parts: list[list[int]] = [[] for _ in shares.segments]
-    colors = [0] * len(shares.segments)
-    for cell in solution.cells or ():
-        for segment, number in Counter(sub.segment for sub in cell.subcells).items():
-            (whole if number == len(cell.subcells) else parts)[segment].append(cell.id)
-        for sub in cell.subcells:
-            colors[sub.segment] = sub.color
-    for segment, share in enumerate(shares.segments[:_SEGMENTS_SHOWN]):
-        table.add_row(
-            str(segment),
-            shown(instance.colors[colors[segment]]),
-            _cell_list(whole[segment], parts[segment]),
-            percent(*share),
-        )
+    table.add_column(BASES[shares.of], justify="right")
+    for row in segment_rows(instance, solution, shares)[:_SEGMENTS_SHOWN]:
+        table.add_row(str(row.segment), shown(row.color), row.cells, row.percent)
     if (more := len(shares.segments) - _SEGMENTS_SHOWN) > 0:
         table.add_row("…", count(more, "more segment"), "", "")
     if shares.of == "surface":
@@ -104,14 +95,6 @@ def _segments(instance: Instance, solution: Solution, shares: Shares) -> Table:
         if shares.given_up:
             table.add_row("", GIVEN_UP, "", percent(shares.given_up, shares.given_up))
     return table
-
-
-def _cell_list(whole: list[int], parts: list[int]) -> str:
-    divided = set(parts)
-    names = [f"part of {c}" if c in divided else str(c) for c in sorted(whole + parts)]
-    if len(names) > _CELLS_SHOWN:
-        return f"{', '.join(names[:_CELLS_SHOWN])}, … ({len(names)} cells)"
-    return ", ".join(names)
 
 
 def nothing_to_cover(instance: Instance) -> str:
@@ -155,17 +138,12 @@ def _extent(solution: Solution) -> str:
     return "the search was stopped, there may be more: see --limit and --time-limit"
 
 
-def _witness(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
-    """Why there cannot be fewer segments, where a person can see it."""
-    from cellcolor.solvers.bounds.cover import strangers
-
-    if not solution.proved_for_surface or not 1 < (solution.segments or 0) <= _CELLS_SHOWN:
-        return []
-    cells = strangers(instance)
-    if len(cells) != solution.segments:
-        return []
-    names = ", ".join(str(cell) for cell in cells)
-    return [("because", f"no two of the cells {names} can be in one segment")]
+def _because(
+    instance: Instance, solution: Solution, witness: tuple[int, ...]
+) -> list[tuple[str, str]]:
+    """Why there cannot be fewer segments."""
+    reason = witness_in_words(instance, witness) or reason_of(solution)
+    return [] if reason is None else [("because", reason)]
 
 
 def _status(solution: Solution) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
@@ -19,6 +19,8 @@ from cellcolor.files.documents import dump_lines, read_document, take_body, vali
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, settle
 
+if TYPE_CHECKING:
+    import cellcolor
 __all__ = [
     "FORMAT",
     "OUTSIDE",
@@ -190,6 +192,12 @@ class Instance:
         An instance without cells and without a surface asks for nothing, which takes 0 segments.
         """
         return not self.cells and self.coverage is not None and self.coverage.covered == 0
+
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
+        """Draw it: :func:`cellcolor.show`, which says what ``view`` can ask for."""
+        import cellcolor  # the whole package's face, which only somebody who looks at it needs
+
+        return cellcolor.show(self, path, **view)
 
     def to_json(self) -> str:
         """The file's text, as ``build`` writes it."""

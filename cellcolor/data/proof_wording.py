@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from itertools import combinations
 from typing import TYPE_CHECKING
 
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, listed
 
 if TYPE_CHECKING:
+    from cellcolor.data.instance import Instance
     from cellcolor.data.solution import Solution
 
-__all__ = ["in_words", "reason_of"]
+__all__ = ["in_words", "reason_of", "witness_in_words"]
 
 _REASONS = {
     "strangers": "that many cells cannot share a segment, no two of them",
@@ -55,3 +57,22 @@ def reason_of(solution: Solution) -> str | None:
         if bound.holds_for == "surface" and bound.value == solution.surface_lower_bound:
             return _REASONS.get(bound.kind)
     return None
+
+
+def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:
+    """What is to be seen at cells no two of which can share a segment, a clause.
+
+    Args:
+        instance: the topological graph.
+        cells: as many as there are segments; with none there is nothing to be said.
+    """
+    if not cells:
+        return None
+    colors = (set(instance.cells[cell].colors) for cell in cells)
+    disjoint = all(a.isdisjoint(b) for a, b in combinations(colors, 2))
+    if len(cells) == 2:
+        return f"cells {listed(cells)} " + (
+            "share no color" if disjoint else "can share no segment"
+        )
+    shared = "share a color" if disjoint else "can be in one segment"
+    return f"no two of the cells {listed(cells)} {shared}"

@@ -15,7 +15,15 @@ from cellcolor.data.coverage import Coverage
 from cellcolor.data.darts import DartName, twin
 from cellcolor.data.proof_wording import in_words
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, parse_json, read_text, take_body, validate
+from cellcolor.files.documents import (
+    dump_lines,
+    is_json,
+    parse_first_object,
+    parse_json,
+    read_text,
+    take_body,
+    validate,
+)
 from cellcolor.files.validation import settle
 from cellcolor.union_find import UnionFind
 
@@ -261,9 +269,8 @@ class Solution:
             InputError: the file cannot be read or holds something that the format forbids.
         """
         text = read_text(path)
-        head = text.partition("\n")[0]
         try:
-            return cls.from_document(parse_json(head if _is_json(head) else text))
+            return cls.from_document(parse_first_object(text))
         except InputError as error:
             raise error.in_file(str(path)) from error
 
@@ -278,7 +285,7 @@ def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
         InputError: a line is not a scheme; the field names the line.
     """
     head, _, rest = read_text(path).partition("\n")
-    if not _is_json(head):
+    if not is_json(head):
         return
     for number, line in enumerate(rest.splitlines(), start=2):
         try:
@@ -301,14 +308,6 @@ class _SchemeLine:
 
 
 _SCHEME_ADAPTER = TypeAdapter(_SchemeLine)
-
-
-def _is_json(line: str) -> bool:
-    try:
-        json.loads(line)
-    except (ValueError, RecursionError):  # too many digits are no JSONDecodeError
-        return False
-    return True
 
 
 def division_document(division: Division) -> list[dict[str, Any]]:

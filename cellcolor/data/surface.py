@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from functools import cached_property
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,9 @@ from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_document, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, plain, settle, validate_python
+
+if TYPE_CHECKING:
+    import cellcolor
 
 FORMAT = "cellcolor/labelled-surface"
 _FARTHEST = 1e9  # m
@@ -222,6 +225,12 @@ class LabelledSurface:
             }
             | ({"given_up": self.given_up} if self.given_up else {})
         )
+
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
+        """Draw it: :func:`cellcolor.show`, which says what ``view`` can ask for."""
+        import cellcolor  # the whole package's face, which only somebody who looks at it needs
+
+        return cellcolor.show(self, path, **view)
 
     def to_json(self) -> str:
         """The file's text."""

@@ -50,6 +50,21 @@ def parse_json(text: str) -> dict[str, Any]:
     return document
 
 
+def parse_first_object(text: str) -> dict[str, Any]:
+    """Parse one JSON object, or of JSON Lines the one in the first line; see :func:`parse_json`."""
+    head = text.partition("\n")[0]
+    return parse_json(head if is_json(head) else text)
+
+
+def is_json(line: str) -> bool:
+    """Whether a line is a JSON text of its own."""
+    try:
+        json.loads(line)
+    except (ValueError, RecursionError):  # too many digits are no JSONDecodeError
+        return False
+    return True
+
+
 def read_text(path: str | PathLike[str]) -> str:
     """A file's text.
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import importlib.metadata
 from dataclasses import asdict, dataclass, field
 from os import PathLike
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-import cellcolor
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.comparing import same_members
 from cellcolor.data.surface import LabelledSurface
@@ -24,6 +23,10 @@ from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.frontend.stages import Stages, run_stages
 from cellcolor.frontend.survey import survey
 from cellcolor.frontend.tables import in_file
+from cellcolor.version import __version__
+
+if TYPE_CHECKING:
+    import cellcolor
 
 __all__ = ["BuildResult", "build_surface"]
 
@@ -61,6 +64,12 @@ class BuildResult:
         return same_members(self, other) if isinstance(other, BuildResult) else NotImplemented
 
     __hash__ = None  # type: ignore[assignment]  # arrays that can be changed
+
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
+        """Draw it: :func:`cellcolor.show`, which says what ``view`` can ask for."""
+        import cellcolor  # the whole package's face, which only somebody who looks at it needs
+
+        return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
         return f"{self.surface}\n{self.report}"
@@ -156,6 +165,6 @@ def _meta(scene: Scene, stages: Stages, seconds: dict[str, float]) -> dict[str, 
     return {
         "scene": scene.model_dump(mode="json"),
         "setup": scene.setup.model_dump(mode="json"),
-        "versions": {"cellcolor": cellcolor.__version__} | versions,
+        "versions": {"cellcolor": __version__} | versions,
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
     } | ({} if slivers is None else {"slivers": asdict(slivers)})

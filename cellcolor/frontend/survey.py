@@ -27,13 +27,13 @@ class Survey:
     """Where the object is.
 
     Attributes:
-        size_m: (3,) of its bounding box along the axes of the world.
+        size_m: of its bounding box along the axes of the world.
         distance_m: from the origin of the robot's base to the nearest point of it.
         from_behind: of an open mesh, the share (0 to 1) of what can be seen of it that shows its
             back only; 0 for a closed one and for what cannot be seen.
     """
 
-    size_m: Array
+    size_m: tuple[float, ...]
     distance_m: float
     from_behind: float
 
@@ -57,7 +57,7 @@ def survey(surface: Surface, geometry: UrGeometry) -> Survey:
     vertices, faces = surface.vertices, surface.faces
     nearest = trimesh.triangles.closest_point(vertices[faces], np.zeros((len(faces), 3)))
     return Survey(
-        vertices.max(axis=0) - vertices.min(axis=0),
+        tuple((vertices.max(axis=0) - vertices.min(axis=0)).tolist()),
         float(np.linalg.norm(nearest, axis=1).min()),
         _from_behind(vertices, faces, geometry) if _is_open(faces) else 0.0,
     )

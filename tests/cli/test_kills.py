@@ -91,7 +91,7 @@ def test_a_signal_that_a_library_swallows(number: signal.Signals, tmp_path: Path
     script = (
         "import signal, sys\n"
         "import cellcolor.cli.inputs as inputs\n"
-        "import cellcolor.cli.extras\n"
+        "import cellcolor.door.subject\n"
         "try:\n    import cellcolor.frontend\nexcept ModuleNotFoundError:\n    sys.exit(3)\n"
         "import cellcolor.frontend as frontend\n"
         "build = frontend.build_surface\n"

@@ -43,9 +43,9 @@ def test_arms(tmp_path: Path, capsys: Capture) -> None:
     name = result.branches[branch]
     arm = [scene, "-o", tmp_path / "x.png", "--vertex"]
     refused([*arm, vertex, "--branch", name], capsys, name, "not valid", "ground")
-    refused([*arm, 91, "--branch", name], capsys, "--vertex", "0 to 90")
-    refused([*arm, 0, "--branch", "elbow"], capsys, "--branch", "'elbow'", name)
-    refused([*arm, 0, "--branch", "8"], capsys, "--branch", "'8'")
+    refused([*arm, 91, "--branch", name], capsys, "vertex", "0 to 90")
+    refused([*arm, 0, "--branch", "elbow"], capsys, "branch", "'elbow'", name)
+    refused([*arm, 0, "--branch", "8"], capsys, "branch", "'8'")
     refused([scene, "-o", tmp_path / "x.png", "--color", "red"], capsys, "'red'")
     assert list(tmp_path.iterdir()) == [scene.parent]
 
@@ -116,7 +116,7 @@ def test_side_files(change: Document, text: str, tmp_path: Path, capsys: Capture
 def test_side_file_that_is_none(tmp_path: Path, capsys: Capture) -> None:
     path, _ = side_file(tmp_path)
     arguments = [path, "--reason", "-o", tmp_path / "x.png"]
-    refused([*arguments, "--branch", "middle arm"], capsys, "--branch", "'left arm'")
+    refused([*arguments, "--branch", "middle arm"], capsys, "branch", "'left arm'")
     (tmp_path / "side.npz").write_text("nothing")
     refused(arguments, capsys, "side.npz", "is no side file")
     (tmp_path / "side.npz").unlink()

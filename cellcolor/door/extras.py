@@ -1,4 +1,4 @@
-"""Commands that need an extra which is not installed."""
+"""What needs an extra that is not installed."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _EXTRAS = {
 
 
 @contextmanager
-def extras_for(path: Path) -> Iterator[None]:
-    """Turn the lack of an extra into a line that says what to install for a file."""
+def extras_for(path: Path | str) -> Iterator[None]:
+    """Turn the lack of an extra into a line that says what to install for a file or a purpose."""
     try:
         yield
     except ModuleNotFoundError as error:

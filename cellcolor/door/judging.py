@@ -1,0 +1,104 @@
+"""``cellcolor.check`` for solutions, ``cellcolor.judge`` for other planners' plans."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor import oracle
+from cellcolor.checker.division import Report, check_solution
+from cellcolor.checker.known_results import contradictions
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution
+from cellcolor.deadline import Deadline
+from cellcolor.door.result import Result
+from cellcolor.door.solving import deadline_after
+from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.errors import InputError
+from cellcolor.oracle import ProvenRange, Verdict
+
+__all__ = ["check", "judge"]
+
+
+def check(instance: Solvable, solution: Solution | Result | str | PathLike[str]) -> Report:
+    """An independent checker's opinion of a solution: its division, and every number in it.
+
+    What the instance itself says is known (``known``) must not be contradicted either. Lower
+    bounds are taken on trust as far as nothing contradicts them (docs/semantics.md).
+
+    Args:
+        instance: what was solved: an instance, a labelled surface or a scene; its file, its
+            shipped name, the value.
+        solution: the solution or its file.
+
+    Returns:
+        What is wrong, ``problems``, each naming its element; and the segments counted.
+
+    Raises:
+        InputError: one of the two cannot be used.
+    """
+    graph = open_subject(instance).graph()
+    if isinstance(solution, Result):
+        solution = solution.solution
+    if not isinstance(solution, Solution):
+        solution = Solution.read(solution)
+    report = check_solution(graph, solution)
+    if not report.valid:
+        return report
+    return replace(report, problems=tuple(contradictions(graph, solution)))
+
+
+def judge(
+    surface: Solvable,
+    plan: Plan | Sequence[int | None] | NDArray[Any] | str | PathLike[str],
+    *,
+    bounds: ProvenRange | None = None,
+    time_limit: float | None = 60.0,
+) -> Verdict:
+    """The verdict on a plan: is it valid, how many segments has it, can it be beaten?
+
+    Args:
+        surface: the labelled surface that was planned on, or a scene; its file, its shipped name,
+            the value.
+        plan: one color per vertex, None exactly where the vertex has none; in an array of integers,
+            which cannot hold None, -1. Or a file with a plan.
+        bounds: this surface's :func:`cellcolor.proven_range`, if known already.
+        time_limit: seconds for all of it, above all for finding the range otherwise; None for as
+            long as it takes.
+
+    Raises:
+        BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.
+        InputError: surface or plan cannot be used.
+        OutOfTime: the time limit came before there was a surface.
+    """
+    deadline = deadline_after(time_limit)
+    return judge_by(open_subject(surface, deadline), plan, deadline, bounds)
+
+
+def judge_by(
+    subject: Subject,
+    plan: Plan | Sequence[int | None] | NDArray[Any] | str | PathLike[str],
+    deadline: Deadline,
+    bounds: ProvenRange | None = None,
+) -> Verdict:
+    """The verdict on a plan by a moment that may have passed already: :func:`judge`."""
+    if isinstance(plan, (str, PathLike)):
+        plan = Plan.read(plan)
+    elif not isinstance(plan, Plan):
+        plan = Plan(_colors(plan))
+    try:
+        return oracle.judge(subject.surface, plan, bounds=bounds, time_limit=deadline.left)
+    except InputError as error:
+        raise error if subject.path is None else error.in_file(str(subject.path)) from error
+
+
+def _colors(plan: Sequence[int | None] | NDArray[Any]) -> Any:
+    """The same with None for -1 in an array; whether these are colors the plan says itself."""
+    if isinstance(plan, np.ndarray) and plan.dtype.kind == "i" and plan.ndim == 1:
+        return [None if color == -1 else color for color in plan.tolist()]
+    return plan

@@ -1,0 +1,72 @@
+"""``cellcolor.read``: the value in a file, whatever kind of file of ours it is."""
+
+from __future__ import annotations
+
+import re
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias, Union
+
+from cellcolor.data import instance as instance_file
+from cellcolor.data import plan as plan_file
+from cellcolor.data import solution as solution_file
+from cellcolor.data import surface as surface_file
+from cellcolor.data.instance import Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.door.extras import extras_for
+from cellcolor.door.shipped import find_file
+from cellcolor.door.subject import is_scene
+from cellcolor.errors import InputError
+from cellcolor.files.documents import parse_first_object, read_text
+
+if TYPE_CHECKING:
+    from cellcolor.frontend import Scene, Setup
+
+__all__ = ["Readable", "read"]
+
+Readable: TypeAlias = Union["Scene", "Setup", LabelledSurface, Instance, Solution, Plan]
+"""What a file of ours can hold."""
+
+_KINDS: dict[str, type[LabelledSurface] | type[Instance] | type[Solution] | type[Plan]] = {
+    surface_file.FORMAT: LabelledSurface,
+    instance_file.FORMAT: Instance,
+    solution_file.FORMAT: Solution,
+    plan_file.FORMAT: Plan,
+}
+_SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
+"""The table, or a key of it, that every setup has and no scene."""
+
+
+def read(source: str | PathLike[str]) -> Readable:
+    """The value in a file: a scene, a robot's setup, a surface, an instance, a solution or a plan.
+
+    Scenes and setups are told by their suffix, ``.toml``, all else by its ``format``. Of a file of
+    optimal schemes it is the solution in the first line.
+
+    Args:
+        source: the file, as a text or a path, or as a text the name of a shipped one
+            (:func:`cellcolor.library`); a file of that name goes first.
+
+    Raises:
+        InputError: the file cannot be read, or holds something that its format forbids.
+    """
+    path = find_file(source)
+    if is_scene(path):
+        return _read_toml(path)
+    try:
+        document = parse_first_object(read_text(path))
+        form = document.get("format")
+        if not isinstance(form, str) or form not in _KINDS:
+            known = ", ".join(map(repr, _KINDS))
+            raise InputError(None, "format", f"must be one of {known}, is {form!r}")
+        return _KINDS[form].from_document(document)
+    except InputError as error:
+        raise error.in_file(str(path)) from error
+
+
+def _read_toml(path: Path) -> Scene | Setup:
+    with extras_for(path):
+        from cellcolor.frontend import Scene, Setup
+    return Setup.read(path) if _SETUP.search(read_text(path)) else Scene.read(path)

@@ -1,0 +1,123 @@
+"""What ``cellcolor.solve`` returns: the answer, what it is an answer to, and how to look at it."""
+
+from __future__ import annotations
+
+import html
+from dataclasses import dataclass, field
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cellcolor.data import solution as solution_file
+from cellcolor.data.instance import Instance
+from cellcolor.data.proof_wording import in_words, witness_in_words
+from cellcolor.data.segment_rows import BASES, segment_rows
+from cellcolor.data.shares import shares_of
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.door.subject import Subject
+from cellcolor.errors import InputError
+from cellcolor.files.writing import Output, kind_of_format, write
+
+if TYPE_CHECKING:
+    from cellcolor.door.showing import Drawing
+
+__all__ = ["Result"]
+
+
+@dataclass(frozen=True, repr=False)
+class Result:
+    """The fewest segments that were found, and what is proved about them.
+
+    Attributes:
+        solution: the solver's answer, which the checker has passed.
+        subject: what was solved, opened.
+        witness: as many cells as there are segments, no two of which can be in one segment; none
+            where no such cells are known.
+    """
+
+    solution: Solution
+    subject: Subject = field(hash=False)
+    witness: tuple[int, ...]
+
+    @property
+    def instance(self) -> Instance:
+        """The topological graph that was solved."""
+        return self.subject.graph()
+
+    @property
+    def surface(self) -> LabelledSurface | None:
+        """The labelled surface; None for an instance that comes without one.
+
+        Raises:
+            InputError: the file that the instance names cannot be read, or is another surface.
+        """
+        return self.subject.surface if self.subject.names_surface else None
+
+    @property
+    def segments(self) -> int | None:
+        """How many there are; None when no division was found."""
+        return self.solution.segments
+
+    @property
+    def lift_offs(self) -> int | None:
+        """``max(0, segments - 1)``; None when no division was found."""
+        return self.solution.lift_offs
+
+    @property
+    def optimal(self) -> bool:
+        """Proved to be the fewest in the search space."""
+        return self.solution.status == "optimal"
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the solution to a file; nothing but an older solution is overwritten.
+
+        Raises:
+            InputError: there is something else, or it cannot be written.
+        """
+        kind = kind_of_format(solution_file.FORMAT)
+        write([Output(Path(path), kind, [self.solution.to_json().encode()])])
+
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> Drawing:
+        """Draw the segments on the surface, or the graph where there is no surface.
+
+        Args:
+            path: a file .html, .png or .svg; None draws without writing, for notebooks.
+            view: what else to look at, see :func:`cellcolor.show`.
+
+        Raises:
+            InputError: the extra ``viz`` is not installed, or the file cannot be written.
+        """
+        from cellcolor.door.showing import show
+
+        return show(self, path, **view)
+
+    def __str__(self) -> str:
+        return in_words(self.solution, witness_in_words(self.instance, self.witness))
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"
+
+    def _repr_html_(self) -> str:
+        """A table of the segments, and below it the picture or why there is none."""
+        try:
+            picture = self.plot()._repr_html_()
+        except InputError as error:
+            picture = f"<p>{html.escape(str(error))}</p>"
+        return f"<p><b>{html.escape(str(self))}</b></p>{self._table()}{picture}"
+
+    def _table(self) -> str:
+        if not self.solution.cells:
+            return ""
+        shares = shares_of(self.instance, self.solution)
+        rows = [("segment", "color", "cells", BASES[shares.of])]
+        rows += [
+            (str(row.segment), row.color, row.cells, row.percent)
+            for row in segment_rows(self.instance, self.solution, shares)
+        ]
+        lines = []
+        for number, row in enumerate(rows):
+            kind = "td" if number else "th"
+            cells = "".join(f"<{kind}>{html.escape(text)}</{kind}>" for text in row)
+            lines.append(f"<tr>{cells}</tr>")
+        return f"<table>{''.join(lines)}</table>"

@@ -1,0 +1,153 @@
+"""``cellcolor.build`` and ``cellcolor.solve``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+from cellcolor.checker.division import check_solution
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.door.result import Result
+from cellcolor.door.shipped import find_file
+from cellcolor.door.subject import Solvable, build_scene, is_made_by, is_scene, open_subject
+from cellcolor.errors import InputError
+from cellcolor.solvers import checked
+from cellcolor.solvers.bounds.witness import witness
+from cellcolor.solvers.interface import Options, Start
+
+if TYPE_CHECKING:
+    from cellcolor.frontend import BuildResult, Scene
+
+__all__ = ["build", "deadline_after", "solve", "start_from"]
+
+
+def build(
+    scene: str | PathLike[str] | Scene,
+    *,
+    time_limit: float | None = None,
+    progress: Callable[[str], None] | None = None,
+) -> BuildResult:
+    """Compute which colors reach each point of a robot scene's object.
+
+    Needs the extra ``frontend``.
+
+    Args:
+        scene: its file, its shipped name, or the value.
+        time_limit: seconds, None for as long as it takes.
+        progress: told the name of each stage as it begins.
+
+    Returns:
+        The labelled surface, and what became of every candidate on the way to it.
+
+    Raises:
+        InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
+        OutOfTime: the time limit came first.
+    """
+    deadline = deadline_after(time_limit)
+    if is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
+        return build_scene(scene, deadline, progress)  # type: ignore[arg-type]
+    path = find_file(scene)  # type: ignore[arg-type]
+    if not is_scene(path):
+        raise InputError(str(path), None, "is no scene: a scene is a file .toml")
+    return build_scene(path, deadline, progress)
+
+
+def solve(
+    source: Solvable,
+    *,
+    solver: str = "cp-sat",
+    search_space: SearchSpace = "paper",
+    strands: int | None = None,
+    time_limit: float | None = None,
+    workers: int | None = None,
+    seed: int = 0,
+    fewest_cuts: bool = False,
+    start: Solution | Result | str | PathLike[str] | None = None,
+    progress: Callable[[int | None, int], None] | None = None,
+) -> Result:
+    """Find the fewest segments of a scene, a labelled surface or an instance.
+
+    A scene is built and a surface decomposed on the way; the checker sees every result.
+
+    Args:
+        source: what to solve: its file, its shipped name (:func:`cellcolor.library`), the value.
+        solver: the solver's name; ``dfs`` is the paper's depth-first search, for small instances.
+        search_space: ``paper`` for no more than one corridor of a color across an edge, ``surface``
+            for several.
+        strands: how many, in the search space ``surface``; None for 2.
+        time_limit: seconds for all of it, None for as long as it takes.
+        workers: CP-SAT's search workers, None for its portfolio.
+        seed: of everything random.
+        fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
+            paths.
+        start: a solution to start from, or its file.
+        progress: called with the segments of the best division so far, None before there is one,
+            and the lower bound.
+
+    Raises:
+        InputError: what is to be solved, or an option, cannot be used.
+        OutOfTime: the time limit came before any division was known.
+    """
+    deadline = deadline_after(time_limit)
+    subject = open_subject(source, deadline)
+    instance = subject.graph(deadline)
+    given: dict[str, Any] = {} if strands is None else {"strands": strands}
+    options = Options(
+        search_space,
+        **given,
+        deadline=deadline,
+        workers=workers,
+        seed=seed,
+        start=None if start is None else start_from(start, instance, strands),
+        fewest_cuts=fewest_cuts,
+    )
+    solution = checked.solve(instance, options, solver, progress)
+    return Result(solution, subject, witness(instance, solution, deadline))
+
+
+def start_from(
+    source: Solution | Result | str | PathLike[str], instance: Instance, strands: int | None
+) -> Start:
+    """A solution as what a solver starts from.
+
+    Args:
+        source: the solution, or its file.
+        instance: what is about to be solved.
+        strands: those wanted; None for any.
+
+    Raises:
+        InputError: it is not a valid solution of this instance with these strands.
+    """
+    file, solution = None, source
+    if isinstance(solution, Result):
+        solution = solution.solution
+    if not isinstance(solution, Solution):
+        file = str(solution)
+        solution = Solution.read(solution)
+    problems = check_solution(instance, solution).problems
+    if problems:
+        raise InputError(file, None if file else "start", f"is not valid: {problems[0]}")
+    if solution.cells is None:
+        raise InputError(file, "cells", "holds no division to start from")
+    if strands is not None and solution.strands != strands:
+        raise InputError(file, "strands", f"is {solution.strands}, wanted are {strands}")
+    return Start(solution.cells, solution.seams)
+
+
+def deadline_after(time_limit: float | None) -> Deadline:
+    """The moment so many seconds from now.
+
+    Raises:
+        InputError: it is no positive number of seconds.
+    """
+    if time_limit is None:
+        return NEVER
+    number = isinstance(time_limit, (int, float)) and not isinstance(time_limit, bool)
+    if not number or not 0 < time_limit < math.inf:
+        message = f"must be a positive number of seconds or None, is {time_limit!r}"
+        raise InputError(None, "time_limit", message)
+    return Deadline.after(time_limit)

@@ -1,0 +1,273 @@
+"""Whatever can be solved, checked or shown: opened once, with all that leads to it or follows."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeAlias, Union
+
+from cellcolor.data import instance as instance_file
+from cellcolor.data import surface as surface_file
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.decomposition import Decomposition, decomposition_of, locate
+from cellcolor.door.extras import extras_for
+from cellcolor.door.shipped import find_file
+from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document
+
+if TYPE_CHECKING:
+    from cellcolor.frontend import BuildResult, Scene
+    from cellcolor.pictures.by_reason import CandidateReasons
+
+__all__ = ["Solvable", "Subject", "build_scene", "is_scene", "open_subject", "read_graph"]
+
+Solvable: TypeAlias = Union[
+    str, "PathLike[str]", "Scene", "BuildResult", LabelledSurface, Instance, "Subject"
+]
+"""A scene, a labelled surface or an instance: its file, its shipped name, or the value."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A scene, a labelled surface or an instance, opened.
+
+    Attributes:
+        path: the file, None for a value.
+        built: what the front end made of a scene; None for all else.
+        given_surface: the labelled surface that was handed in, read or built.
+        given_instance: the instance that was handed in or read.
+    """
+
+    path: Path | None
+    built: BuildResult | None = None
+    given_surface: LabelledSurface | None = None
+    given_instance: Instance | None = None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is probably not meant in a scene, a sentence each."""
+        return () if self.built is None else self.built.report.warnings
+
+    def graph(self, deadline: Deadline = NEVER) -> Instance:
+        """The instance; that of a surface refers to the surface as if it lay beside it.
+
+        Args:
+            deadline: when the decomposition has to end.
+
+        Raises:
+            InputError: the surface cannot be decomposed.
+            OutOfTime: the deadline came before there was an instance.
+        """
+        if self.given_instance is not None:
+            return self.given_instance
+        if "_decomposed" not in self.__dict__:
+            self.__dict__["_decomposed"] = self.decomposed(self._reference, deadline)
+        made: Decomposition = self.__dict__["_decomposed"]
+        return made.instance
+
+    def decomposed(self, reference: str | None, deadline: Deadline = NEVER) -> Decomposition:
+        """The decomposition of the surface, made anew; see :meth:`graph`.
+
+        Args:
+            reference: where the instance's file will say that the surface is; None leaves it out.
+            deadline: when the decomposition has to end.
+        """
+        try:
+            return decomposition_of(self.surface, reference, deadline)
+        except InputError as error:
+            raise error if self.path is None else error.in_file(str(self.path)) from error
+
+    @cached_property
+    def decomposition(self) -> Decomposition:
+        """The graph on the surface.
+
+        Raises:
+            InputError: there is no surface, or it cannot be decomposed.
+        """
+        if self.given_instance is not None and self.given_instance.surface is not None:
+            instance = self.given_instance
+            return locate(self.surface, instance, self.given_instance.surface.vertex_cell)
+        self.graph()
+        made: Decomposition = self.__dict__["_decomposed"]
+        return made
+
+    @cached_property
+    def reasons(self) -> CandidateReasons:
+        """What became of the candidates of a scene, or of the one that the surface was built from.
+
+        Raises:
+            InputError: it is a value that no front end has built, or there is no file of them.
+        """
+        from cellcolor.pictures.by_reason import CandidateReasons, read_candidate_reasons
+
+        if self.built is None:
+            if self.surface_path is None:
+                raise InputError(None, "reasons", "are known of a scene, or of a surface's file")
+            return read_candidate_reasons(self.surface, self.surface_path)
+        from cellcolor.frontend import Reason
+
+        names = tuple(reason.text for reason in Reason)
+        built = self.built
+        return CandidateReasons(built.branches, names, built.reasons, built.node_color)
+
+    def build(self) -> BuildResult:
+        """What the front end found.
+
+        Raises:
+            InputError: this is no scene.
+        """
+        if self.built is None:
+            raise InputError(self._file, "format", "the arm is in a scene (.toml)")
+        return self.built
+
+    @cached_property
+    def surface(self) -> LabelledSurface:
+        """The labelled surface; that of an instance is read from the file that it names.
+
+        Raises:
+            InputError: there is none, or it is not the one the instance was made of.
+        """
+        if self.given_surface is not None:
+            return self.given_surface
+        assert self.given_instance is not None
+        if not self.names_surface:
+            raise InputError(self._file, "surface", "is missing: this is a graph without a surface")
+        assert self.surface_path is not None
+        surface = LabelledSurface.read(self.surface_path)
+        self._same_surface(self.given_instance, surface)
+        return surface
+
+    @property
+    def surface_path(self) -> Path | None:
+        """The file that the surface is in; the scene for a scene."""
+        reference = None if self.given_instance is None else self.given_instance.surface
+        if self.path is None or reference is None:
+            return self.path
+        return self.path.parent / reference.path
+
+    @property
+    def names_surface(self) -> bool:
+        """Whether there is a surface, or a file is named that should have it."""
+        if self.given_instance is None:
+            return True
+        return self.path is not None and self.given_instance.surface is not None
+
+    @property
+    def _file(self) -> str | None:
+        return None if self.path is None else str(self.path)
+
+    @property
+    def _reference(self) -> str:
+        if self.path is None:
+            return f"{self.surface.name}.surface.json"
+        return f"{self.path.stem}.surface.json" if is_scene(self.path) else self.path.name
+
+    def _same_surface(self, instance: Instance, surface: LabelledSurface) -> None:
+        """Refuse a surface that is not the one the instance was made of."""
+        assert instance.surface is not None
+        cells, fingerprint = instance.surface.vertex_cell, instance.surface.sha256
+        if fingerprint is not None and fingerprint != surface.sha256:
+            message = (
+                f"{instance.surface.path} is not the surface that this instance was built from"
+            )
+            raise InputError(self._file, "surface.sha256", message)
+        if instance.colors != surface.colors or len(cells) != len(surface.vertices):
+            message = "the surface has other colors or vertices"
+            raise InputError(self._file, "surface.path", message)
+        for vertex, cell in enumerate(cells):
+            own = () if cell == OUTSIDE else tuple(sorted(instance.cells[cell].colors))
+            if own != surface.vertex_colors[vertex]:
+                field = f"surface.vertex_cell[{vertex}]"
+                raise InputError(self._file, field, "the surface has other colors there")
+
+
+def open_subject(
+    source: Solvable, deadline: Deadline = NEVER, progress: Callable[[str], None] | None = None
+) -> Subject:
+    """Read, and where it is a scene build, what is to be solved, checked or shown.
+
+    Args:
+        source: a scene, a labelled surface or an instance: its file, its shipped name, the value.
+        deadline: when a build has to end.
+        progress: told the name of each stage of a build as it begins.
+
+    Raises:
+        InputError: it cannot be used; names the file and what is wrong with it.
+        OutOfTime: the deadline came before there was a surface.
+    """
+    if isinstance(source, Subject):
+        return source
+    if isinstance(source, Instance):
+        return Subject(None, given_instance=source)
+    if isinstance(source, LabelledSurface):
+        return Subject(None, given_surface=source)
+    if is_made_by(source, "cellcolor.frontend.build", "BuildResult"):
+        return Subject(None, source, source.surface)  # type: ignore[arg-type, union-attr]
+    if is_made_by(source, "cellcolor.frontend.scene", "Scene"):
+        built = build_scene(source, deadline, progress)  # type: ignore[arg-type]
+        return Subject(None, built, built.surface)
+    if not isinstance(source, (str, PathLike)):
+        message = f"must be a scene, a surface, an instance or a file of one, is {source!r:.100}"
+        raise InputError(None, None, message)
+    path = find_file(source)
+    if is_scene(path):
+        built = build_scene(path, deadline, progress)
+        return Subject(path, built, built.surface)
+    found = read_graph(path)
+    if isinstance(found, Instance):
+        return Subject(path, given_instance=found)
+    return Subject(path, given_surface=found)
+
+
+def is_made_by(value: object, module: str, name: str) -> bool:
+    """Whether a value is of a class, without importing the class: its values have done so."""
+    kind = getattr(sys.modules.get(module), name, None)
+    return isinstance(kind, type) and isinstance(value, kind)
+
+
+def is_scene(path: Path) -> bool:
+    """Scenes are told by their suffix, everything else by its ``format``."""
+    return path.suffix == ".toml"
+
+
+def build_scene(
+    scene: Path | Scene,
+    deadline: Deadline = NEVER,
+    progress: Callable[[str], None] | None = None,
+) -> BuildResult:
+    """Run the front end.
+
+    Raises:
+        InputError: the scene cannot be used, or the front end is not installed.
+        OutOfTime: the deadline came first.
+    """
+    with extras_for("the front end" if not isinstance(scene, Path) else scene):
+        from cellcolor.frontend import build_surface
+
+    return build_surface(scene, deadline, progress)
+
+
+def read_graph(path: Path) -> Instance | LabelledSurface:
+    """An instance or a labelled surface, whichever the file says it is.
+
+    Raises:
+        InputError: the file cannot be read, is neither, or holds something forbidden.
+    """
+    document = read_document(path)
+    try:
+        match document.get("format"):
+            case instance_file.FORMAT:
+                return Instance.from_document(document)
+            case surface_file.FORMAT:
+                return LabelledSurface.from_document(document)
+            case other:
+                expected = f"{instance_file.FORMAT!r} or {surface_file.FORMAT!r}"
+                raise InputError(None, "format", f"must be {expected}, is {other!r}")
+    except InputError as error:
+        raise error.in_file(str(path)) from error

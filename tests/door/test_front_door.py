@@ -1,0 +1,120 @@
+"""What ``import cellcolor`` offers: the names, lazily, and the same for type checkers."""
+
+from __future__ import annotations
+
+import ast
+import json
+import pkgutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import cellcolor
+
+PUBLIC = [
+    "OUTSIDE",
+    "Bound",
+    "Cell",
+    "CellDivision",
+    "CellcolorError",
+    "ContradictionError",
+    "Coverage",
+    "Crack",
+    "Drawing",
+    "Edge",
+    "InputError",
+    "Instance",
+    "LabelledSurface",
+    "OutOfTime",
+    "Plan",
+    "ProvenRange",
+    "Result",
+    "Solution",
+    "SubCell",
+    "TooLarge",
+    "Verdict",
+    "__version__",
+    "build",
+    "check",
+    "decompose",
+    "judge",
+    "library",
+    "proven_range",
+    "read",
+    "show",
+    "solve",
+]
+"""Whoever changes this list changes what others rely on."""
+
+FRONTEND = {"pinocchio", "trimesh", "fcl", "coal", "scipy", "cellcolor.frontend"}
+PICTURES = {"plotly", "matplotlib", "cellcolor.pictures"}
+PACKAGE = Path(cellcolor.__file__).parent
+
+
+def modules_after(script: str) -> set[str]:
+    """What has been imported when a script ends, in a process of its own."""
+    report = "\nimport json, sys\nprint(json.dumps(sorted(sys.modules)))"
+    done = subprocess.run(
+        [sys.executable, "-c", script + report], capture_output=True, text=True, check=True
+    )
+    return set(json.loads(done.stdout.splitlines()[-1]))
+
+
+def test_the_public_names() -> None:
+    assert cellcolor.__all__ == PUBLIC
+    assert set(PUBLIC) <= set(dir(cellcolor))
+    for name in PUBLIC:
+        assert getattr(cellcolor, name) is not None
+
+
+def test_other_names_are_refused() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'Nonsense'"):
+        _ = cellcolor.Nonsense  # type: ignore[attr-defined]
+
+
+def test_type_checkers_are_told_the_same() -> None:
+    """The stub imports every public name from the module that the package takes it from."""
+    stub = ast.parse((PACKAGE / "__init__.pyi").read_text(encoding="utf-8"))
+    told = {}
+    for statement in stub.body:
+        assert isinstance(statement, ast.ImportFrom)
+        for alias in statement.names:
+            assert alias.name == alias.asname
+            told[alias.name] = statement.module
+    assert told == cellcolor._ROOM_OF | {"__version__": "cellcolor.version"}
+    assert sorted(told) == sorted(PUBLIC)
+
+
+def test_importing_it_imports_nothing_else() -> None:
+    before = modules_after("")
+    new = modules_after("import cellcolor") - before
+    assert new == {"cellcolor", "cellcolor.version"}
+
+
+def test_looking_at_its_names_imports_nothing_else() -> None:
+    before = modules_after("")
+    script = "import cellcolor\ndir(cellcolor)\nhasattr(cellcolor, 'nothing')\ncellcolor.library()"
+    loaded = modules_after(script) - before
+    assert not {name.partition(".")[0] for name in loaded} & {"numpy", "pydantic", "ortools"}
+
+
+def test_solving_imports_neither_robot_nor_drawing_libraries() -> None:
+    loaded = modules_after("import cellcolor\nprint(cellcolor.solve('wok.surface.json'))")
+    assert "ortools" in loaded
+    assert not loaded & (FRONTEND | PICTURES)
+
+
+def test_reading_imports_no_solver() -> None:
+    loaded = modules_after("import cellcolor\nprint(cellcolor.read('ring'))")
+    assert not loaded & (FRONTEND | PICTURES | {"ortools"})
+
+
+def test_no_module_overwrites_a_public_name() -> None:
+    """Importing ``cellcolor.X`` makes X an attribute of the package."""
+    modules = {module.name for module in pkgutil.iter_modules([str(PACKAGE)])}
+    assert not modules & set(PUBLIC)
+    everything = "\n".join(f"import cellcolor.{name}" for name in sorted(modules - {"__main__"}))
+    script = f"{everything}\nassert all(callable(getattr(cellcolor, f)) for f in {PUBLIC[-9:]!r})"
+    modules_after(script)

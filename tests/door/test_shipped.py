@@ -1,0 +1,151 @@
+"""The shipped library is opened by name, from a repository and from a wheel."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import pytest
+from library import INSTANCES, PAPER
+from shipped import ROBOTS, SCENES, TOP
+
+import cellcolor
+from cellcolor.cli import main
+from cellcolor.door.shipped import find_file, library
+from cellcolor.errors import InputError
+
+
+def test_every_shipped_file_has_its_name() -> None:
+    files = [*INSTANCES.rglob("*.json"), *INSTANCES.rglob("*.toml"), *ROBOTS.glob("*.toml")]
+    assert len({file.name for file in files}) == len(files)  # no name stands for two files
+    for file in files:
+        assert find_file(file.name) == file
+    listed = library()
+    assert {file.name.partition(".")[0] for file in files} == set(listed)
+    assert all(line and "\n" not in line for line in listed.values())
+    assert len(str(listed).splitlines()) == len(listed)
+
+
+@pytest.mark.parametrize(
+    ("name", "file"),
+    [
+        ("wok", SCENES / "wok.toml"),
+        ("wok.json", SCENES / "wok.json"),
+        ("wok.surface.json", SCENES / "wok.surface.json"),
+        ("figforcolor", PAPER / "figforcolor.json"),
+        ("blobs_0", INSTANCES / "random" / "blobs_0.surface.json"),
+        ("ur5_polishing", ROBOTS / "ur5_polishing.toml"),
+    ],
+)
+def test_a_name_is_a_scene_or_else_a_graph_or_else_a_surface(name: str, file: Path) -> None:
+    assert find_file(name) == file
+
+
+def test_a_file_goes_before_a_shipped_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert find_file("ring") == PAPER / "ring.json"
+    (tmp_path / "wok").mkdir()
+    assert find_file("wok") == SCENES / "wok.toml"  # a folder is no file
+    (tmp_path / "ring").write_text((PAPER / "split-cell.json").read_text(encoding="utf-8"))
+    assert find_file("ring") == Path("ring")
+    assert cellcolor.read("ring") == cellcolor.read(PAPER / "split-cell.json")
+
+
+def test_a_path_is_no_name() -> None:
+    assert find_file(Path("wok")) == Path("wok")
+    with pytest.raises(InputError, match="wok: No such file"):
+        cellcolor.read(Path("wok"))
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("wokk", "wokk: is no file, and nothing of that name is shipped; is 'wok' meant?"),
+        ("qqqqqq", "qqqqqq: is no file, and nothing of that name is shipped"),
+        ("wokk.toml", "wokk.toml: No such file or directory"),
+        ("some/where", "some/where: No such file or directory"),
+        ("", ": "),
+        ("a\0b", "is no file, and nothing of that name is shipped"),
+    ],
+)
+def test_unknown_names(name: str, text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        cellcolor.read(name)
+    assert text in str(caught.value)
+
+
+def test_commands_take_names(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["solve", "ring", "--json", "-o", "s.json"]) == 0
+    assert json.loads(capsys.readouterr().out)["segments"] == 2
+    assert main(["check", "ring", "s.json"]) == 0
+    assert main(["build", "ring.surface.json", "-o", "r.json"]) == 0
+    capsys.readouterr()
+    assert main(["solve", "rimg"]) == 2
+    assert capsys.readouterr().err == (
+        "cellcolor: rimg: is no file, and nothing of that name is shipped; is 'ring' meant?\n"
+    )
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["r.json", "s.json"]
+
+
+SOLVE = """
+import cellcolor
+assert cellcolor.__file__.startswith({folder!r}), cellcolor.__file__
+print(cellcolor.solve("wok"{surface}))
+print(len(cellcolor.library()))
+"""
+
+
+@pytest.mark.slow
+def test_a_wheel_has_it_all(tmp_path: Path) -> None:
+    """Built, unpacked elsewhere, and used from a folder that knows nothing of the repository."""
+    pytest.importorskip("hatchling")
+    wheel = _wheel(tmp_path / "wheels")
+    folder = tmp_path / "site"
+    with zipfile.ZipFile(wheel) as archive:
+        archive.extractall(folder)
+    names = {file.relative_to(TOP) for place in ("instances", "models") for file in _files(place)}
+    there = folder / "cellcolor" / "shipped"
+    for name in names:
+        assert (there / name).read_bytes() == (TOP / name).read_bytes()
+    has_frontend = _can_import("pinocchio", "fcl", "trimesh")
+    script = SOLVE.format(folder=str(folder), surface="" if has_frontend else ' ".surface.json"')
+    environment = os.environ | {"PYTHONPATH": str(folder)}
+    empty = tmp_path / "empty"
+    empty.mkdir()
+    for command in (
+        ["-c", script],
+        ["-m", "cellcolor", "solve", "wok" if has_frontend else "wok.surface.json"],
+    ):
+        done = subprocess.run(
+            [sys.executable, *command], cwd=empty, env=environment, capture_output=True, text=True
+        )
+        assert done.returncode == 0, done.stderr
+        assert "optimal" in done.stdout and "cells 3 and 4 share no color" in done.stdout
+    assert list(empty.iterdir()) == []
+
+
+def _wheel(folder: Path) -> Path:
+    command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation"]
+    subprocess.run([*command, "-q", "-w", str(folder), str(TOP)], check=True)
+    (wheel,) = folder.iterdir()
+    project = tomllib.loads((TOP / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert wheel.name.startswith(f"{project['name'].replace('-', '_')}-{cellcolor.__version__}-")
+    return wheel
+
+
+def _files(place: str) -> list[Path]:
+    return [file for file in (TOP / place).rglob("*") if file.is_file()]
+
+
+def _can_import(*packages: str) -> bool:
+    from importlib.util import find_spec
+
+    return all(find_spec(package) is not None for package in packages)

@@ -1,0 +1,326 @@
+"""``read``, ``build``, ``solve``, ``check`` and ``judge`` as a stranger calls them."""
+
+from __future__ import annotations
+
+import html.parser
+import json
+import pickle
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from documents import PLAN, SOLUTION
+from hypothesis import given, settings
+from library import INSTANCES, PAPER
+from meshes import drawn, surfaces
+from shipped import ROBOTS, SCENES
+
+import cellcolor
+from cellcolor import InputError, Instance, LabelledSurface, Plan, Solution
+
+RING = PAPER / "ring.json"
+RING_SURFACE = PAPER / "ring.surface.json"
+HALVES = drawn("AAABBB AAABBB", {"A": [0], "B": [1]})
+"""Red on the left, blue on the right, nothing shared: two segments."""
+
+
+def test_whatever_it_is_the_answer_is_the_same() -> None:
+    """A path, its text, a shipped name, a value; the graph or its surface."""
+    sources: list[Any] = [
+        RING,
+        str(RING),
+        "ring",
+        cellcolor.read("ring"),
+        RING_SURFACE,
+        "ring.surface.json",
+        LabelledSurface.read(RING_SURFACE),
+    ]
+    for source in sources:
+        result = cellcolor.solve(source)
+        assert (result.segments, result.lift_offs, result.optimal) == (2, 1, True)
+        assert cellcolor.check(source, result).valid
+
+
+@pytest.mark.parametrize(
+    ("source", "kind"),
+    [
+        ("ring", Instance),
+        ("ring.surface.json", LabelledSurface),
+        (RING, Instance),
+        (str(RING_SURFACE), LabelledSurface),
+    ],
+)
+def test_read_gives_what_the_file_says(source: Any, kind: type) -> None:
+    assert type(cellcolor.read(source)) is kind
+
+
+def test_read_takes_every_format(tmp_path: Path) -> None:
+    values = (Solution.from_document(SOLUTION), Plan.from_document(PLAN))
+    for value in values:
+        file = tmp_path / "file.json"
+        file.write_text(value.to_json(), encoding="utf-8")
+        assert cellcolor.read(file) == value
+    file.write_text('{"format": "cellcolor/other"}', encoding="utf-8")
+    with pytest.raises(InputError, match=r"file\.json: format: must be one of .*cellcolor/plan"):
+        cellcolor.read(file)
+    file.write_text('{"format": ["cellcolor/plan"]}', encoding="utf-8")
+    with pytest.raises(InputError, match=r"file\.json: format: must be one of"):
+        cellcolor.read(file)
+    file.write_text("[]", encoding="utf-8")
+    with pytest.raises(InputError, match=r"file\.json: must be a JSON object"):
+        cellcolor.read(file)
+
+
+def test_read_gives_the_solution_before_schemes(tmp_path: Path) -> None:
+    from cellcolor.cli import main
+
+    file = tmp_path / "schemes.jsonl"
+    assert main(["solve", str(RING), "--all", "-o", str(file)]) == 0
+    assert len(file.read_text(encoding="utf-8").splitlines()) > 1
+    assert cellcolor.read(file) == Solution.read(file)
+
+
+def test_scenes_and_setups_are_told_apart() -> None:
+    pytest.importorskip("pinocchio")
+    from cellcolor.frontend import Scene, Setup
+
+    assert isinstance(cellcolor.read(ROBOTS / "ur5_polishing.toml"), Setup)
+    for file in SCENES.glob("*.toml"):
+        assert isinstance(cellcolor.read(file), Scene)
+
+
+def test_a_scene_is_built() -> None:
+    for package in ("pinocchio", "fcl", "trimesh"):
+        pytest.importorskip(package)
+    stages: list[str] = []
+    built = cellcolor.build("square", progress=stages.append)
+    assert stages[0] == "preparation" and len(stages) > 3
+    stored = LabelledSurface.read(SCENES / "square.surface.json")
+    assert built.surface.colors == stored.colors
+    assert "square" in str(built) and len(repr(built)) < 200
+    assert built == pickle.loads(pickle.dumps(built))
+    found = cellcolor.solve(built)
+    assert found.surface is built.surface
+    assert found.segments == cellcolor.solve("square.json").segments
+    with pytest.raises(InputError, match="time_limit"):
+        cellcolor.build("square", time_limit=-1)
+    with pytest.raises(cellcolor.OutOfTime):
+        cellcolor.build("square", time_limit=1e-6)
+
+
+def test_a_result_says_what_is_proved_and_why() -> None:
+    assert str(cellcolor.solve(HALVES)) == (
+        "2 segments, 1 lift-off, optimal: proved for any division of the surface, "
+        "because cells 0 and 1 share no color"
+    )
+    assert str(cellcolor.solve("parallel-corridors")) == (
+        "3 segments, 2 lift-offs, optimal in the search space paper; "
+        "any division of the surface has at least 2"
+    )
+    whole = drawn("AA AA", {"A": [0]})
+    assert str(cellcolor.solve(whole)) == (
+        "1 segment, 0 lift-offs, optimal: proved for any division of the surface"
+    )
+    bare = drawn("AA AA", {"A": []})
+    assert str(cellcolor.solve(bare)) == "no division found; at least 0 segments"
+
+
+def test_a_result_is_a_value(tmp_path: Path) -> None:
+    result = cellcolor.solve(HALVES)
+    again = pickle.loads(pickle.dumps(result))
+    assert again == result and hash(again) == hash(result) and repr(again) == repr(result)
+    assert len(repr(result)) < 250
+    assert result != cellcolor.solve("ring")
+    assert result.surface == HALVES
+    assert cellcolor.solve(cellcolor.decompose(HALVES)).surface is None
+    file = tmp_path / "s.json"
+    result.save(str(file))
+    result.save(file)  # over an older solution
+    assert cellcolor.read(file) == replace(
+        result.solution, seconds=round(result.solution.seconds, 4)
+    )
+    with pytest.raises(InputError, match="is not overwritten"):
+        result.save(_copy(RING, tmp_path))
+
+
+def _copy(file: Path, folder: Path) -> Path:
+    copy = folder / file.name
+    copy.write_bytes(file.read_bytes())
+    return copy
+
+
+class _Cells(html.parser.HTMLParser):
+    """The texts of a table's cells."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__()
+        self.inside = False
+        self.found: list[str] = []
+        self.feed(text)
+
+    def handle_starttag(self, tag: str, _attributes: object) -> None:
+        self.inside = tag in ("td", "th")
+
+    def handle_endtag(self, tag: str) -> None:
+        self.inside = self.inside and tag not in ("td", "th")
+
+    def handle_data(self, data: str) -> None:
+        if self.inside:
+            self.found.append(data)
+
+
+def test_a_notebook_shows_a_table_and_a_picture() -> None:
+    pytest.importorskip("plotly")
+    named = replace(HALVES, colors=("<red>", "blue & green"))
+    page = cellcolor.solve(named)._repr_html_()
+    assert "proved for any division" in page
+    cells = _Cells(page.partition("<iframe")[0]).found
+    assert cells[:4] == ["segment", "color", "cells", "share of surface"]
+    assert {cells[5], cells[9]} == {"<red>", "blue & green"}
+    assert {cells[6], cells[10]} == {"0", "1"}
+    assert page.count("<iframe srcdoc=") == 1 and "src=" not in page.partition("<iframe")[0]
+
+
+def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+    import sys
+
+    monkeypatch.setitem(sys.modules, "plotly", None)
+    monkeypatch.setitem(sys.modules, "plotly.graph_objects", None)
+    monkeypatch.delitem(sys.modules, "cellcolor.pictures.interactive", raising=False)
+    page = cellcolor.solve(HALVES)._repr_html_()
+    assert "<td>" in page and "needs plotly: pip install" in page and "<iframe" not in page
+
+
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        ({"time_limit": 0}, "time_limit: must be a positive number of seconds or None, is 0"),
+        ({"time_limit": "10"}, "time_limit: must be a positive number of seconds or None, is '10'"),
+        ({"time_limit": True}, "time_limit: must be a positive number"),
+        ({"time_limit": float("nan")}, "time_limit: must be a positive number"),
+        ({"seed": -1}, "seed: "),
+        ({"workers": 0}, "workers: "),
+        ({"workers": "two"}, "workers: "),
+        ({"search_space": "all"}, "search_space: "),
+        ({"strands": 2}, "strands: must be 1 in search space 'paper'"),
+        ({"solver": "dfs", "fewest_cuts": True}, "fewest_cuts"),
+    ],
+    ids=str,
+)
+def test_wrong_options_are_refused(options: dict[str, Any], text: str) -> None:
+    with pytest.raises(InputError) as caught:
+        cellcolor.solve("ring", **options)
+    assert text in str(caught.value) and "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("source", [None, 3, 2.5, [1], object(), b"ring", PLAN])
+def test_what_cannot_be_solved_is_refused(source: Any) -> None:
+    for function in (cellcolor.solve, cellcolor.show, lambda s: cellcolor.check(s, "x.json")):
+        with pytest.raises(InputError, match="must be a scene, a surface, an instance or a file"):
+            function(source)
+
+
+def test_a_plan_or_a_solution_cannot_be_solved(tmp_path: Path) -> None:
+    file = tmp_path / "plan.json"
+    file.write_text(json.dumps(PLAN), encoding="utf-8")
+    with pytest.raises(InputError, match=r"plan\.json: format: must be 'cellcolor/instance' or"):
+        cellcolor.solve(file)
+
+
+def test_options_reach_the_solver() -> None:
+    found = cellcolor.solve("parallel-corridors", search_space="surface", strands=3, seed=4)
+    assert (found.solution.strands, found.segments) == (3, 2)
+    assert cellcolor.solve("ring", solver="dfs").solution.solver == "dfs"
+    assert cellcolor.solve("ring", fewest_cuts=True).solution.cutting_paths is not None
+    seen: list[tuple[int | None, int]] = []
+    cellcolor.solve("hub_24", progress=lambda best, least: seen.append((best, least)))
+    assert seen and seen[-1][0] == 15
+
+
+def test_a_start_is_a_solution_of_the_same_instance(tmp_path: Path) -> None:
+    first = cellcolor.solve("ring")
+    first.save(tmp_path / "s.json")
+    for start in (first, first.solution, tmp_path / "s.json", str(tmp_path / "s.json")):
+        assert cellcolor.solve("ring", start=start).segments == 2
+        with pytest.raises(InputError, match="is not valid"):
+            cellcolor.solve("split-cell", start=start)
+
+
+def test_check_finds_what_is_wrong() -> None:
+    found = cellcolor.solve("ring")
+    assert str(cellcolor.check("ring", found)) == "valid: 2 segments"
+    wrong = replace(found.solution, segments=1, lift_offs=0)
+    report = cellcolor.check("ring", wrong)
+    assert not report.valid and str(report).startswith("not valid: ")
+    assert not cellcolor.check("split-cell", found).valid
+
+
+def test_check_heeds_what_is_known() -> None:
+    instance = Instance.read(RING)
+    assert instance.known is not None and instance.known.paper is not None
+    wrong = replace(instance.known, paper=replace(instance.known.paper, segments=3))
+    report = cellcolor.check(replace(instance, known=wrong), cellcolor.solve(instance))
+    assert not report.valid and "known.paper.segments" in str(report)
+
+
+@given(surfaces())
+@settings(max_examples=25, deadline=None)
+def test_a_plan_is_any_sequence_of_colors(surface: LabelledSurface) -> None:
+    """Plan, list, tuple, arrays: one verdict; -1 stands for None in an array of integers only."""
+    colors = [next(iter(own), None) for own in surface.vertex_colors]
+    bounds = cellcolor.ProvenRange(0, len(colors))
+    verdict = cellcolor.judge(surface, Plan(tuple(colors)), bounds=bounds)
+    assert verdict.valid
+    bare = np.array([-1 if color is None else color for color in colors])
+    for plan in (colors, tuple(colors), bare, bare.astype(np.int8), np.array(colors, object)):
+        assert cellcolor.judge(surface, plan, bounds=bounds) == verdict
+    if None in colors:
+        assert not cellcolor.judge(surface, bare.tolist(), bounds=bounds).valid
+
+
+def test_plans_are_judged_by_name_and_file(tmp_path: Path) -> None:
+    surface = LabelledSurface.read(RING_SURFACE)
+    plan = [next(iter(own), None) for own in surface.vertex_colors]
+    file = tmp_path / "plan.json"
+    file.write_text(Plan(tuple(plan)).to_json(), encoding="utf-8")
+    expected = cellcolor.judge(surface, plan)
+    assert cellcolor.judge("ring.surface.json", str(file)) == expected
+    assert cellcolor.judge(RING_SURFACE, file) == expected
+    with pytest.raises(InputError, match=r"ring\.json: surface: is missing"):
+        cellcolor.judge(RING, plan)
+
+
+@pytest.mark.parametrize("plan", [[1.5], ["red"], [True], 3, np.zeros((2, 2)), np.zeros(3), None])
+def test_what_is_no_plan_is_refused(plan: Any) -> None:
+    with pytest.raises(InputError, match="vertex_colors"):
+        cellcolor.judge(HALVES, plan)
+
+
+def test_errors_name_the_file(tmp_path: Path) -> None:
+    torus = tmp_path / "torus.surface.json"
+    torus.write_text(_torus().to_json(), encoding="utf-8")
+    for function in (cellcolor.solve, lambda s: cellcolor.judge(s, [0] * 16)):
+        with pytest.raises(InputError, match=r"torus\.surface\.json: vertices\[0\]: .* not planar"):
+            function(torus)
+
+
+def _torus() -> LabelledSurface:
+    """Sixteen points in one color: a single cell of genus 1."""
+    k = np.arange(4) * np.pi / 2
+    u, v = (angles.ravel() for angles in np.meshgrid(k, k, indexing="ij"))
+    ring = 2 + np.cos(v)
+    points = np.stack([ring * np.cos(u), ring * np.sin(u), np.sin(v)], axis=1)
+    faces = []
+    for i in range(4):
+        for j in range(4):
+            a, b = 4 * i + j, 4 * ((i + 1) % 4) + j
+            c, d = 4 * i + (j + 1) % 4, 4 * ((i + 1) % 4) + (j + 1) % 4
+            faces += [(a, b, d), (a, d, c)]
+    return LabelledSurface("torus", ("red",), points, np.array(faces), ((0,),) * 16)
+
+
+def test_time_ends_the_work() -> None:
+    with pytest.raises(cellcolor.OutOfTime):
+        cellcolor.solve(INSTANCES / "random" / "blobs_0.surface.json", time_limit=1e-9)
