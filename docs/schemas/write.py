@@ -2,8 +2,9 @@
 
     python docs/schemas/write.py
 
-Each is named after its format and the version that is written now. What a schema says of a member
-is what the class says of the attribute. README.md has what schemas cannot say.
+Each is named after its format and the version that is written now; scenes and setups, which are
+TOML, have none. What a schema says of a member is what the class says of the attribute. README.md
+has what schemas cannot say.
 """
 
 from __future__ import annotations
@@ -54,7 +55,10 @@ FORMATS = {
     ),
     "plan-1": Format(plan.FORMAT, 1, plan._ADAPTER, plan.Plan),
 }
-"""The formats by the names of their schemas' files."""
+"""The JSON formats by the names of their schemas' files."""
+
+TABLES = ("scene", "setup")
+"""The schemas of TOML files."""
 
 
 class _Untitled(GenerateJsonSchema):
@@ -67,7 +71,12 @@ class _Untitled(GenerateJsonSchema):
 
 def schema_text(file: str) -> str:
     """The text of one schema's file, given by its name without the suffix."""
-    described = FORMATS[file]
+    schema = _table_schema(file) if file in TABLES else _format_schema(FORMATS[file])
+    first = {name: schema.pop(name) for name in ("title", "description")}
+    return json.dumps({"$schema": DIALECT} | first | schema, indent=2, ensure_ascii=False) + "\n"
+
+
+def _format_schema(described: Format) -> dict[str, Any]:
     schema = described.adapter.json_schema(schema_generator=_Untitled)
     members = {"format": {"const": described.name}}
     title = described.name
@@ -80,8 +89,48 @@ def schema_text(file: str) -> str:
     for name, definition in schema.get("$defs", {}).items():
         found = (getattr(module, name, None) for module in MODULES)
         _describe(definition, next(cls for cls in found if cls is not None))
-    first = {"$schema": DIALECT, "title": title, "description": schema.pop("description")}
-    return json.dumps(first | schema | {"title": title}, indent=2, ensure_ascii=False) + "\n"
+    return schema | {"title": title}
+
+
+def _table_schema(file: str) -> dict[str, Any]:
+    """A scene's or a setup's. It needs the extra ``frontend``."""
+    from cellcolor.frontend.contact.obstacle import OBSTACLES
+    from cellcolor.frontend.scene import Scene
+    from cellcolor.frontend.setup import Setup
+    from cellcolor.frontend.tables import FileTable
+    from cellcolor.frontend.target.part import PARTS
+
+    model = Scene if file == "scene" else Setup
+    schema: dict[str, Any] = model.model_json_schema(schema_generator=_Untitled)
+    schema["title"] = f"{file} file (TOML)"
+    definitions = schema["$defs"]
+    for table in (schema, *definitions.values()):
+        table["description"] = _plain(table["description"].partition("\n\n")[0])
+        for name in FileTable.model_fields:  # what Python knows of a file, and no file has
+            table["properties"].pop(name, None)
+    if model is Scene:
+        members = schema["properties"]
+        members["setup"] = {"anyOf": [{"type": "string"}, members["setup"]]}
+        members["object"] = _kinds(PARTS, "object", definitions)
+        members["collision_object"] = members["object"]
+        members["obstacle"] = {"type": "array", "items": _kinds(OBSTACLES, "obstacle", definitions)}
+    return schema
+
+
+def _kinds(registry: Any, prefix: str, definitions: dict[str, Any]) -> dict[str, Any]:
+    """A table of one of this package's kinds, or of a kind that another package registers."""
+    own = list(registry._own)
+    for kind in own:
+        table = registry.find(kind).model_json_schema(schema_generator=_Untitled)
+        table["required"] = ["kind", *table.get("required", [])]
+        definitions[f"{prefix}-{kind}"] = table
+    other = {
+        "type": "object",
+        "properties": {"kind": {"type": "string", "not": {"enum": own}}},
+        "required": ["kind"],
+    }
+    ours = [{"$ref": f"#/$defs/{prefix}-{kind}"} for kind in own]
+    return {"anyOf": [*ours, other]}
 
 
 def _describe(schema: dict[str, Any], cls: type) -> None:
@@ -103,7 +152,7 @@ def _plain(text: str) -> str:
 
 def main() -> None:
     """Write all of them."""
-    for file in FORMATS:
+    for file in (*FORMATS, *TABLES):
         (FOLDER / f"{file}.schema.json").write_text(schema_text(file), encoding="utf-8")
 
 

@@ -6,6 +6,7 @@ import copy
 import importlib.util
 import json
 import sys
+import tomllib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -34,6 +35,10 @@ WRITE = importlib.util.module_from_spec(SPEC)
 sys.modules[SPEC.name] = WRITE  # where its dataclasses look for themselves
 SPEC.loader.exec_module(WRITE)
 FILES = sorted(WRITE.FORMATS)
+TABLES = {
+    "scene": sorted(INSTANCES.rglob("*.toml")),
+    "setup": sorted((INSTANCES.parent / "models").rglob("*.toml")),
+}
 SHIPPED = sorted(INSTANCES.rglob("*.json"))
 
 Document = dict[str, Any]
@@ -69,13 +74,15 @@ WRITTEN = written()
 
 def test_there_is_no_other_schema() -> None:
     stored = sorted(path.name.removesuffix(".schema.json") for path in FOLDER.glob("*.json"))
-    assert stored == FILES
+    assert stored == sorted([*FILES, *TABLES])
     page = (FOLDER / "README.md").read_text(encoding="utf-8")
-    assert all(f"({file}.schema.json)" in page for file in FILES)
+    assert all(f"({file}.schema.json)" in page for file in stored)
 
 
-@pytest.mark.parametrize("file", FILES)
+@pytest.mark.parametrize("file", [*FILES, *TABLES])
 def test_stored_as_generated(file: str) -> None:
+    if file in TABLES:
+        pytest.importorskip("pinocchio")
     stored = json.loads((FOLDER / f"{file}.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator.check_schema(stored)
     generated = json.loads(WRITE.schema_text(file))
@@ -95,6 +102,19 @@ def test_every_format_is_written_here() -> None:
 def test_shipped_instances_are_valid(path: Path) -> None:
     document = json.loads(path.read_text(encoding="utf-8"))
     schema_of(document).validate(document)
+
+
+@pytest.mark.parametrize(
+    ("file", "path"), [(file, path) for file, paths in TABLES.items() for path in paths]
+)
+def test_shipped_tables_are_valid(file: str, path: Path) -> None:
+    table = tomllib.loads(path.read_text(encoding="utf-8"))
+    validator(file).validate(table)
+    assert not validator(file).is_valid(table | {"other": 1})
+    if file == "scene":
+        for kind, valid in (("torus", True), ("pipe", False), ("rectangle", False)):
+            changed = table | {"object": {"kind": kind, "tube_m": 0.1}}
+            assert validator(file).is_valid(changed) == valid
 
 
 def read(document: Document) -> None:
