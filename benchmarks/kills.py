@@ -44,7 +44,7 @@ def disagreeing(count, *_):
     for number in range(count):
         time.sleep(0.02)
         yield Outcome(number, "hubs", 5, 4, None, None, (Wrong("!", text),), 0.0)
-module.campaign = disagreeing
+module.outcomes_of_campaign = disagreeing
 from cellcolor.cli import main
 sys.exit(main())
 """

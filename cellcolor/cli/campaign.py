@@ -20,7 +20,7 @@ from cellcolor.data import surface as surface_file
 from cellcolor.errors import InputError
 from cellcolor.files.temporary import remove_strays
 from cellcolor.files.writing import Output, is_folder_or_nothing, kind_of_format, write
-from cellcolor.lab.campaign.pool import Outcome, campaign
+from cellcolor.lab.campaign.pool import Outcome, outcomes_of_campaign
 from cellcolor.lab.campaign.summary import Summary, Tally
 
 
@@ -33,7 +33,7 @@ def run_campaign(count: int, seed: int, time_limit: float, jobs: int, output: Pa
     interrupted = False
     with _progress(count) as advance:
         try:
-            for outcome in campaign(count, seed, time_limit, jobs):
+            for outcome in outcomes_of_campaign(count, seed, time_limit, jobs):
                 summary.add(outcome)
                 _keep(outcome, seed, output)
                 advance(summary)

@@ -20,7 +20,7 @@ from cellcolor.pictures.interface import Given
 from cellcolor.pictures.registry import make_picture
 
 if TYPE_CHECKING:
-    from cellcolor.pictures.interface import Drawn, Part, Picture
+    from cellcolor.pictures.interface import Drawn, Picture, Source
 
 __all__ = ["Drawing", "View", "draw", "kind_of_picture", "picture_of", "show"]
 
@@ -165,7 +165,7 @@ def picture_of(view: View) -> Picture:
         InputError: there is no such picture, or an option is missing or too much.
     """
     picture = make_picture(view.name)
-    options: dict[Part, object] = {
+    options: dict[Source, object] = {
         "color": view.color,
         "vertex": view.vertex,
         "branch": view.branch,
@@ -205,7 +205,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     def branch() -> int:
         return _number(subject.reasons.branches, view.branch, file, "branch")
 
-    make: dict[Part, Callable[[], object]] = {
+    make: dict[Source, Callable[[], object]] = {
         "build": subject.build,
         "surface": lambda: subject.surface,
         "graph": subject.graph,
@@ -219,7 +219,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     if "surface" in picture.needs and not subject.names_surface:
         message = "is missing: without a surface only the graph can be shown (--graph)"
         raise InputError(file, "surface", message)
-    asked: dict[Part, object] = {
+    asked: dict[Source, object] = {
         "color": view.color,
         "vertex": view.vertex,
         "branch": view.branch,

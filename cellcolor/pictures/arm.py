@@ -14,7 +14,7 @@ from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.obstacle import Obstacle
-from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
@@ -26,14 +26,14 @@ _ALONG = 10
 _GRID = 13
 _LINKS = (*LINES[:-1], "#888888")  # shading does not show on black
 Triangles = NDArray[np.int64]
-Mesh = tuple[Array, Triangles]
+_Mesh = tuple[Array, Triangles]
 
 
 class ArmPicture:
     """The arm on a vertex."""
 
-    needs: tuple[Part, ...] = ("build", "vertex", "branch")
-    takes: tuple[Part, ...] = ()
+    needs: tuple[Source, ...] = ("build", "vertex", "branch")
+    takes: tuple[Source, ...] = ()
 
     def draw(self, given: Given) -> Picture3D:
         """The arm in the configuration that was found valid there.
@@ -65,7 +65,7 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     configuration = result.configurations[vertex, branch]
     poses = forward(robot, configuration[None])
 
-    links: dict[str, list[Mesh]] = {}
+    links: dict[str, list[_Mesh]] = {}
     for body in robot.bodies:
         links.setdefault(body.link, []).append(_placed(body, poses))
     layers = [
@@ -105,18 +105,18 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     )
 
 
-def _layer(name: str, color: str, mesh: Mesh) -> Layer:
+def _layer(name: str, color: str, mesh: _Mesh) -> Layer:
     return Layer(name, color, *mesh, solid=True)
 
 
-def _placed(body: Body, poses: Poses) -> Mesh:
+def _placed(body: Body, poses: Poses) -> _Mesh:
     mesh = _cylinder if body.flat else _capsule
     points, triangles = mesh(body.start, body.end, body.radius)
     turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
     return turned, triangles
 
 
-def _capsule(start: Array, end: Array, radius: float) -> Mesh:
+def _capsule(start: Array, end: Array, radius: float) -> _Mesh:
     """All points within ``radius`` of a segment, or a ball where its ends coincide."""
     latitudes = np.linspace(0, np.pi / 2, 6)[1:]
     back = [(0.0, -np.cos(a) * radius, np.sin(a) * radius) for a in latitudes]
@@ -126,13 +126,13 @@ def _capsule(start: Array, end: Array, radius: float) -> Mesh:
     return _turned(start, end, [(0.0, -radius, 0.0), *rings, (1.0, radius, 0.0)])
 
 
-def _cylinder(start: Array, end: Array, radius: float) -> Mesh:
+def _cylinder(start: Array, end: Array, radius: float) -> _Mesh:
     """A flat-ended cylinder."""
     rings = [(t, 0.0, radius) for t in np.linspace(0, 1, _ALONG + 1)]
     return _turned(start, end, [(0.0, 0.0, 0.0), *rings, (1.0, 0.0, 0.0)])
 
 
-def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]]) -> Mesh:
+def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]]) -> _Mesh:
     """A profile turned about the segment's axis; its first and last points lie on the axis.
 
     Each point of the profile is the share of the way from start to end, an offset along the axis
@@ -166,7 +166,7 @@ def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]])
     return points, triangles[np.linalg.norm(doubled, axis=1) > 1e-15]
 
 
-def _obstacle(obstacle: Obstacle, folder: Path) -> Mesh:
+def _obstacle(obstacle: Obstacle, folder: Path) -> _Mesh:
     points, triangles = obstacle.shell(folder)
     return obstacle.placed(points), triangles
 
@@ -181,7 +181,7 @@ def _ground(height: float, points: Array) -> SpaceLines:
     return SpaceLines("ground", "#AAAAAA", np.concatenate([along_x, along_y]))
 
 
-def _joined(meshes: list[Mesh]) -> Mesh:
+def _joined(meshes: list[_Mesh]) -> _Mesh:
     counts = np.cumsum([0, *[len(points) for points, _ in meshes[:-1]]])
     return (
         np.concatenate([points for points, _ in meshes]),

@@ -9,7 +9,7 @@ from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
-from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, FAINT, GREY, assign
 from cellcolor.pictures.picture import Picture3D
@@ -30,8 +30,8 @@ __all__ = [
 class CellPicture:
     """The surface by cell."""
 
-    needs: tuple[Part, ...] = ("surface", "decomposition")
-    takes: tuple[Part, ...] = ()
+    needs: tuple[Source, ...] = ("surface", "decomposition")
+    takes: tuple[Source, ...] = ()
 
     def draw(self, given: Given) -> Picture3D:
         """Every cell in a color of its own."""
@@ -41,8 +41,8 @@ class CellPicture:
 class ColorPicture:
     """The domain of one color."""
 
-    needs: tuple[Part, ...] = ("surface", "color")
-    takes: tuple[Part, ...] = ()
+    needs: tuple[Source, ...] = ("surface", "color")
+    takes: tuple[Source, ...] = ()
 
     def draw(self, given: Given) -> Picture3D:
         """Where the color is available, and where others are."""

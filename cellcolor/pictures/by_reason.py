@@ -13,7 +13,7 @@ from cellcolor.data.shares import GIVEN_UP
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.pictures.by_cell_and_color import shares
-from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import FAINT, REASONS
 from cellcolor.pictures.picture import Picture3D
@@ -26,8 +26,8 @@ _VALID = 0
 class ReasonPicture:
     """Why vertices are out of reach."""
 
-    needs: tuple[Part, ...] = ("surface", "reasons")
-    takes: tuple[Part, ...] = ("branch",)
+    needs: tuple[Source, ...] = ("surface", "reasons")
+    takes: tuple[Source, ...] = ("branch",)
 
     def draw(self, given: Given) -> Picture3D:
         """At best, or in the branch that is given."""

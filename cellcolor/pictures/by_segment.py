@@ -19,7 +19,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Curve
 from cellcolor.pictures.by_cell_and_color import bare_classes, bare_labels, neighboring, shares
-from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, assign
 from cellcolor.pictures.picture import Picture3D
@@ -32,8 +32,8 @@ _CUT = "#666666"
 class SegmentPicture:
     """The surface by the segments of a solution."""
 
-    needs: tuple[Part, ...] = ("surface", "decomposition", "solution")
-    takes: tuple[Part, ...] = ()
+    needs: tuple[Source, ...] = ("surface", "decomposition", "solution")
+    takes: tuple[Source, ...] = ()
 
     def draw(self, given: Given) -> Picture3D:
         """Every segment in a color of its own."""

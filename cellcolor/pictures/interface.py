@@ -15,12 +15,12 @@ if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult
     from cellcolor.pictures.by_reason import CandidateReasons
 
-__all__ = ["Drawn", "Given", "Part", "Picture"]
+__all__ = ["Drawn", "Given", "Picture", "Source"]
 
 Drawn: TypeAlias = Picture2D | Picture3D
 """What a picture consists of, before any library draws it."""
 
-Part = Literal[
+Source = Literal[
     "surface",
     "graph",
     "decomposition",
@@ -35,69 +35,69 @@ Part = Literal[
 
 
 class Given:
-    """What one picture is drawn of: the parts that it declares, and no others.
+    """What one picture is drawn of: the sources that it declares, and no others.
 
-    A part that is not there raises KeyError: it was not declared, or may be missing.
+    A source that is not there raises KeyError: it was not declared, or may be missing.
     """
 
-    def __init__(self, parts: Mapping[Part, Any]) -> None:
-        self._parts = parts
+    def __init__(self, sources: Mapping[Source, Any]) -> None:
+        self._sources = sources
 
-    def __contains__(self, part: Part) -> bool:
-        return part in self._parts
+    def __contains__(self, source: Source) -> bool:
+        return source in self._sources
 
     @property
     def surface(self) -> LabelledSurface:
         """The labelled surface."""
-        surface: LabelledSurface = self._parts["surface"]
+        surface: LabelledSurface = self._sources["surface"]
         return surface
 
     @property
     def graph(self) -> Instance:
         """The topological graph."""
-        graph: Instance = self._parts["graph"]
+        graph: Instance = self._sources["graph"]
         return graph
 
     @property
     def decomposition(self) -> Decomposition:
         """The topological graph and where it lies on the surface."""
-        decomposition: Decomposition = self._parts["decomposition"]
+        decomposition: Decomposition = self._sources["decomposition"]
         return decomposition
 
     @property
     def solution(self) -> Solution:
         """A solution of the graph with a division, which the checker has found valid."""
-        solution: Solution = self._parts["solution"]
+        solution: Solution = self._sources["solution"]
         return solution
 
     @property
     def reasons(self) -> CandidateReasons:
         """What became of every candidate of the scene that the surface was built from."""
-        reasons: CandidateReasons = self._parts["reasons"]
+        reasons: CandidateReasons = self._sources["reasons"]
         return reasons
 
     @property
     def build(self) -> BuildResult:
         """All that the front end found when it built the scene."""
-        build: BuildResult = self._parts["build"]
+        build: BuildResult = self._sources["build"]
         return build
 
     @property
     def color(self) -> int:
         """The number of a color of the surface."""
-        color: int = self._parts["color"]
+        color: int = self._sources["color"]
         return color
 
     @property
     def branch(self) -> int:
         """The number of an inverse-kinematic branch."""
-        branch: int = self._parts["branch"]
+        branch: int = self._sources["branch"]
         return branch
 
     @property
     def vertex(self) -> int:
         """The index of a vertex of the surface."""
-        vertex: int = self._parts["vertex"]
+        vertex: int = self._sources["vertex"]
         return vertex
 
 
@@ -105,11 +105,11 @@ class Picture(Protocol):
     """One way to look at a surface, a graph, a solution or an arm."""
 
     @property
-    def needs(self) -> tuple[Part, ...]:
+    def needs(self) -> tuple[Source, ...]:
         """What it cannot be drawn without."""
 
     @property
-    def takes(self) -> tuple[Part, ...]:
+    def takes(self) -> tuple[Source, ...]:
         """What it uses besides, where there is such a thing."""
 
     def draw(self, given: Given) -> Drawn:

@@ -6,15 +6,17 @@ counter-clockwise as seen from outside the object.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import networkx as nx
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.instance import OUTSIDE, Cell, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
-from cellcolor.pictures.interface import Given, Part
+from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import INK, LINES
 from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
@@ -25,12 +27,15 @@ _DEAD = "dead edge"
 _POINTS_WIDE = 480.0
 _SAMPLES = 33
 
+_Text = tuple[str, Array, float]
+"""A text, its place (2,), and its size in points."""
+
 
 class GraphPicture:
     """The topological graph."""
 
-    needs: tuple[Part, ...] = ("graph",)
-    takes: tuple[Part, ...] = ("surface", "decomposition")
+    needs: tuple[Source, ...] = ("graph",)
+    takes: tuple[Source, ...] = ("surface", "decomposition")
 
     def draw(self, given: Given) -> Picture2D:
         """The graph, its nodes near where their cells are if there is a surface."""
@@ -61,8 +66,8 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
         direction = np.array([np.cos(angles[dart]), np.sin(angles[dart])])
         return centers[owner[dart]] + radii[owner[dart]] * direction, direction
 
-    curves: list[PlaneLine] = []
-    texts: list[tuple[str, Array, float]] = []
+    lines: list[PlaneLine] = []
+    texts: list[_Text] = []
     for edge in instance.edges:
         sides = [dart for dart in (edge.id, -edge.id) if dart in owner]
         path = (
@@ -70,37 +75,22 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
         )
         colors = instance.joinable(edge.id)
         if not colors:
-            curves.append(PlaneLine(_DEAD, "#777777", path, 1.0, dashed=True))
+            lines.append(PlaneLine(_DEAD, "#777777", path, 1.0, dashed=True))
         for place, color in enumerate(colors):
             shifted = _beside(path, (place - (len(colors) - 1) / 2) * 2.2 * unit)
             name = f"{color}: {instance.colors[color]}"
-            curves.append(PlaneLine(name, LINES[color % len(LINES)], shifted, 2.0))
+            lines.append(PlaneLine(name, LINES[color % len(LINES)], shifted, 2.0))
         if len(instance.colors) > len(LINES) and colors:
             texts.append((",".join(map(str, colors)), path[len(path) // 2], 6.0))
 
-    shapes: list[Outline] = []
+    outlines: list[Outline] = []
     for cell in instance.cells:
-        center, radius = centers[cell.id], float(radii[cell.id])
-        bounds = np.linspace(0, 2 * np.pi, len(cell.colors) + 1) + np.pi / 2
-        for color, start, end in zip(cell.colors, bounds[:-1], bounds[1:], strict=True):
-            wedge = _arc(center, radius, start, end, hub=len(cell.colors) > 1)
-            shapes.append(Outline(LINES[color % len(LINES)], wedge))
-        shapes.append(Outline("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
-        if len(cell.loops) > 1:
-            shapes += [
-                Outline(INK, center + radius * np.array([[0.45], [0.86]]) * _direction(at))
-                for at in _gaps(cell.loops, angles)
-            ]
-        texts.append((str(cell.id), center, min(11.0, 0.45 * radius / unit)))
-        darts = sum(map(len, cell.loops))
-        size = min(7.0, 2.0 * radius / unit / max(darts, 6))
-        for loop in cell.loops:
-            for dart in loop:
-                at = center + 0.7 * radius * _direction(angles[dart])
-                texts.append((f"{dart:+d}", at, round(float(size), 2)))
+        shapes, numbers = _node(cell, centers[cell.id], float(radii[cell.id]), angles, unit)
+        outlines += shapes
+        texts += numbers
     # The legend has the colors in their order, dead edges last.
     order = [f"{color}: {name}" for color, name in enumerate(instance.colors)] + [_DEAD]
-    curves.sort(key=lambda curve: order.index(curve.name))
+    lines.sort(key=lambda line: order.index(line.name))
     notes = [
         "Node: a cell; its rim: the colors available there.",
         "Small numbers: its darts in cyclic order, counter-clockwise",
@@ -111,7 +101,40 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
         notes.append("Line colors repeat: the numbers on the edges tell colors apart.")
     cells, edges = count(len(instance.cells), "cell"), count(len(instance.edges), "edge")
     title = f"{instance.name}: {cells}, {edges}"
-    return Picture2D(title, tuple(curves), tuple(shapes), tuple(texts), tuple(notes))
+    return Picture2D(title, tuple(lines), tuple(outlines), tuple(texts), tuple(notes))
+
+
+def _node(
+    cell: Cell, center: Array, radius: float, angles: Mapping[int, float], unit: float
+) -> tuple[list[Outline], list[_Text]]:
+    """A cell: a disc with its colors on the rim, its number, and its darts around that.
+
+    Args:
+        cell: the cell.
+        center: (2,) of the disc.
+        radius: of the disc.
+        angles: where each dart stands, rad.
+        unit: one point of the printed picture.
+    """
+    shapes = []
+    bounds = np.linspace(0, 2 * np.pi, len(cell.colors) + 1) + np.pi / 2
+    for color, start, end in zip(cell.colors, bounds[:-1], bounds[1:], strict=True):
+        wedge = _arc(center, radius, start, end, hub=len(cell.colors) > 1)
+        shapes.append(Outline(LINES[color % len(LINES)], wedge))
+    shapes.append(Outline("#FFFFFF", _arc(center, 0.86 * radius, 0.0, 2 * np.pi, hub=False)))
+    if len(cell.loops) > 1:
+        shapes += [
+            Outline(INK, center + radius * np.array([[0.45], [0.86]]) * _direction(at))
+            for at in _gaps(cell.loops, angles)
+        ]
+    texts: list[_Text] = [(str(cell.id), center, min(11.0, 0.45 * radius / unit))]
+    darts = sum(map(len, cell.loops))
+    size = min(7.0, 2.0 * radius / unit / max(darts, 6))
+    for loop in cell.loops:
+        for dart in loop:
+            at = center + 0.7 * radius * _direction(angles[dart])
+            texts.append((f"{dart:+d}", at, round(float(size), 2)))
+    return shapes, texts
 
 
 def places_on(surface: LabelledSurface, decomposition: Decomposition) -> Array:
@@ -210,7 +233,7 @@ def _ring(instance: Instance, cell: int, centers: Array) -> dict[int, float]:
     return {dart: angle + turn for dart, angle in slots.items()}
 
 
-def _gaps(loops: tuple[tuple[int, ...], ...], angles: dict[int, float]) -> list[float]:
+def _gaps(loops: tuple[tuple[int, ...], ...], angles: Mapping[int, float]) -> list[float]:
     """The middle of the gap after each loop."""
     step = 2 * np.pi / (sum(map(len, loops)) + len(loops))
     return [angles[loop[-1]] + step for loop in loops]

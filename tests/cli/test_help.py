@@ -6,9 +6,6 @@ import pytest
 from commands import run
 
 import cellcolor.cli.commands
-import cellcolor.cli.solve
-import cellcolor.solvers.checked
-import cellcolor.solvers.cpsat.schemes.enumeration
 
 Capture = pytest.CaptureFixture[str]
 

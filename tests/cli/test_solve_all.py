@@ -15,10 +15,9 @@ import pytest
 from commands import json_lines, run
 from library import PAPER
 
-import cellcolor.cli.commands
 import cellcolor.cli.solve
 import cellcolor.solvers.checked
-import cellcolor.solvers.cpsat.schemes.enumeration
+import cellcolor.solvers.cpsat.schemes.scheme_model
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
 from cellcolor.deadline import OutOfTime
@@ -154,7 +153,7 @@ class TestAllSchemes:
         self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """The minimum is found all the same, and the solution says why there are no schemes."""
-        monkeypatch.setattr(cellcolor.solvers.cpsat.schemes.enumeration, "_MOST_LITERALS", 1)
+        monkeypatch.setattr(cellcolor.solvers.cpsat.schemes.scheme_model, "MOST_LITERALS", 1)
         out = tmp_path / "none.jsonl"
         assert run("solve", ZEROS, "--all", "-o", out) == 3
         solution = Solution.read(out)

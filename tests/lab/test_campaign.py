@@ -28,7 +28,7 @@ from cellcolor.lab.campaign.agreement import (
     compare_solvers,
 )
 from cellcolor.lab.campaign.cases import KINDS, draw_case
-from cellcolor.lab.campaign.pool import Outcome, Wrong, campaign, examine
+from cellcolor.lab.campaign.pool import Outcome, Wrong, examine, outcomes_of_campaign
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 from cellcolor.lab.campaign.summary import Summary
 from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
@@ -67,7 +67,7 @@ right_schemes = ReferenceSolver.optimal_schemes
 
 
 def test_solvers_agree_on_every_kind() -> None:
-    outcomes = list(campaign(2 * EVERY_KIND, 7, 20.0, 1))
+    outcomes = list(outcomes_of_campaign(2 * EVERY_KIND, 7, 20.0, 1))
     assert [outcome.number for outcome in outcomes] == list(range(2 * EVERY_KIND))
     for outcome in outcomes:
         assert not outcome.wrong, (outcome.kind, outcome.wrong)
@@ -93,7 +93,7 @@ def test_the_command_on_two_processes() -> None:
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     expected = Summary()
-    for outcome in campaign(4, 0, 20.0, 1):
+    for outcome in outcomes_of_campaign(4, 0, 20.0, 1):
         expected.add(outcome)
     for name, bins in expected.histograms().items():
         assert f"{name}: " + ", ".join(f"{v}: {n}" for v, n in bins) in done.stdout.splitlines()
@@ -255,7 +255,7 @@ def test_exit_code_says_whether_everything_was_compared(
         if ending == "interrupted":
             raise KeyboardInterrupt
 
-    monkeypatch.setattr("cellcolor.cli.campaign.campaign", some)
+    monkeypatch.setattr("cellcolor.cli.campaign.outcomes_of_campaign", some)
     assert main(["campaign", "--count", "9"]) == (0 if ending == "done" else 3)
     printed = capsys.readouterr()
     assert "seed 0, 1 instances" in printed.out

@@ -24,7 +24,7 @@ from cellcolor.lab.campaign.agreement import (
 from cellcolor.lab.campaign.cases import Case, draw_case
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 
-__all__ = ["Outcome", "Wrong", "campaign"]
+__all__ = ["Outcome", "Wrong", "outcomes_of_campaign"]
 
 SHRINK_SECONDS = 60.0
 """Seconds that are spent on making one disagreement small."""
@@ -68,7 +68,7 @@ class Outcome:
     seconds: float
 
 
-def campaign(count: int, seed: int, time_limit: float, jobs: int) -> Iterator[Outcome]:
+def outcomes_of_campaign(count: int, seed: int, time_limit: float, jobs: int) -> Iterator[Outcome]:
     """What came of each of ``count`` random instances, in the order in which they are done.
 
     Args:

@@ -9,14 +9,14 @@ from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
 from cellcolor.data.solution import Seam
 from cellcolor.union_find import UnionFind
 
-__all__ = ["Part", "seam_places", "split"]
+__all__ = ["ConnectedPart", "seam_places", "split"]
 
 Loops = tuple[tuple[tuple[int, ...], ...], ...]
 """For each cell its loops with live darts, each as these darts (``Instance.live_loops``)."""
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class ConnectedPart:
     """A connected part of an instance, in the colors that are left of each cell.
 
     Attributes:
@@ -45,7 +45,7 @@ def seam_places(instance: Instance, loops: Loops) -> tuple[Seam, ...]:
     return tuple(seams)
 
 
-def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Part]:
+def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[ConnectedPart]:
     """The parts of an instance that live edges connect, the smallest first.
 
     Segments never reach from one into another, so their minima and bounds add up.
@@ -78,7 +78,7 @@ def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Part]:
             sides = [number[s] if s in here else OUTSIDE for s in (edge.left, edge.right)]
             edges.append(Edge(edge_id, sides[0], sides[1], live.get(edge_id, ())))
         parts.append(
-            Part(
+            ConnectedPart(
                 Instance(
                     instance.name,
                     instance.colors,

@@ -30,7 +30,7 @@ from cellcolor.solvers.cpsat.model.full import (
 )
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, moved, segments_of
 from cellcolor.solvers.cpsat.model_runs import Runner
-from cellcolor.solvers.cpsat.parts import Part
+from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
@@ -77,7 +77,7 @@ class PartSearch:
     """
 
     def __init__(
-        self, part: Part, options: Options, runner: Runner, report: Callable[[], None]
+        self, part: ConnectedPart, options: Options, runner: Runner, report: Callable[[], None]
     ) -> None:
         self._part = part
         self._instance = part.instance

@@ -14,7 +14,7 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.errors import TooLarge
 from cellcolor.lab.families import hub
 from cellcolor.solvers.cpsat import CpSatSolver
-from cellcolor.solvers.cpsat.schemes import enumeration
+from cellcolor.solvers.cpsat.schemes import enumeration, scheme_model
 from cellcolor.solvers.interface import Options
 
 RED, BLUE = 0, 1
@@ -92,14 +92,14 @@ def test_a_model_of_schemes_that_is_too_large_is_not_built(
     """What is counted beforehand is about what there would be."""
     instance = hub(0, 60, 3)
     graph = graph_of(instance)
-    model = enumeration._SchemeModel(graph, 20, NEVER).model
+    model = scheme_model.SchemeModel(graph, 20, NEVER).model
     literals = sum(
         len(constraint.bool_or.literals) + len(constraint.at_most_one.literals)
         for constraint in model.proto.constraints
     )
-    monkeypatch.setattr(enumeration, "_MOST_LITERALS", 1.5 * literals)
-    enumeration._check_size(graph, NEVER)
-    monkeypatch.setattr(enumeration, "_MOST_LITERALS", 0.7 * literals)
+    monkeypatch.setattr(scheme_model, "MOST_LITERALS", 1.5 * literals)
+    scheme_model.check_size(graph, NEVER)
+    monkeypatch.setattr(scheme_model, "MOST_LITERALS", 0.7 * literals)
     with pytest.raises(TooLarge, match="one cell has 60 darts"):
         next(CpSatSolver().optimal_schemes(instance, Options(), 20))
 
