@@ -59,6 +59,22 @@ class _Written:
     parts: tuple[tuple[frozenset[Strand], ...], ...]
 
 
+@dataclass(frozen=True, slots=True)
+class _Alone:
+    """A cell alone, a petal of the sub-cell's color across each dart in state 1.
+
+    Attributes:
+        instance: the cell, with a color for each sub-cell and for each corner of a seam that lies
+            after a dart in state 0; and the petals.
+        local: the edge of the small instance for each dart of the cell that it has.
+        seams: the cell's seams in the small instance, as wide as they can have to be.
+    """
+
+    instance: Instance
+    local: dict[int, int]
+    seams: list[Seam]
+
+
 class SeamWriter:
     """Writes paintings of one graph whose cells have their loops apart.
 
@@ -138,6 +154,50 @@ class SeamWriter:
         self, number: int, blocks: Sequence[frozenset[int]], seams: Sequence[Seam]
     ) -> _Written | None:
         """Paint the cell alone, a color for each sub-cell; None if that cannot be drawn."""
+        alone = self._cell_alone(number, blocks, seams)
+        instance = alone.instance
+        if seams_size(alone.seams) > LARGEST_MODEL:
+            return None
+        colors = [frozenset(cell.colors) for cell in instance.cells]
+        small = dart_graph(instance, colors, dict.fromkeys(alone.local.values(), 1), alone.seams)
+        if (size := model_size(small)) > LARGEST_MODEL:
+            raise TooLarge(too_large(size))
+        built = full_model(small, color_regions(instance))
+        segments = len(instance.colors)
+        fewest_subcells(built.model, small, built.variables, built.variables.alone, segments)
+        solver, status = self._solve(built.model)
+        if status == cp_model.INFEASIBLE:
+            return None
+        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            raise OutOfTime("there was no time to draw the sub-cells of a cell")
+        pieces = [
+            (block.color, [small.darts[dart].name for dart in block.darts])
+            for block in read_painting(small, built.variables, solver)[0]
+            if block.color < len(blocks)
+        ]
+        # Names of the small instance become those of the large one, idle strands are left out.
+        used = [
+            sorted(
+                {strand for _, names in pieces for dart, strand in names if abs(dart) == seam.id}
+            )
+            for seam in alone.seams
+        ]
+        name = {(n, 1): self.graph.darts[dart].name for dart, n in alone.local.items()}
+        for seam, its, strands in zip(seams, alone.seams, used, strict=True):
+            for rank, strand in enumerate(strands, start=1):
+                name |= {(sign * its.id, strand): (sign * seam.id, rank) for sign in (1, -1)}
+        return _Written(
+            tuple(map(len, used)),
+            tuple(
+                tuple(frozenset(name[n] for n in names) for c, names in pieces if c == color)
+                for color in range(len(blocks))
+            ),
+        )
+
+    def _cell_alone(
+        self, number: int, blocks: Sequence[frozenset[int]], seams: Sequence[Seam]
+    ) -> _Alone:
+        """The small instance in which a cell's sub-cells are drawn."""
         graph = self.graph
         loops = graph.loops[number]
         corners = [
@@ -151,7 +211,12 @@ class SeamWriter:
         for corner in corners:  # a corner after a dart in state 0 needs that dart
             if corner not in color_of:
                 color_of[corner], spare = spare, spare + 1
-        kept = [[dart for dart in loop if dart in color_of] for loop in loops]
+        # A seam is put in after the first dart of a loop (``dart_graph``): the corner comes first.
+        turned = [
+            [*loop[loop.index(corner) :], *loop[: loop.index(corner)]]
+            for loop, corner in zip(loops, corners, strict=True)
+        ]
+        kept = [[dart for dart in loop if dart in color_of] for loop in turned]
         local = {dart: n for n, dart in enumerate((d for loop in kept for d in loop), start=1)}
         many = tuple(range(spare))
         instance = Instance(
@@ -169,42 +234,7 @@ class SeamWriter:
                 zip(corners[1:], enough_strands([len(loop) for loop in kept]), strict=True), start=1
             )
         ]
-        colors = [frozenset(cell.colors) for cell in instance.cells]
-        if seams_size(own) > LARGEST_MODEL:
-            return None
-        small = dart_graph(instance, colors, dict.fromkeys(local.values(), 1), own)
-        if (size := model_size(small)) > LARGEST_MODEL:
-            raise TooLarge(too_large(size))
-        built = full_model(small, color_regions(instance))
-        fewest_subcells(built.model, small, built.variables, built.variables.alone, spare)
-        solver, status = self._solve(built.model)
-        if status == cp_model.INFEASIBLE:
-            return None
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            raise OutOfTime("there was no time to draw the sub-cells of a cell")
-        pieces = [
-            (block.color, [small.darts[dart].name for dart in block.darts])
-            for block in read_painting(small, built.variables, solver)[0]
-            if block.color < len(blocks)
-        ]
-        # Names of the small instance become those of the large one, idle strands are left out.
-        used = [
-            sorted(
-                {strand for _, names in pieces for dart, strand in names if abs(dart) == seam.id}
-            )
-            for seam in own
-        ]
-        name = {(n, 1): graph.darts[dart].name for dart, n in local.items()}
-        for seam, its, strands in zip(seams, own, used, strict=True):
-            for rank, strand in enumerate(strands, start=1):
-                name |= {(sign * its.id, strand): (sign * seam.id, rank) for sign in (1, -1)}
-        return _Written(
-            tuple(map(len, used)),
-            tuple(
-                tuple(frozenset(name[n] for n in names) for c, names in pieces if c == color)
-                for color in range(len(blocks))
-            ),
-        )
+        return _Alone(instance, local, own)
 
 
 def _forest(loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> bool:
