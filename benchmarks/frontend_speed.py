@@ -19,7 +19,7 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import Reason, Scene, build_surface
+from cellcolor.frontend import Scene, build_surface
 from cellcolor.frontend.contact.collision import body_shape
 from cellcolor.frontend.prepared import PreparedScene, prepare
 
@@ -72,25 +72,25 @@ class Loop:
         self.region.setTransform(fcl.Transform(middle.rotation, middle.translation))
         return any(self.touch(obstacle, self.region) for obstacle in self.obstacles)
 
-    def __call__(self, q: Array) -> Reason:
+    def __call__(self, q: Array) -> str:
         prepared, robot = self.prepared, self.prepared.robot
         thresholds, task = prepared.setup.thresholds, prepared.setup.task
         if (q < robot.lower).any() or (q > robot.upper).any():
-            return Reason.JOINT_LIMITS
+            return "joint limits"
         pose = pin.framesForwardKinematics(self.model, self.data, q) or self.data.oMf[self.tip]
         if self.tip_blocked(pose):
-            return Reason.TIP_BLOCKED
+            return "tip blocked"
         jacobian = pin.computeFrameJacobian(
             self.model, self.data, q, self.tip, pin.ReferenceFrame.LOCAL
         )
         torque = pin.computeGeneralizedGravity(self.model, self.data, q)
         if (np.abs(torque + task.normal_force_n * jacobian[2]) > robot.effort).any():
-            return Reason.TORQUE
+            return "torque"
         linear = jacobian[:3, :5]
         if np.sqrt(max(np.linalg.det(linear @ linear.T), 0)) < thresholds.min_manipulability_m3:
-            return Reason.MANIPULABILITY
+            return "manipulability"
         if abs(np.linalg.det(jacobian[:5, :5])) < thresholds.min_task_determinant_m3:
-            return Reason.TASK_DETERMINANT
+            return "task determinant"
         pin.forwardKinematics(self.model, self.data, q)
         poses = [self.data.oMi[body.joint] * at
                  for body, at in zip(robot.bodies, self.local, strict=True)]  # fmt: skip
@@ -104,18 +104,18 @@ class Loop:
                     pose.translation[2] - up * body.length / 2 - around
                     < prepared.scene.ground.height_m
                 ):
-                    return Reason.GROUND
+                    return "ground"
         for shape, pose in zip(self.shapes, poses, strict=True):
             shape.setTransform(fcl.Transform(pose.rotation, pose.translation))
         if any(self.touch(self.shapes[i], self.shapes[j]) for i, j in robot.tested_pairs):
-            return Reason.SELF_COLLISION
+            return "self collision"
         moving = [s for s, b in zip(self.shapes, robot.bodies, strict=True) if b.joint][::-1]
         for obstacle in self.obstacles:
             if any(self.touch(obstacle, shape) for shape in moving):
-                return Reason.OBSTACLE_COLLISION
+                return "obstacle collision"
         if any(self.touch(self.object, shape) for shape in moving):
-            return Reason.OBJECT_COLLISION
-        return Reason.VALID
+            return "object collision"
+        return "valid"
 
 
 def main(scene: Path, vertices: int, sample: int) -> None:
@@ -138,8 +138,11 @@ def main(scene: Path, vertices: int, sample: int) -> None:
 
     loop = Loop(prepared)
     rows = np.random.default_rng(0).choice(candidates, min(sample, candidates), replace=False)
-    joints, expected = result.configurations.reshape(-1, 6)[rows], result.reasons.flat[rows]
-    solved = expected != Reason.NO_SOLUTION
+    joints, expected = (
+        result.configurations.reshape(-1, 6)[rows],
+        np.array(result.reason_names)[result.reasons.flat[rows]],
+    )
+    solved = expected != "no solution"
     started = time.perf_counter()
     found = [loop(q) for q in joints[solved]]
     spent = (time.perf_counter() - started) / len(rows)

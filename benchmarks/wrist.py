@@ -26,12 +26,12 @@ from pathlib import Path
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.validity import Reason
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.target.placement import rotation_from_rpy
 
@@ -84,7 +84,7 @@ def judged(prepared: PreparedScene) -> tuple[Mask, Array]:
     above = np.full(verdicts.reasons.shape, np.nan)
     solved = ~np.isnan(verdicts.configurations[:, 0])
     above[solved] = heights(prepared.robot, verdicts.configurations[solved])
-    return (verdicts.reasons == Reason.VALID).reshape(-1, 8), above.reshape(-1, 8)
+    return (verdicts.reasons == VALID).reshape(-1, 8), above.reshape(-1, 8)
 
 
 def count(name: str) -> None:

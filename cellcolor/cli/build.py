@@ -60,10 +60,8 @@ def _build_scene(source: Path, output: Path) -> Instance:
     files = [Output(output, _INSTANCE, [instance.to_json().encode()])]
     if not alone:
         # The instance last: it carries the fingerprint of its surface.
-        from cellcolor.frontend.candidates_file import side_file
-
         files = [
-            Output(side_path, SIDE_FILE, [side_file(built)]),
+            Output(side_path, SIDE_FILE, [built.candidates.to_bytes()]),
             Output(surface_path, _SURFACE, [surface.to_json().encode()]),
             *files,
         ]

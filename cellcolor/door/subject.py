@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
+from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
@@ -23,7 +24,6 @@ from cellcolor.files.documents import read_document
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
-    from cellcolor.pictures.by_reason import CandidateReasons
 
 __all__ = ["Solvable", "Subject", "build_scene", "is_scene", "open_subject", "read_graph"]
 
@@ -98,23 +98,17 @@ class Subject:
         return made
 
     @cached_property
-    def reasons(self) -> CandidateReasons:
+    def reasons(self) -> CandidateTable:
         """What became of the candidates of a scene, or of the one that the surface was built from.
 
         Raises:
             InputError: it is a value that no front end has built, or there is no file of them.
         """
-        from cellcolor.pictures.by_reason import CandidateReasons, read_candidate_reasons
-
         if self.built is None:
             if self.surface_path is None:
                 raise InputError(None, "reasons", "are known of a scene, or of a surface's file")
-            return read_candidate_reasons(self.surface, self.surface_path)
-        from cellcolor.frontend import Reason
-
-        names = tuple(reason.text for reason in Reason)
-        built = self.built
-        return CandidateReasons(built.branches, names, built.reasons, built.node_color)
+            return CandidateTable.beside(self.surface, self.surface_path)
+        return self.built.candidates
 
     def build(self) -> BuildResult:
         """What the front end found.

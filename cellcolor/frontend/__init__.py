@@ -5,9 +5,8 @@ imports those.
 """
 
 from cellcolor.frontend.build import BuildResult, build_surface
-from cellcolor.frontend.reach.validity import Reason
 from cellcolor.frontend.report import BuildReport, ColorReport
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 
-__all__ = ["BuildReport", "BuildResult", "ColorReport", "Reason", "Scene", "Setup", "build_surface"]
+__all__ = ["BuildReport", "BuildResult", "ColorReport", "Scene", "Setup", "build_surface"]

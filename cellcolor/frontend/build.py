@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.comparing import same_members
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
@@ -39,9 +40,8 @@ class BuildResult:
         surface: what the decomposition takes.
         branches: names of the inverse-kinematic branches, eight of a UR-type arm.
         configurations: (n, branches, joints) in rad, NaN where a branch has no solution.
-        reasons: (n, branches) uint8 codes of
-            :class:`~cellcolor.frontend.reach.validity.Reason`, the first test that a candidate
-            fails.
+        reasons: (n, branches) uint8 codes, the first test that a candidate fails.
+        reason_names: what the codes mean: valid, no solution, and the tests in their order.
         node_color: (n, branches) the color of each valid candidate, -1 for the others and for
             those that a sliver policy took away.
         report: the same in numbers for people.
@@ -54,11 +54,24 @@ class BuildResult:
     branches: tuple[str, ...]
     configurations: Array
     reasons: NDArray[np.uint8]
+    reason_names: tuple[str, ...]
     node_color: NDArray[np.int64]
     report: BuildReport
     stages: Stages = field(compare=False)  # what came of them is compared
     scene: Scene = field(compare=False)
     robot: Robot = field(compare=False)
+
+    @property
+    def candidates(self) -> CandidateTable:
+        """What the side file holds."""
+        return CandidateTable(
+            self.branches,
+            self.reason_names,
+            self.reasons,
+            self.configurations,
+            self.node_color,
+            self.surface.sha256,
+        )
 
     def __eq__(self, other: object) -> bool:
         return same_members(self, other) if isinstance(other, BuildResult) else NotImplemented
@@ -104,9 +117,10 @@ def build_surface(
         deadline.check()
     return BuildResult(
         surface=labelled,
-        branches=prepared.branches,
+        branches=prepared.kinematics.branches,
         configurations=stages.candidates.configurations,
         reasons=stages.candidates.reasons,
+        reason_names=stages.candidates.reason_names,
         node_color=stages.cleaned.coloring.node_color,
         report=report,
         stages=stages,
@@ -134,11 +148,11 @@ def _labelled(
 def _report(prepared: PreparedScene, stages: Stages, seconds: dict[str, float]) -> BuildReport:
     notes = prepared.robot.warnings + (() if prepared.coarse is None else (prepared.coarse,))
     return make_report(
-        survey(prepared.surface, prepared.geometry),
+        survey(prepared.surface, prepared.kinematics.viewpoints),
         prepared.surface,
         stages.candidates,
         stages.cleaned.coloring,
-        prepared.branches,
+        prepared.kinematics.branches,
         len(stages.cleaned.cracks),
         seconds,
         notes,

@@ -10,25 +10,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.conditioning import Conditioning, conditioning, task_determinants
+from cellcolor.frontend.arm.conditioning import conditioning, task_determinants
+from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot, load_robot
-from cellcolor.frontend.arm.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.contact.collision import body_ends
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.reach.coarse import too_coarse
-from cellcolor.frontend.reach.validity import Judge, Reason
+from cellcolor.frontend.reach.postures import Workplace
+from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.setup import RobotFiles, Setup
+from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points
 from cellcolor.frontend.tables import in_file
 from cellcolor.frontend.target.surface import Surface
 
-__all__ = ["PreparedScene", "prepare", "robot_of"]
+__all__ = ["PreparedScene", "family_of", "prepare", "robot_of"]
 
 _AT_ONCE = 20_000  # points; inverse kinematics keeps some kilobytes for each
 
@@ -38,44 +40,44 @@ class PreparedScene:
     """A scene, ready for questions about configurations.
 
     Attributes:
+        workplace: the arm, and what stands around it.
+        kinematics: the arm's inverse kinematics.
         surface: what has to be covered, in the world.
-        conditioning: the thresholds for this arm.
         judge: the tests.
-        tip: where the tool works.
         coarse: what could stand unnoticed between two vertices, a sentence; None if nothing.
         deadline: when to give up.
     """
 
     scene: Scene
-    setup: Setup
-    robot: Robot
-    geometry: UrGeometry
-    conditioning: Conditioning
+    workplace: Workplace
+    kinematics: InverseKinematics
     surface: Surface
     judge: Judge
-    tip: Tip
     coarse: str | None
     deadline: Deadline
 
+    @property
+    def setup(self) -> Setup:
+        """The scene's."""
+        return self.scene.setup
+
+    @property
+    def robot(self) -> Robot:
+        """Arm and tool."""
+        return self.workplace.robot
+
     def inverse(self, points: Array, directions: Array) -> Array:
-        """All branches (n, 8, 6) in rad; see :func:`~cellcolor.frontend.arm.ur.solve_inverse`."""
-        found = np.empty((len(points), len(BRANCHES), len(self.robot.axis)))
-        locked = self.setup.robot.locked_joint_6_rad
+        """All branches (n, branches, joints) in rad; see :class:`InverseKinematics`."""
+        found = np.empty((len(points), len(self.kinematics.branches), self.robot.joints))
         for first in range(0, len(points), _AT_ONCE):
             self.deadline.check()
             rows = slice(first, first + _AT_ONCE)
-            found[rows] = solve_inverse(self.geometry, points[rows], directions[rows], locked)
+            found[rows] = self.kinematics.solve(points[rows], directions[rows])
         return found
-
-    @property
-    def branches(self) -> tuple[str, ...]:
-        """Names of the inverse-kinematic branches."""
-        return BRANCHES
 
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, joints) in rad, NaN where it has no solution."""
-        locked = self.setup.robot.locked_joint_6_rad
-        return solve_inverse(self.geometry, points, directions, locked, branches)[:, 0]
+        return self.kinematics.solve(points, directions, branches)[:, 0]
 
     def probe(
         self, points: Array, directions: Array, branches: NDArray[np.intp]
@@ -83,7 +85,7 @@ class PreparedScene:
         """Well-conditioned configurations; see :data:`~cellcolor.frontend.reach.smooth.Probe`."""
         self.deadline.check()
         found = self.follow(points, directions, branches)
-        limits = self.conditioning if self.setup.constraints.conditioning else None
+        limits = self.workplace.conditioning if self.setup.constraints.conditioning else None
         return found, task_determinants(self.robot, found, limits)
 
     def test(
@@ -91,7 +93,7 @@ class PreparedScene:
     ) -> tuple[Mask, Array]:
         """Is a branch valid there; see :data:`~cellcolor.frontend.reach.between.Test`."""
         verdicts = self.judge(self.follow(points, directions, branches))
-        return np.asarray(verdicts.reasons == Reason.VALID), verdicts.ends
+        return np.asarray(verdicts.reasons == VALID), verdicts.ends
 
 
 def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> PreparedScene:
@@ -114,29 +116,23 @@ def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> P
 
 def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     setup = scene.setup
-    robot = robot_of(setup)
-    geometry = ur_geometry(robot)
-    if geometry.reach > abs(geometry.a2) + abs(geometry.a3):
-        raise InputError(
-            str(robot.files[1]),
-            f"link[{setup.robot.tip_link}]",
-            f"the tool is longer than the arm: tip {geometry.reach:.3f} m from the wrist",
-        )
+    with in_file(setup.file):
+        robot = _robot(setup)
+        kinematics = family_of(setup)(robot, setup.robot)
     surface = scene.object.surface(scene.folder, deadline).placed(scene.placement)
     lengths = surface.lengths(surface.edges())
     with in_file(setup.file):
         _check_spacings(setup, lengths)
-    limits = conditioning(setup, geometry)
-    solids = _solids(robot, scene, surface, deadline)
+    obstacles, target = _solids(robot, scene, surface, deadline)
     height = None if scene.ground is None else scene.ground.height_m
-    tip = Tip(robot, setup.task.contact_radius_m, solids[0], height)
-    judge = Judge(robot, setup, limits, height, *solids, tip, deadline)
+    tip = Tip(robot, setup.task.contact_radius_m, obstacles, height)
+    limits = conditioning(setup, kinematics.reach)
+    workplace = Workplace(robot, setup, limits, height, tuple(obstacles), target, tip)
+    judge = Judge(workplace, scene.validity_test, deadline)
     coarse = None
     if setup.constraints.collision:
-        coarse = too_coarse(robot, solids[0], float(lengths.max()))
-    return PreparedScene(
-        scene, setup, robot, geometry, limits, surface, judge, tip, coarse, deadline
-    )
+        coarse = too_coarse(robot, obstacles, float(lengths.max()))
+    return PreparedScene(scene, workplace, kinematics, surface, judge, coarse, deadline)
 
 
 def _check_spacings(setup: Setup, lengths: Array) -> None:
@@ -152,24 +148,32 @@ def robot_of(setup: Setup) -> Robot:
     Raises:
         InputError: a URDF cannot be used, or a key of the setup does not fit it.
     """
-    files, folder = setup.robot, setup.folder
-    arm, tool = (
-        _urdf(files.arm_urdf, "arm_urdf", folder),
-        _urdf(files.tool_urdf, "tool_urdf", folder),
-    )
-    robot = load_robot(arm, files.flange_link, tool, files.tip_link)
     with in_file(setup.file):
-        _check_robot(robot, files)
-    return robot
+        return _robot(setup)
 
 
-def _check_robot(robot: Robot, files: RobotFiles) -> None:
-    if not robot.lower[5] <= files.locked_joint_6_rad <= robot.upper[5]:
-        message = "outside the limits of the sixth joint"
-        raise InputError(None, "robot.locked_joint_6_rad", message)
+def family_of(setup: Setup) -> type[InverseKinematics]:
+    """The family of arms that a setup names.
+
+    Raises:
+        InputError: there is no such family, or it cannot be imported.
+    """
+    try:
+        return KINEMATICS.find(setup.robot.kinematics)
+    except InputError as error:
+        raise InputError(None, "robot.kinematics", error.message) from error
+
+
+def _robot(setup: Setup) -> Robot:
+    files, folder = setup.robot, setup.folder
+    arm = _urdf(files.arm_urdf, "arm_urdf", folder)
+    tool = _urdf(files.tool_urdf, "tool_urdf", folder)
+    joints = family_of(setup).joints
+    robot = load_robot(arm, files.flange_link, tool, files.tip_link, joints)
     unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
     if unknown:
         raise InputError(None, "robot.may_touch_ground", f"no solid link {min(unknown)!r}")
+    return robot
 
 
 def _urdf(named: str, key: str, folder: Path) -> Urdf:
@@ -188,7 +192,7 @@ def _solids(
     if scene.collision_object is not None:
         body = scene.collision_object.surface(scene.folder, deadline).placed(scene.placement)
     target = mesh_solid(body.vertices, body.faces, deadline)
-    at_zero = body_ends(robot, forward(robot, np.zeros((1, len(robot.axis)))))
+    at_zero = body_ends(robot, forward(robot, np.zeros((1, robot.joints))))
     blocked = target.touched_by_fixed(robot, at_zero)
     if blocked is not None and scene.setup.constraints.collision:
         raise InputError(None, "placement", f"the object stands in the robot's {blocked!r}")

@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellcolor.data.wording import count
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
-from cellcolor.frontend.reach.validity import Candidates, Reason
+from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.survey import Survey
 from cellcolor.frontend.target.surface import Surface
 
@@ -113,7 +114,7 @@ def make_report(
     """Count what a build found."""
     areas = surface.vertex_areas()
     reached = candidates.valid.any(axis=1)
-    # Numbered in the order of the tests; a blocked tip is so for all branches that reach there.
+    # Codes are in the order of the tests.
     farthest = candidates.reasons.max(axis=1)[~reached]
     vertex, branch = np.nonzero(coloring.node_color >= 0)
     color = coloring.node_color[vertex, branch]
@@ -131,11 +132,17 @@ def make_report(
         reachable=int(reached.sum()),
         area_m2=float(areas.sum()),
         reachable_area_m2=float(areas[reached].sum()),
-        candidates={reason.text: int((candidates.reasons == reason).sum()) for reason in Reason},
-        unreachable={reason.text: int(np.sum(farthest == reason)) for reason in Reason if reason},
+        candidates=_counts(candidates.reasons.ravel(), candidates.reason_names, 0),
+        unreachable=_counts(farthest, candidates.reason_names, 1),
         colors=tuple(colors),
         cracks=cracks,
         seconds=seconds,
         notes=notes,
         slivers=slivers,
     )
+
+
+def _counts(reasons: NDArray[np.uint8], names: tuple[str, ...], first: int) -> dict[str, int]:
+    """How often each reason occurs, from the code ``first`` on, by its name."""
+    counts = np.bincount(reasons, minlength=len(names)).tolist()
+    return dict(zip(names[first:], counts[first:], strict=True))

@@ -13,9 +13,11 @@ from pydantic import (
     SerializerFunctionWrapHandler,
     ValidationInfo,
     field_serializer,
+    model_serializer,
 )
 
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
+from cellcolor.frontend.reach.validity_test import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table
@@ -48,6 +50,14 @@ def _obstacle(content: Any) -> Obstacle:
     return found
 
 
+def _test(content: Any) -> ValidityTest:
+    if isinstance(content, ValidityTest):
+        return content
+    found = of_kind(VALIDITY_TESTS, content)
+    assert isinstance(found, ValidityTest)
+    return found
+
+
 def _setup(content: Any, info: ValidationInfo) -> Any:
     """A setup by its file's name is read."""
     if isinstance(content, str) and "folder" in info.data:
@@ -56,6 +66,7 @@ def _setup(content: Any, info: ValidationInfo) -> Any:
 
 
 AnyPart = Annotated[SerializeAsAny[Part], PlainValidator(_part)]
+AnyTest = Annotated[SerializeAsAny[ValidityTest], PlainValidator(_test)]
 AnyObstacle = Annotated[SerializeAsAny[Obstacle], PlainValidator(_obstacle)]
 
 
@@ -63,7 +74,8 @@ class Scene(FileTable):
     """An object, where it stands, and what else is there: ground and obstacles.
 
     ``object`` is what has to be covered. It is what must not be hit as well, unless
-    ``collision_object`` is given, in the same frame. A scene is a value: what varies it makes a
+    ``collision_object`` is given, in the same frame. A ``validity_test`` is made after the standard
+    ones. A scene is a value: what varies it makes a
     new one, and holds it to the same rules as a file.
     """
 
@@ -74,6 +86,15 @@ class Scene(FileTable):
     placement: Placement
     ground: Ground | None = None
     obstacle: tuple[AnyObstacle, ...] = ()
+    validity_test: tuple[AnyTest, ...] = ()
+
+    @model_serializer(mode="wrap")
+    def _tests_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before there were such tests stay the same to the byte."""
+        content: dict[str, Any] = whole(self)
+        if not self.validity_test:
+            del content["validity_test"]
+        return content
 
     @field_serializer("setup", mode="wrap")
     def _setup_by_name(self, setup: Setup, whole: SerializerFunctionWrapHandler) -> Any:
@@ -110,6 +131,10 @@ class Scene(FileTable):
     def with_obstacle(self, *obstacles: Obstacle) -> Self:
         """The same scene with more obstacles in it."""
         return self.varied(obstacle=(*self.obstacle, *obstacles))
+
+    def with_test(self, *tests: ValidityTest) -> Self:
+        """The same scene with more tests of validity."""
+        return self.varied(validity_test=(*self.validity_test, *tests))
 
     def with_setup(self, setup: Setup | str | PathLike[str]) -> Self:
         """The same scene for another setup, a value or the name of its file."""

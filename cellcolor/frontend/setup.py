@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
-from pydantic import Field, FiniteFloat, model_validator
+from pydantic import (
+    Field,
+    FiniteFloat,
+    SerializerFunctionWrapHandler,
+    model_serializer,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from cellcolor.frontend.tables import FileTable, NotNegative, Positive, Table, Vector
@@ -13,18 +19,28 @@ __all__ = ["Constraints", "Continuity", "RobotFiles", "Setup", "Slivers", "Task"
 
 
 class RobotFiles(Table):
-    """Arm and tool, and the joint that the task leaves free.
+    """Arm and tool, the family of the arm, and the joint that the task leaves free.
 
-    ``arm_urdf`` and ``tool_urdf`` are names of files, or URDF texts themselves, which begin with
-    ``<``.
+    ``kinematics`` names a family of arms, see :mod:`cellcolor.frontend.arm.inverse`; the locked
+    joint is asked for by the family ``ur``. ``arm_urdf`` and ``tool_urdf`` are names of files, or
+    URDF texts themselves, which begin with ``<``.
     """
 
     arm_urdf: str
     flange_link: str
     tool_urdf: str
     tip_link: str
-    locked_joint_6_rad: FiniteFloat
+    kinematics: str = "ur"
+    locked_joint_6_rad: FiniteFloat | None = None
     may_touch_ground: tuple[str, ...] = ()
+
+    @model_serializer(mode="wrap")
+    def _family_if_another(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before there were other families stay the same to the byte."""
+        content: dict[str, Any] = whole(self)
+        if self.kinematics == "ur":
+            del content["kinematics"]
+        return content
 
 
 class Task(Table):

@@ -88,7 +88,7 @@ def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
     clock.begin("validity at the vertices")
     verdicts = prepared.judge(solutions.reshape(-1, solutions.shape[2]))
     clock.add(verdicts.seconds)
-    candidates = _candidates(verdicts, solutions.shape[:2])
+    candidates = _candidates(prepared, verdicts, solutions.shape[:2])
     with clock.timed("continuity"):
         continuous = _continuous_links(prepared, candidates)
     links = continuous
@@ -102,12 +102,13 @@ def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
     return Stages(candidates, continuous, links, coloring, cleaned)
 
 
-def _candidates(verdicts: Verdicts, shape: tuple[int, ...]) -> Candidates:
+def _candidates(prepared: PreparedScene, verdicts: Verdicts, shape: tuple[int, ...]) -> Candidates:
     """Verdicts on all candidates as arrays of vertices and branches."""
     return Candidates(
         verdicts.configurations.reshape(*shape, -1),
         verdicts.reasons.reshape(shape),
         verdicts.determinants.reshape(shape),
+        prepared.judge.reason_names,
     )
 
 
@@ -117,9 +118,8 @@ def _continuous_links(prepared: PreparedScene, candidates: Candidates) -> Links:
     limits = (robot.lower, robot.upper) if setup.constraints.collision else None
     measure = Measure(
         setup.continuity,
-        prepared.conditioning.near_singular_determinant,
-        # A turn about the tip moves the wrist, the crossing of axes 5 and 6, by this lever.
-        prepared.geometry.reach,
+        prepared.workplace.conditioning.near_singular_determinant,
+        prepared.kinematics.lever,
     )
     linked = np.zeros((len(edges), candidates.valid.shape[1]), dtype=bool)
     for part in _parts(len(edges), prepared.deadline):
@@ -140,7 +140,7 @@ def _valid_links(
     surface, edges, linked = prepared.surface, continuous.edges, continuous.linked.copy()
     if prepared.setup.constraints.collision:
         for part in _parts(len(edges), prepared.deadline):
-            linked[part] &= prepared.tip.free_along(surface, edges[part])[:, None]
+            linked[part] &= prepared.workplace.tip.free_along(surface, edges[part])[:, None]
     near_border = at_domain_border(edges, candidates.valid)
     spacing = prepared.setup.continuity.validity_spacing_m
     assert spacing is not None  # asked by who calls
@@ -162,7 +162,7 @@ def _colored(
 ) -> Coloring:
     """The colors of some of the candidates, ``nodes`` (n, branches)."""
     pairs = node_links(links.edges, links.linked)
-    return color_nodes(nodes, candidates.configurations, pairs, prepared.branches)
+    return color_nodes(nodes, candidates.configurations, pairs, prepared.kinematics.branches)
 
 
 def _cleaned(

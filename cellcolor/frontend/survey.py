@@ -12,7 +12,6 @@ import numpy as np
 import trimesh
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.ur import UrGeometry
 from cellcolor.frontend.target.surface import Faces, Surface, face_normals
 
 __all__ = ["Survey", "survey"]
@@ -52,14 +51,14 @@ class Survey:
         )
 
 
-def survey(surface: Surface, geometry: UrGeometry) -> Survey:
-    """Measure the placed surface."""
+def survey(surface: Surface, viewpoints: Array) -> Survey:
+    """Measure the placed surface, seen from some points (v, 3) in the world, m."""
     vertices, faces = surface.vertices, surface.faces
     nearest = trimesh.triangles.closest_point(vertices[faces], np.zeros((len(faces), 3)))
     return Survey(
         tuple((vertices.max(axis=0) - vertices.min(axis=0)).tolist()),
         float(np.linalg.norm(nearest, axis=1).min()),
-        _from_behind(vertices, faces, geometry) if _is_open(faces) else 0.0,
+        _from_behind(vertices, faces, viewpoints) if _is_open(faces) else 0.0,
     )
 
 
@@ -69,13 +68,8 @@ def _is_open(faces: Faces) -> bool:
     return len(directed) < 2 * len(used)
 
 
-def _from_behind(vertices: Array, faces: Faces, geometry: UrGeometry) -> float:
-    """Of the points seen from the shoulder or from above it, the share whose front is not seen.
-
-    Above: as high as the arm is long. Over a bowl or half a pipe the arm reaches into what the
-    shoulder sees the outside of.
-    """
-    arm = abs(geometry.a2) + abs(geometry.a3)
+def _from_behind(vertices: Array, faces: Faces, viewpoints: Array) -> float:
+    """Of the points that are seen from anywhere, the share whose front is not seen."""
     points, face = _spread(vertices, faces)
     model = fcl.BVHModel()
     model.beginModel(len(faces), len(vertices))
@@ -84,7 +78,7 @@ def _from_behind(vertices: Array, faces: Faces, geometry: UrGeometry) -> float:
     shape = fcl.CollisionObject(model, fcl.Transform())
     normals = face_normals(vertices, faces)[face]
     seen, front = np.zeros((2, len(points)), dtype=bool)
-    for eye in (geometry.shoulder, geometry.shoulder + arm * geometry.frame[:, 2]):
+    for eye in viewpoints:
         visible = np.array([_visible(shape, eye, point) for point in points])
         seen |= visible
         front |= visible & (np.einsum("ij,ij->i", normals, eye - points) > 0)

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
+from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
-from cellcolor.frontend import BuildResult, Reason
+from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import segment_distance
@@ -42,12 +43,12 @@ class ArmPicture:
             InputError: the branch has no valid configuration on the vertex.
         """
         result, vertex, branch = given.build, given.vertex, given.branch
-        reasons = [Reason(code) for code in result.reasons[vertex]]
-        if reasons[branch] != Reason.VALID:
-            valid = [n for n, r in zip(result.branches, reasons, strict=True) if r == Reason.VALID]
+        reasons = result.reasons[vertex].tolist()
+        if reasons[branch] != VALID:
+            valid = [n for n, r in zip(result.branches, reasons, strict=True) if r == VALID]
             message = (
                 f"{result.branches[branch]!r} is not valid on vertex {vertex}: "
-                f"{reasons[branch].text}; valid there: {', '.join(valid) or 'none'}"
+                f"{result.reason_names[reasons[branch]]}; valid there: {', '.join(valid) or 'none'}"
             )
             raise InputError(None, "--branch", message)
         return arm_at(result, vertex, branch)

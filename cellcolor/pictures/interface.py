@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 from cellcolor.pictures.picture import Picture2D, Picture3D
 
 if TYPE_CHECKING:
+    from cellcolor.data.candidate_table import CandidateTable
     from cellcolor.data.instance import Instance
     from cellcolor.data.solution import Solution
     from cellcolor.data.surface import LabelledSurface
     from cellcolor.decomposition import Decomposition
     from cellcolor.frontend import BuildResult
-    from cellcolor.pictures.by_reason import CandidateReasons
 
 __all__ = ["Drawn", "Given", "Picture", "Source"]
 
@@ -71,9 +71,9 @@ class Given:
         return solution
 
     @property
-    def reasons(self) -> CandidateReasons:
+    def reasons(self) -> CandidateTable:
         """What became of every candidate of the scene that the surface was built from."""
-        reasons: CandidateReasons = self._sources["reasons"]
+        reasons: CandidateTable = self._sources["reasons"]
         return reasons
 
     @property

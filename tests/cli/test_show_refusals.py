@@ -35,7 +35,9 @@ def refused(arguments: list[object], capsys: Capture, *named: str) -> None:
 
 @needs_frontend
 def test_arms(tmp_path: Path, capsys: Capture) -> None:
-    from cellcolor.frontend import Reason, build_surface
+    from reasons import Reason
+
+    from cellcolor.frontend import build_surface
 
     scene = small_wok(tmp_path)
     result = build_surface(scene)

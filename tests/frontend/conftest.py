@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
-from shipped import ROBOTS, WOK, edited, with_keys
+from shipped import ROBOTS, WOK, with_keys, wok_file
 
 from cellcolor.frontend.arm.robot import Robot, load_robot
 from cellcolor.frontend.arm.ur import UrGeometry, ur_geometry
@@ -60,19 +61,5 @@ def scene() -> Varied:
 
 @pytest.fixture
 def scene_file(tmp_path: Path) -> Callable[..., Path]:
-    """``scene_file(setup={...}, radius_m=.3, ...)`` writes a variant of the wok and its setup.
-
-    ``setup`` replaces keys of the setup's text, and the other names those of the scene's.
-    """
-
-    def write(setup: dict[str, object] | None = None, **keys: object) -> Path:
-        for name in ("ur5.urdf", "polishing_tool.urdf", "ur5_polishing.toml"):
-            text = (ROBOTS / name).read_text()
-            if name == "ur5_polishing.toml":
-                text = edited(text, **(setup or {}))
-            (tmp_path / name).write_text(text)
-        file = tmp_path / "scene.toml"
-        file.write_text(edited(WOK.read_text(), **({"setup": '"ur5_polishing.toml"'} | keys)))
-        return file
-
-    return write
+    """The variant as a file instead, beside its setup; see :func:`shipped.wok_file`."""
+    return partial(wok_file, tmp_path)

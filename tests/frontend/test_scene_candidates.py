@@ -20,11 +20,12 @@ from independent import (
     regular,
     set_distance,
 )
+from reasons import Reason
 from shipped import shipped
 from world import World
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.kinematics import (
     forward,
     gravity_torques,

@@ -7,6 +7,7 @@ import itertools
 import numpy as np
 import pinocchio as pin
 import pytest
+from reasons import Reason
 from shipped import SCENES, shipped
 
 from cellcolor.arrays import Array
@@ -14,7 +15,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
-from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.scene import Scene
 from cellcolor.solvers.checked import solve

@@ -43,7 +43,9 @@ class TestReasons:
 
     @needs_frontend
     def test_of_a_scene(self, tmp_path: Path) -> None:
-        from cellcolor.frontend import Reason, build_surface
+        from reasons import Reason
+
+        from cellcolor.frontend import build_surface
 
         scene = small_wok(tmp_path)
         show(scene, "--reason", "--branch", "0", "-o", tmp_path / "x.html")

@@ -9,9 +9,10 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 from independent import wrapped
+from reasons import Reason
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import BuildResult, Reason
+from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.prepared import PreparedScene
 

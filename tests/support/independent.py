@@ -9,10 +9,10 @@ import coal
 import numpy as np
 import pinocchio as pin
 from eaik.IK_HP import HPRobot
+from reasons import Reason
 from world import PAIRS, World
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import Reason
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import Setup
 

@@ -36,3 +36,18 @@ def with_keys(table: Table, **keys: object) -> Table:
         (place,) = [n for n, t in inner.items() if isinstance(t, Table) and hasattr(t, key)]
         changes.setdefault(place, {})[key] = value
     return table.varied(**changes)
+
+
+def wok_file(folder: Path, setup: dict[str, object] | None = None, **keys: object) -> Path:
+    """A variant of the wok as a file in a folder, beside its setup.
+
+    ``setup`` replaces keys of the setup's text, and the other names those of the scene's.
+    """
+    for name in ("ur5.urdf", "polishing_tool.urdf", "ur5_polishing.toml"):
+        text = (ROBOTS / name).read_text()
+        if name == "ur5_polishing.toml":
+            text = edited(text, **(setup or {}))
+        (folder / name).write_text(text)
+    file = folder / "scene.toml"
+    file.write_text(edited(WOK.read_text(), **({"setup": '"ur5_polishing.toml"'} | keys)))
+    return file

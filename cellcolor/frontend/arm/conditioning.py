@@ -19,7 +19,6 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.ur import UrGeometry
 from cellcolor.frontend.setup import Setup
 
 __all__ = ["Conditioning", "conditioning", "task_determinants"]
@@ -41,9 +40,9 @@ class Conditioning:
     near_singular_determinant: float
 
 
-def conditioning(setup: Setup, geometry: UrGeometry) -> Conditioning:
-    """The thresholds of a setup for an arm, whichever way the setup has them."""
-    unit = geometry.arm_reach**_POSITION
+def conditioning(setup: Setup, reach: float) -> Conditioning:
+    """The thresholds of a setup for an arm of a reach in m, whichever way the setup has them."""
+    unit = reach**_POSITION
 
     def volume(absolute: float | None, share: float | None) -> float:
         if absolute is not None:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.robot import JOINTS, Robot
+from cellcolor.frontend.arm.robot import Robot
 
 __all__ = [
     "TASK_JOINTS",
@@ -26,7 +26,7 @@ __all__ = [
     "turned",
 ]
 
-TASK_JOINTS = 5  # the sixth turns about the tool's own axis and does not move the task
+TASK_JOINTS = 5  # a sixth turns about the tool's own axis and does not move the task
 
 
 @dataclass(frozen=True)
@@ -34,9 +34,9 @@ class Poses:
     """Where everything is: frame 0 is the world, frame i the one behind joint i.
 
     Attributes:
-        rotation: (n, 7, 3, 3).
-        origin: (n, 7, 3) in m.
-        axis: (n, 6, 3) joint axes.
+        rotation: (n, joints + 1, 3, 3).
+        origin: (n, joints + 1, 3) in m.
+        axis: (n, joints, 3) joint axes.
         tip: (n, 3) tool tip in m.
         tool_axis: (n, 3) the tool's z axis, from the flange to the tip.
     """
@@ -59,14 +59,14 @@ class Poses:
 
 
 def forward(robot: Robot, configurations: Array) -> Poses:
-    """Poses of all frames for configurations (n, 6) in rad."""
+    """Poses of all frames for configurations (n, joints) in rad."""
     n = len(configurations)
     # In memory joint after joint, so that one frame of all configurations is one piece.
-    rotation = np.empty((JOINTS + 1, n, 3, 3)).swapaxes(0, 1)
-    origin = np.empty((JOINTS + 1, n, 3)).swapaxes(0, 1)
-    axis = np.empty((n, JOINTS, 3))
+    rotation = np.empty((robot.joints + 1, n, 3, 3)).swapaxes(0, 1)
+    origin = np.empty((robot.joints + 1, n, 3)).swapaxes(0, 1)
+    axis = np.empty((n, robot.joints, 3))
     rotation[:, 0], origin[:, 0] = np.eye(3), 0.0
-    for joint in range(JOINTS):
+    for joint in range(robot.joints):
         fixed, (x, y, z) = robot.placement[joint], robot.axis[joint]
         # Rodrigues' formula, its constant matrices multiplied for all configurations at once.
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
@@ -95,7 +95,7 @@ def turned(rotation: Array, columns: Array) -> Array:
 
 
 def tip_jacobian(poses: Poses) -> tuple[Array, Array]:
-    """Linear and angular Jacobian of the tip, (n, 3, 6) each: m and rad per rad."""
+    """Linear and angular Jacobian of the tip, (n, 3, joints) each: m and rad per rad."""
     arm = poses.tip[:, None] - poses.origin[:, 1:]
     linear = np.cross(poses.axis, arm)
     return linear.transpose(0, 2, 1), poses.axis.transpose(0, 2, 1)
@@ -117,7 +117,8 @@ def task_determinant(linear: Array, angular: Array, tool_axis: Array) -> Array:
 
     The direction has two rows, the angular velocity across the tool axis; which two
     perpendicular ones does not change the absolute value. Unlike translational manipulability
-    it vanishes at every singularity of the task, the aligned wrist included.
+    it vanishes at every singularity of the task, the aligned wrist included. With fewer than five
+    joints it is the volume that their columns span, lengths in m and angles in rad mixed.
     """
     # A perpendicular that is never near zero: cross with the coordinate axis farthest off.
     farthest = np.eye(3)[np.argmin(np.abs(tool_axis), axis=1)]
@@ -125,12 +126,14 @@ def task_determinant(linear: Array, angular: Array, tool_axis: Array) -> Array:
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     across = np.stack([first, np.cross(tool_axis, first)], axis=1)
     rows = np.concatenate([linear, across @ angular], axis=1)[:, :, :TASK_JOINTS]
-    size: Array = np.abs(np.linalg.det(rows))
-    return size
+    if rows.shape[2] == TASK_JOINTS:
+        return np.asarray(np.abs(np.linalg.det(rows)))
+    gram = rows.transpose(0, 2, 1) @ rows
+    return np.asarray(np.sqrt(np.maximum(np.linalg.det(gram), 0.0)))
 
 
 def gravity_torques(robot: Robot, poses: Poses, gravity: Array) -> Array:
-    """Torques (n, 6) in N m that hold arm and tool still against gravity (3,) in m/s^2."""
+    """Torques (n, joints) in N m that hold arm and tool still against gravity (3,) in m/s^2."""
     centers = poses.origin[:, 1:] + np.einsum("njab,jb->nja", poses.rotation[:, 1:], robot.center)
     # Mass and first moment of all that hangs behind each joint.
     behind = np.cumsum(robot.mass[::-1])[::-1]
@@ -143,7 +146,7 @@ def gravity_torques(robot: Robot, poses: Poses, gravity: Array) -> Array:
 def static_torques(
     robot: Robot, poses: Poses, linear: Array, gravity: Array, normal_force: float
 ) -> Array:
-    """Torques (n, 6) in N m while the tip presses with ``normal_force`` (N) along the tool axis.
+    """Torques (n, joints) in N m while the tip presses along the tool axis with a force in N.
 
     Gravity plus J^T times the force that the robot exerts on the surface.
     """

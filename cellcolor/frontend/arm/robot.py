@@ -13,9 +13,8 @@ from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, mount
 
-__all__ = ["JOINTS", "Body", "Robot", "load_robot"]
+__all__ = ["Body", "Robot", "load_robot"]
 
-JOINTS = 6
 _SAME = 1e-6  # m; a sphere's center and a cylinder's end nearer than this are one point
 
 
@@ -23,8 +22,8 @@ _SAME = 1e-6  # m; a sphere's center and a cylinder's end nearer than this are o
 class Body:
     """A collision shape: all points within ``radius`` of a segment, or a flat-ended cylinder.
 
-    ``start`` and ``end`` (3,) in m are in the frame of ``joint`` (0 is the world, 1 to 6 the
-    frames behind the joints). A sphere is a capsule whose ends coincide.
+    ``start`` and ``end`` (3,) in m are in the frame of ``joint`` (0 is the world, the
+    others are the frames behind the joints). A sphere is a capsule whose ends coincide.
     """
 
     link: str
@@ -42,16 +41,16 @@ class Body:
 
 @dataclass(frozen=True)
 class Robot:
-    """Six revolute joints in a row, a tool, and what collides. The world frame is the root link.
+    """Revolute joints in a row, a tool, and what collides. The world frame is the root link.
 
     Attributes:
-        placement: (6, 4, 4) fixed pose of each joint frame in the one before it.
-        axis: (6, 3) unit axis of each joint in its own frame.
-        lower, upper: (6,) joint limits in rad.
-        effort: (6,) torque limits in N m.
-        mass: (6,) mass that each joint's frame carries, in kg; fixed links and tool included.
-        center: (6, 3) its center of mass in that frame, m.
-        tip: (4, 4) pose of the tool tip in the frame of joint 6; the tool works along +z.
+        placement: (joints, 4, 4) fixed pose of each joint frame in the one before it.
+        axis: (joints, 3) unit axis of each joint in its own frame.
+        lower, upper: (joints,) joint limits in rad.
+        effort: (joints,) torque limits in N m.
+        mass: (joints,) mass that each joint's frame carries, in kg; fixed links and tool included.
+        center: (joints, 3) its center of mass in that frame, m.
+        tip: (4, 4) pose of the tool tip in the frame of the last joint; the tool works along +z.
         bodies: collision shapes, base first.
         tested_pairs: pairs of bodies (indices) that self-collision looks at: all that do not
             belong to one link or to links next to each other.
@@ -76,13 +75,20 @@ class Robot:
     model: pin.Model = field(repr=False, compare=False)
     geometry: pin.GeometryModel = field(repr=False, compare=False)
 
+    @property
+    def joints(self) -> int:
+        """How many there are between base and tip."""
+        return len(self.axis)
 
-def load_robot(arm: Path | Urdf, flange_link: str, tool: Path | Urdf, tip_link: str) -> Robot:
+
+def load_robot(
+    arm: Path | Urdf, flange_link: str, tool: Path | Urdf, tip_link: str, joints: int = 6
+) -> Robot:
     """Put the tool on the arm's flange, both from files or as they have been read.
 
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip
-            link, not six joints between base and tip, one there that follows another, or
+            link, not so many joints between base and tip, one there that follows another, or
             Pinocchio read other collision shapes than the file has.
     """
     arm, tool = (given if isinstance(given, Urdf) else load_urdf(given) for given in (arm, tool))
@@ -101,11 +107,11 @@ def load_robot(arm: Path | Urdf, flange_link: str, tool: Path | Urdf, tip_link: 
                 "a joint between base and tip may not follow another one",
             )
     moving = tuple(name for name in in_chain if name in whole.moving)
-    if len(moving) != JOINTS or len(whole.moving) != JOINTS:
+    if len(moving) != joints or len(whole.moving) != joints:
         raise InputError(
             str(arm_file),
             "robot",
-            f"needs {JOINTS} revolute joints in a row to the tip, has {len(moving)} there and "
+            f"needs {joints} revolute joints in a row to the tip, has {len(moving)} there and "
             f"{len(whole.moving)} in all",
         )
     try:
@@ -117,13 +123,13 @@ def load_robot(arm: Path | Urdf, flange_link: str, tool: Path | Urdf, tip_link: 
     tip = model.frames[model.getFrameId(tip_link)]
     return Robot(
         files=(arm_file, tool_file),
-        placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, 7)]),
+        placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, joints + 1)]),
         axis=_axes(model),
         lower=np.array(model.lowerPositionLimit),
         upper=np.array(model.upperPositionLimit),
         effort=np.array(model.effortLimit),
-        mass=np.array([model.inertias[i].mass for i in range(1, 7)]),
-        center=np.array([model.inertias[i].lever for i in range(1, 7)]),
+        mass=np.array([model.inertias[i].mass for i in range(1, joints + 1)]),
+        center=np.array([model.inertias[i].lever for i in range(1, joints + 1)]),
         tip=np.array(tip.placement.homogeneous),
         bodies=bodies,
         tested_pairs=_tested_pairs(whole, bodies),
@@ -153,9 +159,9 @@ def _listed(names: tuple[str, ...]) -> str:
 def _axes(model: pin.Model) -> Array:
     """Each joint's axis in its own frame, from the world Jacobian at zero."""
     data = model.createData()
-    zero = np.zeros(JOINTS)
+    zero = np.zeros(model.nv)
     jacobian = pin.computeJointJacobians(model, data, zero)
-    return np.array([data.oMi[i + 1].rotation.T @ jacobian[3:, i] for i in range(JOINTS)])
+    return np.array([data.oMi[i + 1].rotation.T @ jacobian[3:, i] for i in range(model.nv)])
 
 
 def _bodies(

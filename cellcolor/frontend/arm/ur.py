@@ -17,10 +17,12 @@ from scipy.optimize import minimize_scalar
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
+from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["BRANCHES", "UrGeometry", "solve_inverse", "ur_geometry"]
+__all__ = ["BRANCHES", "UrGeometry", "UrKinematics", "solve_inverse", "ur_geometry"]
 
 BRANCHES = tuple(
     f"shoulder-{shoulder} elbow-{elbow} wrist-{wrist}"
@@ -77,6 +79,15 @@ class UrGeometry:
             return -math.hypot(in_plane, self.d4 + self.reach * math.cos(turn))
 
         return -float(minimize_scalar(shortfall, bounds=(0.0, math.pi), method="bounded").fun)
+
+    @property
+    def viewpoints(self) -> Array:
+        """(2, 3) the shoulder and the arm's length above it, in the world, m.
+
+        Over a bowl or half a pipe the arm reaches into what the shoulder sees the outside of.
+        """
+        arm = abs(self.a2) + abs(self.a3)
+        return np.array([self.shoulder, self.shoulder + arm * self.frame[:, 2]])
 
 
 def ur_geometry(robot: Robot) -> UrGeometry:
@@ -159,6 +170,37 @@ def _across(vector: Array, axis: Array) -> Array:
 
 def _angle(start: Array, end: Array, about: Array) -> float:
     return float(np.arctan2(np.cross(start, end) @ about, start @ end))
+
+
+class UrKinematics(InverseKinematics):
+    """UR-type arms; joint 6, which the task leaves free, is locked."""
+
+    joints = 6
+    branches = BRANCHES
+
+    def __init__(self, robot: Robot, files: RobotFiles) -> None:
+        """The constants of the arm, and the angle of the locked joint."""
+        locked = files.locked_joint_6_rad
+        if locked is None:
+            raise InputError(None, "robot.locked_joint_6_rad", "Field required")
+        if not robot.lower[5] <= locked <= robot.upper[5]:
+            message = "outside the limits of the sixth joint"
+            raise InputError(None, "robot.locked_joint_6_rad", message)
+        self.geometry, self._locked = ur_geometry(robot), locked
+        self.lever, self.viewpoints = self.geometry.reach, self.geometry.viewpoints
+        self.reach = self.geometry.arm_reach
+        if self.lever > abs(self.geometry.a2) + abs(self.geometry.a3):
+            raise InputError(
+                str(robot.files[1]),
+                f"link[{files.tip_link}]",
+                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
+            )
+
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """See :func:`solve_inverse`."""
+        return solve_inverse(self.geometry, points, directions, self._locked, branches)
 
 
 def solve_inverse(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.robot import JOINTS, Body, Robot
+from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import longest_steps
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.target.surface import Faces, Surface, along_edges
@@ -30,10 +30,12 @@ class Tip:
         behind = [
             min(float((point - end) @ axis) for end in (body.start, body.end))
             for body in robot.bodies
-            if body.joint == JOINTS
+            if body.joint == robot.joints
         ]
         length = max(min(behind, default=0.0), 0.0)
-        self._body = Body("tool tip", JOINTS, point, point - length * axis, radius, flat=False)
+        self._body = Body(
+            "tool tip", robot.joints, point, point - length * axis, radius, flat=False
+        )
         self._obstacles, self._ground = obstacles, ground
 
     def blocked(self, points: Array, directions: Array) -> Mask:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cellcolor.frontend.arm.robot import JOINTS, Robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.solids import Solid
 
 __all__ = ["too_coarse"]
@@ -17,7 +17,7 @@ def too_coarse(robot: Robot, obstacles: list[Solid], longest: float) -> str | No
     widths = [
         (2 * body.radius, f"the body of {body.link!r}")
         for body in robot.bodies
-        if body.joint == JOINTS
+        if body.joint == robot.joints
     ]
     widths += [(solid.width, f"obstacle[{k}]") for k, solid in enumerate(obstacles)]
     width, name = min(widths, default=(longest, ""))

@@ -52,14 +52,14 @@ class Coloring:
 def stays_in_limits(
     lower: Array, upper: Array, start: Array, lowest: Array, highest: Array
 ) -> Mask:
-    """Whether motions fit into the joint limits (6,), turned by full circles where need be.
+    """Whether motions fit into the joint limits (joints,), turned by full circles where need be.
 
     With limits of -3 and 3 rad there is no way from 2.9 on by 0.48; with limits of -3 and 4 rad
     there is.
 
     Args:
-        start: (..., 6) where the motions begin, rad.
-        lowest, highest: (..., 6) how far each joint gets from there, at most and at least 0.
+        start: (..., joints) where the motions begin, rad.
+        lowest, highest: (..., joints) how far each joint gets from there, at most and at least 0.
     """
     circle = 2 * np.pi
     turns = np.ceil((lower - start - lowest) / circle - _ROUNDING)
@@ -74,7 +74,7 @@ def link(
     limits: tuple[Array, Array] | None,
     probe: Probe,
 ) -> Mask:
-    """Whether the two configurations of a branch on an edge's ends are continuous, (k, 8).
+    """Whether the two configurations of a branch on an edge's ends are continuous, (k, branches).
 
     False where one of the ends has no valid configuration of that branch. Otherwise the branch
     is followed along the edge, see :mod:`cellcolor.frontend.reach.smooth`.
@@ -82,7 +82,7 @@ def link(
     Args:
         edges: (k, 2) vertex indices.
         measure: what is a jump.
-        limits: lower and upper (6,) of the joints in rad, which the motion has to keep.
+        limits: lower and upper (joints,) of the joints in rad, which the motion has to keep.
         probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.
     """
     i, j = edges.T
@@ -116,7 +116,7 @@ def color_nodes(
 
     Args:
         nodes: (n, branches) which of them there are.
-        configurations: (n, branches, 6) in rad, for errors.
+        configurations: (n, branches, joints) in rad, for errors.
         links: (l, 2) nodes that a continuous motion joins, numbered vertex * branches + branch.
 
     Raises:

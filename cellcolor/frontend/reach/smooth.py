@@ -25,8 +25,8 @@ _HALVINGS = 10  # of the probe spacing; what is too fast on the last one is a ju
 _AT_ONCE = 20_000  # probes; a matter of memory: some kilobytes each
 
 Probe = Callable[[Array, Array, NDArray[np.intp]], tuple[Array, Array]]
-"""Points (k, 3), unit tool directions (k, 3) and branches (k,) to configurations (k, 6) in rad and
-task determinants (k,) in m^3, both NaN where there is no well-conditioned configuration."""
+"""Points (k, 3), unit tool directions (k, 3) and branches (k,) to configurations (k, joints) in rad
+and task determinants (k,) in m^3, both NaN where there is no well-conditioned configuration."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ class Motions:
 
     Attributes:
         smooth: (k,) whether there is a continuous motion.
-        lowest, highest: (k, 6) how far each joint gets from where it starts, in rad, unwound;
+        lowest, highest: (k, joints) how far each joint gets from where it starts, in rad, unwound;
             of smooth motions only.
     """
 
@@ -92,7 +92,7 @@ class _Steps:
 
 
 def joint_step(first: Array, second: Array) -> Array:
-    """The largest movement of a joint between configurations (..., 6), modulo 2 pi, in rad."""
+    """The largest movement of a joint between configurations (..., joints), modulo 2 pi, in rad."""
     return np.asarray(np.abs(_shorter_way(first, second)).max(axis=-1))
 
 
@@ -110,7 +110,7 @@ def follow_edges(
     Args:
         edges: (k, 2) vertex indices.
         branches: (k,) one of each edge.
-        configurations: (k, 6) at the first ends and at the second ones, rad.
+        configurations: (k, joints) at the first ends and at the second ones, rad.
         determinants: (k,) task determinants at both, m^3.
         measure: what is a jump.
         probe: see :data:`Probe`; called with points in between.
@@ -158,13 +158,14 @@ def _shorter_way(first: Array, second: Array) -> Array:
 
 
 def _excursions(count: int, settled: list[_Steps]) -> tuple[Array, Array]:
-    """Lowest and highest angles (count, 6) on motions of settled steps, from 0 at the start.
+    """Lowest and highest angles (count, joints) on motions of settled steps, from 0 at the start.
 
     Args:
         settled: at first those that are whole motions, then parts of the others.
     """
-    lowest, highest = np.zeros((count, 6)), np.zeros((count, 6))
     whole = settled[0]
+    joints = whole.first.shape[1]
+    lowest, highest = np.zeros((count, joints)), np.zeros((count, joints))
     moved = _shorter_way(whole.first, whole.last)
     lowest[whole.row], highest[whole.row] = np.minimum(moved, 0.0), np.maximum(moved, 0.0)
     if not any(map(len, settled[1:])):

@@ -8,11 +8,11 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 from numpy.typing import NDArray
+from reasons import Reason
 from scipy.optimize import minimize
 from shipped import ROBOTS
 
 from cellcolor.errors import InputError
-from cellcolor.frontend import Reason
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import UrGeometry

@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from reasons import Reason
 from scipy.spatial.transform import Rotation
 from world import PAIRS, World
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import (

@@ -11,10 +11,11 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from reasons import Reason
 from shipped import ROBOTS
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
 from cellcolor.frontend.contact.primitives import BoxObstacle, SphereObstacle

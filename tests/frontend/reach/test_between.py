@@ -7,10 +7,11 @@ from collections.abc import Callable
 import numpy as np
 import pinocchio as pin
 import pytest
+from reasons import Reason
 from shipped import SCENES, WOK
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.contact.collision import longest_steps
 from cellcolor.frontend.contact.primitives import CylinderObstacle
 from cellcolor.frontend.prepared import prepare

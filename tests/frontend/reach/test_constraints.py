@@ -9,9 +9,10 @@ import numpy as np
 import pytest
 import trimesh
 from box import BOX, OUTWARD, obj
+from reasons import Reason
 
 from cellcolor.errors import InputError
-from cellcolor.frontend import Reason, build_surface
+from cellcolor.frontend import build_surface
 from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.scene import Scene

@@ -10,6 +10,7 @@ from continuation import Follower
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import shorter_way
+from reasons import Reason
 from shipped import shipped
 
 from cellcolor.arrays import Array
@@ -26,7 +27,7 @@ from cellcolor.frontend.reach.continuity import (
     stays_in_limits,
 )
 from cellcolor.frontend.reach.smooth import Measure, joint_step
-from cellcolor.frontend.reach.validity import Candidates, Reason
+from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.target.shapes import disc_mesh
 from cellcolor.frontend.target.surface import Surface
@@ -77,6 +78,7 @@ class Plane:
                 np.uint8
             ),
             np.full((7, len(branches)), determinant),
+            ("valid", "no solution"),
         )
         self.asked = 0
 

@@ -152,7 +152,10 @@ def test_limits_are_asked_of_the_motion_and_not_of_the_shorter_way(
     configurations = np.zeros((3, 1, 6))
     configurations[:2, 0] = wound(joint(np.array([0.0, 1.0])))
     candidates = Candidates(
-        configurations, np.array([[0], [0], [1]], dtype=np.uint8), np.full((3, 1), 0.02)
+        configurations,
+        np.array([[0], [0], [1]], dtype=np.uint8),
+        np.full((3, 1), 0.02),
+        ("valid", "no solution"),
     )
     limits = np.full(6, -2.4), np.full(6, 2.4)
     limits[0][0], limits[1][0] = -0.1, upper

@@ -13,11 +13,12 @@ from collections.abc import Iterator
 import numpy as np
 import pytest
 from independent import shorter_way
+from reasons import Reason
 from shipped import SCENES, shipped
 from world import PAIRS, World
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import BuildResult, Reason, build_surface
+from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.contact.primitives import SphereObstacle
 from cellcolor.frontend.prepared import PreparedScene, prepare

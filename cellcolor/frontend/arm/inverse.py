@@ -1,0 +1,73 @@
+"""Families of arms, told by their inverse kinematics; a setup names one under ``[robot]``."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.registry import Registry
+from cellcolor.frontend.setup import RobotFiles
+
+__all__ = ["KINEMATICS", "InverseKinematics"]
+
+
+class InverseKinematics(ABC):
+    """The inverse kinematics of one arm with its tool.
+
+    A family is registered in ``KINEMATICS`` or by an entry point of the group
+    ``cellcolor.kinematics``, under the name that setups have for it.
+
+    Attributes:
+        joints: how many revolute joints the arms of the family have, between base and tip.
+        branches: names of the branches. Along a motion without singularity the branch stays the
+            same, and a pose has at most one solution of each.
+        reach: the farthest that the tip gets from the arm's shoulder, joint limits aside, m;
+            thresholds may be shares of its cube.
+        lever: the farthest that turning the tool about its tip by one rad moves any joint's axis
+            that has to give way, m per rad: the distance from the tip to the wrist.
+        viewpoints: (v, 3) in the world, m; what none of them sees of an open mesh from the front
+            probably has its outside inside.
+    """
+
+    joints: ClassVar[int]
+    branches: ClassVar[tuple[str, ...]]
+    reach: float
+    lever: float
+    viewpoints: Array
+
+    @abstractmethod
+    def __init__(self, robot: Robot, files: RobotFiles) -> None:
+        """From the arm as its files have it.
+
+        Raises:
+            InputError: the arm is not of this family, or a key of the setup does not fit it; names
+                the joint or the key.
+        """
+
+    @abstractmethod
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """All configurations that put the tip on a point with the tool along a direction.
+
+        Args:
+            points: (n, 3) tip positions in the world, m.
+            directions: (n, 3) unit vectors from the flange to the tip.
+            branches: (n,) the only one wanted of each point; all without it.
+
+        Returns:
+            (n, branches, joints), or (n, 1, joints) with ``branches``: angles in rad, NaN where a
+            branch has no solution.
+        """
+
+
+KINEMATICS: Registry[InverseKinematics] = Registry(
+    "cellcolor.kinematics",
+    InverseKinematics,  # type: ignore[type-abstract]
+    {"ur": "cellcolor.frontend.arm.ur:UrKinematics"},
+)

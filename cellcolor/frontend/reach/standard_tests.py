@@ -1,0 +1,165 @@
+"""The tests of the paper's three constraints (section III-A), in the order of testing.
+
+Collision-free and kinematically possible, able to exert the force, well conditioned. Cheap tests
+come first; each looks only at what is left.
+"""
+
+from __future__ import annotations
+
+from typing import ClassVar, Literal
+
+import numpy as np
+
+from cellcolor.arrays import Mask
+from cellcolor.frontend.arm.kinematics import manipulability, static_torques
+from cellcolor.frontend.contact.collision import hits_ground, hits_itself
+from cellcolor.frontend.reach.postures import Postures
+from cellcolor.frontend.reach.validity_test import ValidityTest
+
+__all__ = ["STANDARD_TESTS", "StandardTest"]
+
+
+class StandardTest(ValidityTest):
+    """One of the tests that a setup can leave out by the constraint that it belongs to."""
+
+    constraint: ClassVar[Literal["collision", "force", "conditioning"]]
+
+
+class JointLimits(StandardTest):
+    """The configurations have been turned into the limits where that is possible."""
+
+    name = "joint limits"
+    sentence = "no equivalent angle (modulo 360 degrees) inside the limits"
+    constraint = "collision"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those with a joint beyond its upper limit; none is below its lower one."""
+        beyond = postures.configurations > postures.workplace.robot.upper
+        return np.asarray(beyond.any(axis=1))
+
+
+class TipBlocked(StandardTest):
+    """Blocked for all branches of a vertex that have a solution, or for none."""
+
+    name = "tip blocked"
+    sentence = "an obstacle or the ground is in the tool's contact region"
+    constraint = "collision"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those with something in the way of the tool's tip."""
+        return postures.workplace.tip.blocked(postures.tip, postures.tool_axis)
+
+
+class Torque(StandardTest):
+    """Static: what accelerates the arm is not asked."""
+
+    name = "torque"
+    sentence = (
+        "gravity of arm and tool, and the normal force along the tool axis, exceed a joint's effort"
+    )
+    constraint = "force"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those in which a joint is too weak."""
+        robot, task = postures.workplace.robot, postures.workplace.setup.task
+        gravity = np.array(task.gravity_m_per_s2)
+        push = task.normal_force_n
+        torques = static_torques(robot, postures.poses, postures.linear, gravity, push)
+        return np.asarray(np.any(np.abs(torques) > robot.effort, axis=1))
+
+
+class Manipulability(StandardTest):
+    """Near a singularity of the tip's position."""
+
+    name = "manipulability"
+    sentence = "Yoshikawa's translational measure of the five task joints below its threshold"
+    constraint = "conditioning"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those below the threshold."""
+        least = postures.workplace.conditioning.min_manipulability
+        return np.asarray(manipulability(postures.linear) < least)
+
+
+class TaskDeterminant(StandardTest):
+    """Near a singularity of the task, the aligned wrist included."""
+
+    name = "task determinant"
+    sentence = (
+        "absolute determinant of the 5x5 Jacobian of tip position and tool direction below its"
+        " threshold"
+    )
+    constraint = "conditioning"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those below the threshold."""
+        least = postures.workplace.conditioning.min_task_determinant
+        return np.asarray(postures.determinant < least)
+
+
+class GroundContact(StandardTest):
+    """The ground is the half space below its height."""
+
+    name = "ground"
+    sentence = "a link other than those of may_touch_ground reaches below the ground"
+    constraint = "collision"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those in which a link is in the ground, if there is one."""
+        place = postures.workplace
+        if place.ground is None:
+            return np.zeros(len(postures), dtype=bool)
+        exempt = place.setup.robot.may_touch_ground
+        return hits_ground(place.robot, postures.ends, place.ground, exempt)
+
+
+class SelfCollision(StandardTest):
+    """Links next to each other may touch."""
+
+    name = "self collision"
+    sentence = "two links overlap that are not next to each other"
+    constraint = "collision"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those in which two links overlap."""
+        return hits_itself(postures.workplace.robot, postures.ends)
+
+
+class ObstacleCollision(StandardTest):
+    """All obstacles of the scene, one after the other."""
+
+    name = "obstacle collision"
+    sentence = "a link or the tool's body touches an obstacle"
+    constraint = "collision"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those in which an obstacle is hit."""
+        hit, ends = np.zeros(len(postures), dtype=bool), postures.ends
+        for obstacle in postures.workplace.obstacles:
+            hit[~hit] = obstacle.hits(postures.workplace.robot, ends[:, :, ~hit])
+        return hit
+
+
+class ObjectCollision(StandardTest):
+    """The tool's body ends before the tip, so the tip alone may touch the object."""
+
+    name = "object collision"
+    sentence = "a link or the tool's body touches the object"
+    constraint = "collision"
+
+    def failed(self, postures: Postures) -> Mask:
+        """Those in which the object is hit."""
+        return postures.workplace.target.hits(postures.workplace.robot, postures.ends)
+
+
+STANDARD_TESTS: tuple[StandardTest, ...] = (
+    JointLimits(),
+    TipBlocked(),
+    Torque(),
+    Manipulability(),
+    TaskDeterminant(),
+    GroundContact(),
+    SelfCollision(),
+    ObstacleCollision(),
+    ObjectCollision(),
+)

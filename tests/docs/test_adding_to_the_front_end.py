@@ -1,0 +1,156 @@
+"""The guides that add to the front end, followed to the letter with a toy each."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from shipped import TOP, shipped
+from toy_distribution import followed
+
+from cellcolor.data.candidate_table import VALID, CandidateTable
+from cellcolor.errors import InputError
+from cellcolor.frontend import Scene, build_surface
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
+
+
+def test_a_torus(tmp_path: Path) -> None:
+    with followed("add-a-part", tmp_path) as names:
+        result, scene = names["result"], names["scene"]
+        vertices = result.surface.vertices - scene.placement.position_m
+        from_ring = np.hypot(np.hypot(vertices[:, 0], vertices[:, 1]) - 0.12, vertices[:, 2])
+        assert np.allclose(from_ring, 0.04)
+        # 4 pi^2 R r, and less by the coarseness of the mesh.
+        assert 0.94 < result.report.area_m2 / (4 * np.pi**2 * 0.12 * 0.04) < 1
+        assert result.report.reachable > 100
+        assert result.surface.meta["scene"]["object"]["kind"] == "torus"
+        assert names["thicker"].object.tube_radius_m == 0.05
+        with pytest.raises(InputError, match="greater") as caught:
+            scene.varied(object={"tube_radius_m": -1.0})
+        assert caught.value.field == "object.tube_radius_m"
+
+
+def test_a_cone(tmp_path: Path) -> None:
+    with followed("add-an-obstacle", tmp_path) as names:
+        result, free = names["result"], names["free"]
+        assert (result.reasons != free.reasons).any()
+        lost = (free.reasons == VALID) & (result.reasons != VALID)
+        reasons = {result.reason_names[code] for code in result.reasons[lost]}
+        assert reasons == {"tip blocked", "obstacle collision"}
+        # Within a contact radius of the cone's flank no tip can be, straight from above.
+        across = np.linalg.norm(result.surface.vertices[:, :2] - [0.5, 0.1], axis=1)
+        inside = across < 0.06 * (0.25 - 0.1) / 0.25
+        assert inside.any() and not any(
+            result.surface.vertex_colors[vertex] for vertex in np.flatnonzero(inside)
+        )
+
+
+def test_a_keep_out_zone(tmp_path: Path) -> None:
+    with followed("add-a-validity-test", tmp_path) as names:
+        result, free, scene = names["result"], names["free"], names["scene"]
+        code = result.reason_names.index("keep-out zone")
+        assert code == len(result.reason_names) - 1 == len(STANDARD_TESTS) + 2
+        found = result.reasons == code
+        assert (free.reasons[found] == VALID).all()
+        assert (result.reasons[~found] == free.reasons[~found]).all()
+        # By forward kinematics of each candidate: an end of a body's axis is in the zone.
+        robot = prepare(scene).robot
+        for candidates, expected in ((found, True), (result.reasons == VALID, False)):
+            poses = forward(robot, result.configurations[candidates])
+            ends = np.array(
+                [
+                    poses.origin[:, body.joint] + poses.rotation[:, body.joint] @ end
+                    for body in robot.bodies
+                    for end in (body.start, body.end)
+                ]
+            )
+            inside = (np.abs(ends - [0.725, 0.0, 1.0]) <= [0.275, 1.0, 1.0]).all(axis=2)
+            assert len(poses.tip) > 20 and (inside.any(axis=0) == expected).all()
+        # The side file knows the new reason by its name.
+        (tmp_path / "zone.npz").write_bytes(result.candidates.to_bytes())
+        assert CandidateTable.read(tmp_path / "zone.npz") == result.candidates
+        twice = scene.with_test(scene.validity_test[0].varied(highest_m=(0.5, 1.0, 2.0)))
+        assert prepare(twice).judge.reason_names == result.reason_names
+
+
+def test_an_arm_with_four_joints(tmp_path: Path) -> None:
+    with followed("add-an-arm", tmp_path) as names:
+        result, scene = names["result"], names["scene"]
+        assert result.branches == ("elbow-up", "elbow-down")
+        assert result.configurations.shape == (len(result.surface.vertices), 2, 4)
+        rows, branches = np.nonzero(result.reasons == VALID)
+        assert len(rows) > 200
+        poses = forward(prepare(scene).robot, result.configurations[rows, branches])
+        assert np.allclose(poses.tip, result.surface.vertices[rows])
+        assert np.allclose(poses.tool_axis, [0, 0, -1])
+        # Elbow up: joint 3 above the line from joint 2 to joint 4.
+        elbow = poses.origin[:, 3] - (poses.origin[:, 2] + poses.origin[:, 4]) / 2
+        assert ((elbow[:, 2] > 0) == (branches == 0)).all()
+        assert all(
+            any(color.startswith(b) for b in result.branches) for color in result.surface.colors
+        )
+
+
+def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
+    with followed("add-a-part", tmp_path):
+        del sys.modules["torus_part"]
+        build_surface(shipped("wok", 50))
+        assert "torus_part" not in sys.modules
+        Scene.read("torus.toml")
+        assert "torus_part" in sys.modules
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (("torus_part:Torus", "torus_part:Tyre"), "cannot be imported: AttributeError"),
+        (("torus_part:Torus", "no_such_module:Torus"), "cannot be imported: ModuleNotFound"),
+        (("torus_part:Torus", "torus_part:Surface"), "is no Part"),
+        (("torus = ", "tyre = "), "unknown kind 'torus'; known: mesh, pipe, rectangle, .*, tyre"),
+        (("torus = ", "torus = torus_part:Part\ntorus = "), "is registered twice"),
+    ],
+)
+def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: str) -> None:
+    with followed("add-a-part", tmp_path):
+        points = tmp_path / "toy-1.0.dist-info" / "entry_points.txt"
+        points.write_text(points.read_text().replace(*change))
+        with pytest.raises(InputError, match=message) as caught:
+            Scene.read("torus.toml")
+        assert (caught.value.file, caught.value.field) == ("torus.toml", "object")
+
+
+def test_no_reason_has_two_meanings(tmp_path: Path) -> None:
+    with followed("add-a-validity-test", tmp_path) as names:
+        zone = names["scene"].validity_test[0]
+        type(zone).name = "torque"
+        with pytest.raises(InputError, match="a reason 'torque' already") as caught:
+            prepare(names["scene"])
+        assert (caught.value.file, caught.value.field) == ("zone.toml", "validity_test[0]")
+
+
+def test_an_unknown_family_of_arms() -> None:
+    scene = shipped("wok").varied(setup={"robot": {"kinematics": "tentacle"}})
+    with pytest.raises(InputError, match="unknown kind 'tentacle'; known: ur") as caught:
+        build_surface(scene)
+    assert caught.value.field == "robot.kinematics"
+
+
+def test_a_missing_angle_of_the_locked_joint() -> None:
+    scene = shipped("wok").varied(setup={"robot": {"locked_joint_6_rad": None}})
+    with pytest.raises(InputError, match="required") as caught:
+        build_surface(scene)
+    assert caught.value.field == "robot.locked_joint_6_rad"
+
+
+def test_the_page_lists_the_tests_in_their_order() -> None:
+    page = (TOP / "docs" / "frontend.md").read_text()
+    rows = re.findall(r"^\| ([a-z ]+) \| (.*) \|$", page[page.index("| reason | test |") :], re.M)
+    names = [test.name for test in STANDARD_TESTS]
+    assert [name for name, _ in rows][2 : len(names) + 2] == names
+    for test, (_, sentence) in zip(STANDARD_TESTS, rows[2:], strict=False):
+        assert sentence.replace("`", "").startswith(test.sentence)
