@@ -95,6 +95,7 @@ def _format_schema(described: Format) -> dict[str, Any]:
 def _table_schema(file: str) -> dict[str, Any]:
     """A scene's or a setup's. It needs the extra ``frontend``."""
     from cellcolor.frontend.contact.obstacle import OBSTACLES
+    from cellcolor.frontend.reach.validity_test import VALIDITY_TESTS
     from cellcolor.frontend.scene import Scene
     from cellcolor.frontend.setup import Setup
     from cellcolor.frontend.tables import FileTable
@@ -114,22 +115,25 @@ def _table_schema(file: str) -> dict[str, Any]:
         members["object"] = _kinds(PARTS, "object", definitions)
         members["collision_object"] = members["object"]
         members["obstacle"] = {"type": "array", "items": _kinds(OBSTACLES, "obstacle", definitions)}
+        tests = _kinds(VALIDITY_TESTS, "validity_test", definitions)
+        members["validity_test"] = {"type": "array", "items": tests}
     return schema
 
 
 def _kinds(registry: Any, prefix: str, definitions: dict[str, Any]) -> dict[str, Any]:
     """A table of one of this package's kinds, or of a kind that another package registers."""
     own = list(registry._own)
-    for kind in own:
-        table = registry.find(kind).model_json_schema(schema_generator=_Untitled)
+    for name in own:
+        table = registry.find(name).model_json_schema(schema_generator=_Untitled)
         table["required"] = ["kind", *table.get("required", [])]
-        definitions[f"{prefix}-{kind}"] = table
+        definitions[f"{prefix}-{name}"] = table
+    kind = {"type": "string", "not": {"enum": own}} if own else {"type": "string"}
     other = {
         "type": "object",
-        "properties": {"kind": {"type": "string", "not": {"enum": own}}},
+        "properties": {"kind": kind},
         "required": ["kind"],
     }
-    ours = [{"$ref": f"#/$defs/{prefix}-{kind}"} for kind in own]
+    ours = [{"$ref": f"#/$defs/{prefix}-{name}"} for name in own]
     return {"anyOf": [*ours, other]}
 
 
