@@ -101,6 +101,15 @@ def solve(
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
+    solution = _solution(instance, options, solver, answer, time.monotonic() - start)
+    _insist(check_solution(instance, solution), solver)
+    return solution
+
+
+def _solution(
+    instance: Instance, options: Options, solver: str, answer: Answer, seconds: float
+) -> Solution:
+    """What follows from an answer: its segments are counted, its status is what it has proved."""
     bounds = _needed(answer.bounds)
     surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")
     segments = None if answer.division is None else count_segments(answer.division)
@@ -110,7 +119,7 @@ def solve(
         status = "unknown"
     elif proved_for_surface or (options.search_space == "paper" and segments == lower_bound):
         status = "optimal"
-    solution = Solution(
+    return Solution(
         instance=InstanceReference(instance.name, instance.sha256),
         search_space=options.search_space,
         strands=options.strands,
@@ -123,15 +132,13 @@ def solve(
         proved_for_surface=proved_for_surface,
         seams=answer.seams,
         cells=answer.division,
-        seconds=time.monotonic() - start,
+        seconds=seconds,
         cutting_paths=None if answer.cutting_paths_lower_bound is None else _cuts(instance, answer),
         cutting_paths_lower_bound=answer.cutting_paths_lower_bound,
         bounds=bounds,
         coverage=instance.coverage,
         notes=answer.notes,
     )
-    _insist(check_solution(instance, solution), solver)
-    return solution
 
 
 def enumerate_schemes(

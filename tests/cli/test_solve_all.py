@@ -153,7 +153,7 @@ class TestAllSchemes:
         self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
     ) -> None:
         """The minimum is found all the same, and the solution says why there are no schemes."""
-        monkeypatch.setattr(cellcolor.solvers.cpsat.schemes.scheme_model, "MOST_LITERALS", 1)
+        monkeypatch.setattr(cellcolor.solvers.cpsat.schemes.scheme_model, "MOST_SCHEME_LITERALS", 1)
         out = tmp_path / "none.jsonl"
         assert run("solve", ZEROS, "--all", "-o", out) == 3
         solution = Solution.read(out)

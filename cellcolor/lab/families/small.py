@@ -20,7 +20,7 @@ from cellcolor.lab.families.hubs import hub, hub_grid
 
 __all__ = ["bearable", "small_hub", "small_hub_grid"]
 
-MOST_CELLS = 10
+MOST_SMALL_CELLS = 10
 MOST_CELL_DARTS = 9
 """Live darts of a cell."""
 
@@ -47,7 +47,7 @@ def bearable(
         made = recipe(rng)
         instance = made if isinstance(made, Instance) else decompose(made)
         if (
-            2 <= len(instance.cells) <= MOST_CELLS
+            2 <= len(instance.cells) <= MOST_SMALL_CELLS
             and instance.most_live_darts <= most
             and several_loops in (None, instance.most_live_loops > 1)
         ):

@@ -97,9 +97,9 @@ def test_a_model_of_schemes_that_is_too_large_is_not_built(
         len(constraint.bool_or.literals) + len(constraint.at_most_one.literals)
         for constraint in model.proto.constraints
     )
-    monkeypatch.setattr(scheme_model, "MOST_LITERALS", 1.5 * literals)
+    monkeypatch.setattr(scheme_model, "MOST_SCHEME_LITERALS", 1.5 * literals)
     scheme_model.check_size(graph, NEVER)
-    monkeypatch.setattr(scheme_model, "MOST_LITERALS", 0.7 * literals)
+    monkeypatch.setattr(scheme_model, "MOST_SCHEME_LITERALS", 0.7 * literals)
     with pytest.raises(TooLarge, match="one cell has 60 darts"):
         next(CpSatSolver().optimal_schemes(instance, Options(), 20))
 

@@ -21,9 +21,9 @@ from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.solvers.cpsat.schemes.several_loops import literals_on_loops, same_blocks
 
-__all__ = ["MOST_LITERALS", "SchemeModel", "check_size"]
+__all__ = ["MOST_SCHEME_LITERALS", "SchemeModel", "check_size"]
 
-MOST_LITERALS = 20_000_000
+MOST_SCHEME_LITERALS = 20_000_000
 """Literals in the constraints that grow with the cube of a cell's darts. So many take some
 gigabytes during the search; a larger model is not built."""
 
@@ -42,7 +42,7 @@ def check_size(graph: DartGraph, deadline: Deadline) -> None:
             for apart, other in enumerate(cell[place + 1 :], start=1):
                 shared = len(graph.darts[one].colors & graph.darts[other].colors)
                 literals += (2 + shared) * apart + 2 * len(cell) if shared else 0
-            if literals > MOST_LITERALS:
+            if literals > MOST_SCHEME_LITERALS:
                 raise TooLarge(
                     f"The model of all schemes was not built: one cell has {len(cell)} darts."
                 )
