@@ -15,7 +15,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab.families import (
     SHAPES,
-    Shape,
+    Topology,
     cover_tree,
     hub_with_loops,
     part,
@@ -30,7 +30,7 @@ BORDERS = {"disc": 1, "annulus": 2, "sphere": 0, "torus": 0, "double torus": 0}
 
 @pytest.mark.parametrize("shape", SHAPES)
 @pytest.mark.parametrize("size", [6, 7, 20])
-def test_meshes_have_the_genus_of_their_shape(shape: Shape, size: int) -> None:
+def test_meshes_have_the_genus_of_their_shape(shape: Topology, size: int) -> None:
     """Euler's formula, and how many loops the border has; the mesh itself refuses non-manifolds."""
     vertices, faces = make_mesh(shape, size)
     assert 0.7 <= len(vertices) / size**2 <= 1.4
@@ -48,7 +48,7 @@ def test_meshes_have_the_genus_of_their_shape(shape: Shape, size: int) -> None:
 
 
 @pytest.mark.parametrize("shape", SHAPES)
-def test_meshes_face_outward(shape: Shape) -> None:
+def test_meshes_face_outward(shape: Topology) -> None:
     """A closed mesh has a positive volume, a flat one positive areas."""
     vertices, faces = make_mesh(shape, 12)
     a, b, c = (vertices[faces[:, corner]] for corner in range(3))
@@ -73,7 +73,7 @@ def test_meshes_face_outward(shape: Shape) -> None:
 )
 def test_voronoi_surfaces_are_legal(
     seed: int,
-    shape: Shape,
+    shape: Topology,
     size: int,
     share: float,
     colors: int,
@@ -99,7 +99,7 @@ def test_voronoi_surfaces_are_legal(
 
 
 @pytest.mark.parametrize("shape", ["torus", "double torus"])
-def test_one_region_with_a_handle_is_cut(shape: Shape) -> None:
+def test_one_region_with_a_handle_is_cut(shape: Topology) -> None:
     """A single region that every color reaches is the whole surface, which is not planar."""
     for seed in range(5):
         instance = decompose(voronoi(seed, shape, 10, 1, 2, coverage=(1.0, 1.0)))
