@@ -1,0 +1,63 @@
+"""What README and reference say about the front door holds."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import cellcolor
+
+ROOT = Path(__file__).resolve().parents[2]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+EXAMPLES = re.findall(r"^```python\n(.*?)^```", README, re.MULTILINE | re.DOTALL)
+
+
+def run(script: str, folder: Path) -> str:
+    """What a script prints that is run in a folder."""
+    done = subprocess.run(
+        [sys.executable, "-c", script],
+        cwd=folder,
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=["first", "oracle"])
+def test_an_example_has_one_import(example: str) -> None:
+    assert re.findall(r"^(?:import|from) .*", example, re.MULTILINE) == ["import cellcolor"]
+
+
+def test_the_first_example_runs_anywhere(tmp_path: Path) -> None:
+    for package in ("pinocchio", "fcl", "trimesh", "plotly"):
+        pytest.importorskip(package)
+    printed = run(EXAMPLES[0], tmp_path)
+    (promised,) = re.findall(r"print\(result\)  # (.*)…", EXAMPLES[0])
+    assert printed.startswith(promised)
+    assert [file.name for file in tmp_path.iterdir()] == ["wok.html"]
+
+
+def test_the_oracle_example_runs(tmp_path: Path) -> None:
+    surface = cellcolor.read("ring.surface.json")
+    (tmp_path / "part.surface.json").write_text(surface.to_json(), encoding="utf-8")
+    planner = """
+def my_planner(surface):
+    return [next((c for c in (1, 0) if c in own), None) for own in surface.vertex_colors]
+
+test_my_planner()
+"""
+    run(EXAMPLES[1] + planner, tmp_path)
+
+
+def test_the_reference_has_every_public_name() -> None:
+    page = (ROOT / "docs" / "api.md").read_text(encoding="utf-8")
+    page = page.partition("## The front door")[2].partition("## The rooms")[0]
+    for name in cellcolor.__all__:
+        assert re.search(rf"(cellcolor\.|`){name}\b", page), name
