@@ -23,15 +23,14 @@ _ROOMS = {
     "cellcolor.data.solution": ("CellDivision", "Solution", "SubCell"),
     "cellcolor.data.surface": ("Crack", "LabelledSurface"),
     "cellcolor.deadline": ("OutOfTime",),
-    "cellcolor.decomposition": ("decompose",),
-    "cellcolor.door.judging": ("check", "judge"),
+    "cellcolor.door.judging": ("check", "judge", "proven_range"),
     "cellcolor.door.reading": ("read",),
     "cellcolor.door.result": ("Result",),
     "cellcolor.door.shipped": ("library",),
     "cellcolor.door.showing": ("Drawing", "show"),
-    "cellcolor.door.solving": ("build", "solve"),
+    "cellcolor.door.solving": ("build", "decompose", "solve"),
     "cellcolor.errors": ("CellcolorError", "ContradictionError", "InputError", "TooLarge"),
-    "cellcolor.oracle": ("ProvenRange", "Verdict", "proven_range"),
+    "cellcolor.oracle": ("ProvenRange", "Verdict"),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 

@@ -13,15 +13,16 @@ from cellcolor.data.solution import SubCell as SubCell
 from cellcolor.data.surface import Crack as Crack
 from cellcolor.data.surface import LabelledSurface as LabelledSurface
 from cellcolor.deadline import OutOfTime as OutOfTime
-from cellcolor.decomposition import decompose as decompose
 from cellcolor.door.judging import check as check
 from cellcolor.door.judging import judge as judge
+from cellcolor.door.judging import proven_range as proven_range
 from cellcolor.door.reading import read as read
 from cellcolor.door.result import Result as Result
 from cellcolor.door.shipped import library as library
 from cellcolor.door.showing import Drawing as Drawing
 from cellcolor.door.showing import show as show
 from cellcolor.door.solving import build as build
+from cellcolor.door.solving import decompose as decompose
 from cellcolor.door.solving import solve as solve
 from cellcolor.errors import CellcolorError as CellcolorError
 from cellcolor.errors import ContradictionError as ContradictionError
@@ -29,5 +30,4 @@ from cellcolor.errors import InputError as InputError
 from cellcolor.errors import TooLarge as TooLarge
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
-from cellcolor.oracle import proven_range as proven_range
 from cellcolor.version import __version__ as __version__

@@ -29,7 +29,7 @@ def show_files(
     Args:
         files: what to show, and its solution if there is a second one.
         output: the picture's file.
-        name: of the picture; what else it is drawn of is in :class:`View`.
+        name: of the picture; what else it is drawn of is in a ``View``.
     """
     kind = kind_of_picture(output)
     check_output(output, kind, files)

@@ -194,7 +194,7 @@ class Instance:
         return not self.cells and self.coverage is not None and self.coverage.covered == 0
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it: :func:`cellcolor.show`, which says what ``view`` can ask for."""
+        """Draw it: ``cellcolor.show``, which says what ``view`` can ask for."""
         import cellcolor  # the whole package's face, which only somebody who looks at it needs
 
         return cellcolor.show(self, path, **view)

@@ -1,8 +1,9 @@
-"""``cellcolor.check`` for solutions, ``cellcolor.judge`` for other planners' plans."""
+"""``cellcolor.check`` for solutions; ``judge`` and ``proven_range`` for other planners' plans."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
 from typing import Any
@@ -22,7 +23,7 @@ from cellcolor.door.subject import Solvable, Subject, open_subject
 from cellcolor.errors import InputError
 from cellcolor.oracle import ProvenRange, Verdict
 
-__all__ = ["check", "judge"]
+__all__ = ["check", "judge", "judge_by", "proven_range"]
 
 
 def check(instance: Solvable, solution: Solution | Result | str | PathLike[str]) -> Report:
@@ -53,6 +54,40 @@ def check(instance: Solvable, solution: Solution | Result | str | PathLike[str])
     return replace(report, problems=tuple(contradictions(graph, solution)))
 
 
+def proven_range(
+    surface: Solvable,
+    *,
+    strands: int | None = None,
+    time_limit: float | None = 60.0,
+    workers: int | None = None,
+    seed: int = 0,
+) -> ProvenRange:
+    """The range that the fewest segments of a labelled surface are proved to lie in.
+
+    Args:
+        surface: a labelled surface or a scene: its file, its shipped name, the value.
+        strands: corridors that may cross one topological edge, None for the usual number; more
+            may lower the upper end.
+        time_limit: seconds, None for as long as it takes; both ends hold however early it ends.
+        workers: CP-SAT's search workers, None for its portfolio.
+        seed: of everything random.
+
+    Raises:
+        InputError: the surface or an option cannot be used.
+        OutOfTime: the time limit came before there was a surface.
+    """
+    deadline = deadline_after(time_limit)
+    subject = open_subject(surface, deadline)
+    with _named(subject):
+        return oracle.proven_range(
+            subject.surface,
+            strands=strands,
+            time_limit=deadline.left,
+            workers=workers,
+            seed=seed,
+        )
+
+
 def judge(
     surface: Solvable,
     plan: Plan | Sequence[int | None] | NDArray[Any] | str | PathLike[str],
@@ -67,7 +102,7 @@ def judge(
             the value.
         plan: one color per vertex, None exactly where the vertex has none; in an array of integers,
             which cannot hold None, -1. Or a file with a plan.
-        bounds: this surface's :func:`cellcolor.proven_range`, if known already.
+        bounds: this surface's ``cellcolor.proven_range``, if known already.
         time_limit: seconds for all of it, above all for finding the range otherwise; None for as
             long as it takes.
 
@@ -91,10 +126,19 @@ def judge_by(
         plan = Plan.read(plan)
     elif not isinstance(plan, Plan):
         plan = Plan(_colors(plan))
-    try:
+    with _named(subject):
         return oracle.judge(subject.surface, plan, bounds=bounds, time_limit=deadline.left)
+
+
+@contextmanager
+def _named(subject: Subject) -> Iterator[None]:
+    """Name the subject's file in errors that name none."""
+    try:
+        yield
     except InputError as error:
-        raise error if subject.path is None else error.in_file(str(subject.path)) from error
+        if error.file or subject.path is None:
+            raise
+        raise error.in_file(str(subject.path)) from error
 
 
 def _colors(plan: Sequence[int | None] | NDArray[Any]) -> Any:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias, Union
+from typing import TYPE_CHECKING, Any
 
 from cellcolor.data import instance as instance_file
 from cellcolor.data import plan as plan_file
@@ -24,10 +24,7 @@ from cellcolor.files.documents import parse_first_object, read_text
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene, Setup
 
-__all__ = ["Readable", "read"]
-
-Readable: TypeAlias = Union["Scene", "Setup", LabelledSurface, Instance, Solution, Plan]
-"""What a file of ours can hold."""
+__all__ = ["read"]
 
 _KINDS: dict[str, type[LabelledSurface] | type[Instance] | type[Solution] | type[Plan]] = {
     surface_file.FORMAT: LabelledSurface,
@@ -39,15 +36,16 @@ _SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
 """The table, or a key of it, that every setup has and no scene."""
 
 
-def read(source: str | PathLike[str]) -> Readable:
+def read(source: str | PathLike[str]) -> Any:
     """The value in a file: a scene, a robot's setup, a surface, an instance, a solution or a plan.
 
     Scenes and setups are told by their suffix, ``.toml``, all else by its ``format``. Of a file of
-    optimal schemes it is the solution in the first line.
+    optimal schemes it is the solution in the first line. Type checkers are told ``Any``: whoever
+    names the file knows what is in it, and would have to rule out the other five every time.
 
     Args:
         source: the file, as a text or a path, or as a text the name of a shipped one
-            (:func:`cellcolor.library`); a file of that name goes first.
+            (``cellcolor.library``); a file of that name goes first.
 
     Raises:
         InputError: the file cannot be read, or holds something that its format forbids.

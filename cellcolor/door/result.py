@@ -83,7 +83,7 @@ class Result:
 
         Args:
             path: a file .html, .png or .svg; None draws without writing, for notebooks.
-            view: what else to look at, see :func:`cellcolor.show`.
+            view: what else to look at, see ``cellcolor.show``.
 
         Raises:
             InputError: the extra ``viz`` is not installed, or the file cannot be written.

@@ -1,4 +1,4 @@
-"""``cellcolor.build`` and ``cellcolor.solve``."""
+"""``cellcolor.build``, ``cellcolor.decompose`` and ``cellcolor.solve``."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from cellcolor.solvers.interface import Options, Start
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
 
-__all__ = ["build", "deadline_after", "solve", "start_from"]
+__all__ = ["build", "deadline_after", "decompose", "solve", "start_from"]
 
 
 def build(
@@ -56,6 +56,21 @@ def build(
     return build_scene(path, deadline, progress)
 
 
+def decompose(source: Solvable, *, time_limit: float | None = None) -> Instance:
+    """The topological graph of a labelled surface or a scene: what ``solve`` solves.
+
+    Args:
+        source: its file, its shipped name, or the value; an instance is returned as it is.
+        time_limit: seconds, None for as long as it takes.
+
+    Raises:
+        InputError: it cannot be used; a cell of the surface is not planar.
+        OutOfTime: the time limit came first.
+    """
+    deadline = deadline_after(time_limit)
+    return open_subject(source, deadline).graph(deadline)
+
+
 def solve(
     source: Solvable,
     *,
@@ -74,7 +89,7 @@ def solve(
     A scene is built and a surface decomposed on the way; the checker sees every result.
 
     Args:
-        source: what to solve: its file, its shipped name (:func:`cellcolor.library`), the value.
+        source: what to solve: its file, its shipped name (``cellcolor.library``), the value.
         solver: the solver's name; ``dfs`` is the paper's depth-first search, for small instances.
         search_space: ``paper`` for no more than one corridor of a color across an edge, ``surface``
             for several.

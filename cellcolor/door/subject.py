@@ -55,7 +55,7 @@ class Subject:
         return () if self.built is None else self.built.report.warnings
 
     def graph(self, deadline: Deadline = NEVER) -> Instance:
-        """The instance; that of a surface refers to the surface as if it lay beside it.
+        """The instance; that of a file refers to the surface as if it lay beside it.
 
         Args:
             deadline: when the decomposition has to end.
@@ -157,9 +157,9 @@ class Subject:
         return None if self.path is None else str(self.path)
 
     @property
-    def _reference(self) -> str:
+    def _reference(self) -> str | None:
         if self.path is None:
-            return f"{self.surface.name}.surface.json"
+            return None
         return f"{self.path.stem}.surface.json" if is_scene(self.path) else self.path.name
 
     def _same_surface(self, instance: Instance, surface: LabelledSurface) -> None:

@@ -79,7 +79,7 @@ class BuildResult:
     __hash__ = None  # type: ignore[assignment]  # arrays that can be changed
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it: :func:`cellcolor.show`, which says what ``view`` can ask for."""
+        """Draw it: ``cellcolor.show``, which says what ``view`` can ask for."""
         import cellcolor  # the whole package's face, which only somebody who looks at it needs
 
         return cellcolor.show(self, path, **view)

@@ -217,7 +217,9 @@ def test_wrong_options_are_refused(options: dict[str, Any], text: str) -> None:
 
 @pytest.mark.parametrize("source", [None, 3, 2.5, [1], object(), b"ring", PLAN])
 def test_what_cannot_be_solved_is_refused(source: Any) -> None:
-    for function in (cellcolor.solve, cellcolor.show, lambda s: cellcolor.check(s, "x.json")):
+    functions: list[Any] = [cellcolor.solve, cellcolor.show, cellcolor.decompose]
+    functions += [lambda s: cellcolor.check(s, "x.json"), cellcolor.proven_range]
+    for function in functions:
         with pytest.raises(InputError, match="must be a scene, a surface, an instance or a file"):
             function(source)
 
@@ -296,6 +298,21 @@ def test_plans_are_judged_by_name_and_file(tmp_path: Path) -> None:
 def test_what_is_no_plan_is_refused(plan: Any) -> None:
     with pytest.raises(InputError, match="vertex_colors"):
         cellcolor.judge(HALVES, plan)
+
+
+def test_the_proven_range_is_that_of_the_surface() -> None:
+    assert cellcolor.proven_range("parallel-corridors.surface.json").exact
+    assert str(cellcolor.proven_range(HALVES)) == "exactly 2 segments"
+    with pytest.raises(InputError, match=r"ring\.json: surface: is missing"):
+        cellcolor.proven_range("ring")
+
+
+def test_decompose_gives_what_is_solved() -> None:
+    for source in ("ring", "ring.surface.json", LabelledSurface.read(RING_SURFACE)):
+        assert cellcolor.decompose(source) == cellcolor.solve(source).instance
+    assert cellcolor.decompose(HALVES).surface is None  # it is in no file
+    with pytest.raises(cellcolor.OutOfTime):
+        cellcolor.decompose(RING_SURFACE, time_limit=1e-9)
 
 
 def test_errors_name_the_file(tmp_path: Path) -> None:
