@@ -5,7 +5,7 @@ Non-repetitive Coverage Task with Minimum Discontinuities" (2020). Terms are the
 
     import cellcolor
 
-    result = cellcolor.solve("wok", time_limit=10)  # a scene, a surface, an instance
+    result = cellcolor.solve("wok", time_limit=60)  # a scene, a surface, an instance
     print(result)
     result.plot("wok.html")
 
