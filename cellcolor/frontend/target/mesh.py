@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import trimesh
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
@@ -111,14 +112,11 @@ def _check_elements(vertices: Array, faces: Faces) -> None:
 
 
 def _vertex_normals(vertices: Array, faces: Faces) -> Array:
-    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex."""
-    corners = vertices[faces]
-    ahead = np.roll(corners, -1, axis=1) - corners
-    behind = np.roll(corners, 1, axis=1) - corners
-    cosine = (
-        (ahead * behind).sum(2) / np.linalg.norm(ahead, axis=2) / np.linalg.norm(behind, axis=2)
-    )
-    angles = np.arccos(np.clip(cosine, -1, 1))
+    """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
+
+    trimesh's own vertex normals have length 1 already, and so do not tell faces that cancel out.
+    """
+    angles = trimesh.triangles.angles(vertices[faces])
     unit = face_normals(vertices, faces)
     unit /= np.linalg.norm(unit, axis=1, keepdims=True)
     normals = np.zeros_like(vertices)
