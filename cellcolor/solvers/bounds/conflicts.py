@@ -8,19 +8,25 @@ whoever connects the first two parts the others. The proof is in docs/solver.md,
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 
 from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import Region
-from cellcolor.solvers.bounds.merged_cells import MergedCells, merge_cells
+from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.bounds.polygons import PolygonSurface, spanning_tree
 from cellcolor.union_find import UnionFind
 
 __all__ = ["Conflict", "MergedCell", "Parting", "RegionPair", "Side", "conflicts"]
 
 MergedCell = frozenset[int]
 """The cells that a merged cell consists of; a segment touches it where it touches one of them."""
+
+
+MOST_CIRCLES = 6
+"""More independent closed curves than that (three handles have six) leave nothing to be concluded:
+for k of them 2^k curves have to be looked at."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +66,7 @@ class Conflict:
 def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflict]:
     """All that is known of what segments in two color regions cannot do side by side.
 
-    All conflicts that are returned are true ones, but not all there are: none where the two
-    regions together cover a handle.
+    All conflicts that are returned are true ones, but not all there are.
 
     Args:
         instance: the topological graph.
@@ -104,7 +109,7 @@ class RegionPair:
         colors |= dict.fromkeys(far - near, frozenset((other,)))
         colors |= dict.fromkeys(near & far, both)
         self._merged = merge_cells(instance, colors)
-        surface = _Surface(self._merged)
+        surface = PolygonSurface(self._merged)
         ways = [
             {edge for edge, shared in self._merged.joinable.items() if own in shared}
             for own in (color, other)
@@ -113,68 +118,13 @@ class RegionPair:
             sorted({self._merged.merged_cell_of[cell] for cell in cells})
             for cells in (near - far, far - near)
         ]
-        # An edge that merging left between two loops of one merged cell is a handle.
-        usable = color != other and not ways[0] & ways[1] and surface.is_planar()
+        usable = color != other
         self.first = Side(surface, alone[0], alone[1], ways[0], ways[1], usable)
         self.second = Side(surface, alone[1], alone[0], ways[1], ways[0], usable)
 
     def merged_cell_of(self, cell: int) -> int:
         """The merged cell that a cell is part of; -1 for one of neither region."""
         return self._merged.merged_cell_of.get(cell, -1)
-
-
-class _Surface:
-    """What two regions cover, and its borders."""
-
-    def __init__(self, merged: MergedCells) -> None:
-        self.merged = merged
-        self.cells = merged.cells()
-        self.following: dict[int, int] = {}
-        self.loop_of: dict[int, int] = {}
-        count = 0
-        for loops in merged.loops.values():
-            for loop in loops:
-                self.following |= zip(loop, loop[1:] + loop[:1], strict=True)
-                self.loop_of |= dict.fromkeys(loop, count)
-                count += 1
-        self.before = {following: dart for dart, following in self.following.items()}
-
-    def merged_cell(self, dart: int) -> int:
-        """The merged cell on whose border a dart is."""
-        left, right = self.merged.sides[abs(dart)]
-        return left if dart > 0 else right
-
-    def borders(self) -> UnionFind[int]:
-        """The border curves, each as the darts after which it runs.
-
-        Behind a dart, at the corner where it ends, the border goes on to what lies before the
-        dart's other side.
-        """
-        borders: UnionFind[int] = UnionFind(self.following)
-        for dart in self.following:
-            borders.union(dart, self.before[-dart])
-        return borders
-
-    def is_planar(self) -> bool:
-        """Whether every closed curve parts the component that it lies in.
-
-        By Euler's formula: a merged cell with so many live loops, a sphere with holes, has the
-        characteristic 2 - loops, each edge across which merged cells are glued lowers it by one,
-        and with its border curves filled each component has to be a sphere, of characteristic 2.
-        """
-        component: UnionFind[int] = UnionFind(self.merged.loops)
-        for left, right in self.merged.sides.values():
-            component.union(left, right)
-        characteristic: Counter[int] = Counter()
-        for merged_cell, loops in self.merged.loops.items():
-            if loops:
-                characteristic[component[merged_cell]] += 2 - len(loops)
-        for left, _ in self.merged.sides.values():
-            characteristic[component[left]] -= 1
-        borders = self.borders()
-        for dart in {borders[dart]: dart for dart in self.following}.values():
-            characteristic[component[self.merged_cell(dart)]] += 1
-        return all(found == 2 for found in characteristic.values())
 
 
 class Side:
@@ -187,7 +137,7 @@ class Side:
 
     def __init__(
         self,
-        surface: _Surface,
+        surface: PolygonSurface,
         merged_cells: list[int],
         parted: list[int],
         own: set[int],
@@ -197,18 +147,22 @@ class Side:
         self.merged_cells = merged_cells
         self.parted = parted
         self._surface = surface
-        self._own = own
         self._number = {
             merged_cell: number for number, merged_cell in enumerate(surface.merged.loops)
         }
+        self._own = self._with_seams(own, set(parted))
         self._ways = [
-            (edge, *(self._number[merged_cell] for merged_cell in surface.merged.sides[edge]))
-            for edge in sorted(other)
+            (edge, *(self._number[merged_cell] for merged_cell in surface.sides[edge]))
+            for edge in sorted(self._with_seams(other, set(merged_cells)))
         ]
         self._wall: list[tuple[list[int], frozenset[int]]] = []
-        self._trees: dict[int, dict[int, int]] = {}
+        self._around: list[set[int]] = []
+        self._tree: dict[int, tuple[int, int]] = {}
         if usable and len(merged_cells) > 1 and len(parted) > 1:
-            self._wall = self._components(parted, other)
+            self._tree = spanning_tree(self._own, merged_cells[:1])
+            self._around = self._circles()
+            if len(self._around) <= MOST_CIRCLES:
+                self._wall = self._components(parted, other)
 
     def partings(self, near: int, far: int) -> list[Parting]:
         """What a segment that touches two merged cells of its own region does to the other region.
@@ -219,32 +173,76 @@ class Side:
 
         Returns:
             One for each component of the wall (docs/solver.md, "Conflicts") of whose merged cells
-            some are parted; none at all if the two regions cover a handle.
+            some are parted.
         """
-        if not self._wall or far not in self._tree(near):
+        if not self._wall or not {near, far} <= self._tree.keys():
             return []
-        far_side, free = self._sides(near, far)
+        curves = [self._path(near) ^ self._path(far), *self._around]
+        turns = self._turns(curves)
         cells = self._surface.cells
         found = []
         for merged_cells, numbers in self._wall:
-            groups: dict[int, list[MergedCell]] = {}
-            roots = self._reached(numbers, far_side, free)
-            for merged_cell in merged_cells:
-                groups.setdefault(roots[2 * self._number[merged_cell]], []).append(
-                    cells[merged_cell]
+            # Whatever is connected beside a curve in some class may be connected.
+            together: UnionFind[int] = UnionFind(merged_cells)
+            for chosen in range(1, 1 << len(curves), 2):
+                roots = self._reached(numbers, turns, chosen)
+                first: dict[int, int] = {}
+                for merged_cell in merged_cells:
+                    root = roots[2 * self._number[merged_cell]]
+                    together.union(merged_cell, first.setdefault(root, merged_cell))
+            if len(groups := together.sets()) > 1:
+                found.append(
+                    Parting(
+                        (cells[near], cells[far]),
+                        tuple(tuple(cells[m] for m in sorted(group)) for group in groups),
+                    )
                 )
-            if len(groups) > 1:
-                found.append(Parting((cells[near], cells[far]), tuple(map(tuple, groups.values()))))
         return found
 
-    def _reached(self, wall: frozenset[int], far_side: set[int], free: set[int]) -> list[int]:
+    def _with_seams(self, edges: set[int], without: set[int]) -> dict[int, tuple[int, int]]:
+        """The sides of some edges, and of the seams of all merged cells but some."""
+        surface = self._surface
+        seams = [s for m, own in surface.seams.items() if m not in without for s in own]
+        return {edge: surface.sides[edge] for edge in (*sorted(edges), *seams)}
+
+    def _path(self, merged_cell: int) -> set[int]:
+        """The edges on the way from the root of the one region's tree."""
+        edges = set()
+        edge, nearer = self._tree[merged_cell]
+        while edge:
+            edges.add(edge)
+            edge, nearer = self._tree[nearer]
+        return edges
+
+    def _circles(self) -> list[set[int]]:
+        """Closed curves of the one region in as many independent classes as it has.
+
+        Classes are those of homology modulo 2 in the surface with its borders filled: there are
+        none in a planar one. Each curve comes as the edges that it crosses.
+        """
+        used = {edge for edge, _ in self._tree.values()}
+        circles = [
+            {edge} ^ self._path(left) ^ self._path(right)
+            for edge, (left, right) in self._own.items()
+            if edge not in used and left in self._tree
+        ]
+        turns = self._turns(circles)
+        return [circles[number] for number in self._surface.independent(turns)]
+
+    def _turns(self, curves: Sequence[set[int]]) -> dict[int, int]:
+        """Which of some curves a way crosses oddly over each edge, as the bits of a number."""
+        crossed: dict[int, int] = {}
+        for number, curve in enumerate(curves):
+            for edge in curve:
+                crossed[edge] = crossed.get(edge, 0) | 1 << number
+        return self._surface.turns(crossed)
+
+    def _reached(self, wall: frozenset[int], turns: Mapping[int, int], chosen: int) -> list[int]:
         """For twice a merged cell's number, plus a parity, what of the kind is connected with it.
 
-        Ways of the other region are followed, with the parity of their crossings with a curve of
-        the one region; merged cells of the wall may be passed in even parity only.
+        Ways of the other region are followed, with the parity of their crossings with the chosen
+        curves of the one region; merged cells of the wall may be passed in even parity only.
         """
-        # By hand rather than by networkx: this runs for every two merged cells of every two
-        # regions, and is five times as quick.
         parent = list(range(2 * len(self._number)))
 
         def root(node: int) -> int:
@@ -253,58 +251,14 @@ class Side:
                 node = parent[node]
             return node
 
-        for merged_cell in free:
-            parent[2 * self._number[merged_cell] + 1] = 2 * self._number[merged_cell]
         for edge, left, right in self._ways:
-            turn = (edge in far_side) ^ (-edge in far_side)
+            turn = (turns[edge] & chosen).bit_count() % 2
             for parity in (0, 1):
                 across = parity ^ turn
                 if (parity and left in wall) or (across and right in wall):
                     continue
                 parent[root(2 * left + parity)] = root(2 * right + across)
         return [root(node) for node in range(len(parent))]
-
-    def _sides(self, near: int, far: int) -> tuple[set[int], set[int]]:
-        """How a curve from one merged cell to another cuts the merged cells that it passes through.
-
-        Returns:
-            The darts on the far side of the curve; and the merged cells in which it runs from one
-            loop to another, so that both of its sides are connected within the merged cell.
-        """
-        surface, tree = self._surface, self._tree(near)
-        beyond: set[int] = set()
-        free: set[int] = set()
-        merged_cell, left_by = far, 0
-        while merged_cell != near:
-            entered = tree[merged_cell]
-            if left_by:
-                if surface.loop_of[entered] == surface.loop_of[left_by]:
-                    dart = surface.following[entered]
-                    while dart != left_by:
-                        beyond.add(dart)
-                        dart = surface.following[dart]
-                else:
-                    free.add(merged_cell)
-            left_by = -entered
-            merged_cell = surface.merged_cell(left_by)
-        return beyond, free
-
-    def _tree(self, root: int) -> dict[int, int]:
-        """Shortest ways of the one region: the dart by which each merged cell is entered, inside
-        it."""
-        if root not in self._trees:
-            tree: dict[int, int] = {root: 0}
-            queue = deque([root])
-            while queue:
-                for loop in self._surface.merged.loops[queue.popleft()]:
-                    for dart in loop:
-                        if abs(dart) in self._own:
-                            beyond = self._surface.merged_cell(-dart)
-                            if beyond not in tree:
-                                tree[beyond] = -dart
-                                queue.append(beyond)
-            self._trees[root] = tree
-        return self._trees[root]
 
     def _components(
         self, parted: list[int], other: set[int]

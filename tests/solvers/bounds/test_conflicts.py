@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import combinations
+from itertools import combinations, product
 
 import networkx as nx
 from exhaustive_minima import vertex_minimum
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import grid_faces, grid_points, surface
@@ -16,6 +16,8 @@ from petals import hub
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
+from cellcolor.errors import InputError
+from cellcolor.lab.families.meshes import make_mesh
 from cellcolor.solvers.bounds.conflicts import MergedCell, conflicts
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
@@ -204,3 +206,61 @@ def test_the_surface_bound_holds_where_segments_are_in_conflict(mesh: LabelledSu
     """Against a sweep over vertex colorings, which knows no cells."""
     found = solve(decompose(mesh), Options())
     assert found.surface_lower_bound <= vertex_minimum(mesh)
+
+
+def test_a_handle_of_one_color_leads_nobody_past() -> None:
+    """Petals in turn; one of the red ones is a torus with a hole, which blue never enters."""
+    petals = (RED, BLUE, RED, BLUE)
+    instance = Instance(
+        "red handle",
+        ("red", "blue"),
+        (
+            Cell(0, (RED, BLUE), ((1, 2, 3, 4),)),
+            Cell(1, (RED,), ((-1, 5, 6, -5, -6),)),
+            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(petals[1:], start=2)),
+        ),
+        (*(Edge(i, 0, i) for i in range(1, 5)), Edge(5, 1, 1), Edge(6, 1, 1)),
+    )
+    red, blue = color_regions(instance)
+    (found,) = conflicts(instance, red, blue)
+    assert (areas(found.one), areas(found.other)) == (([1], [3]), ([2], [4]))
+    assert solve(instance, Options()).surface_lower_bound == 3
+
+
+@st.composite
+def crossed_rings(draw: st.DrawFn) -> LabelledSurface:
+    """Two narrow rings over a torus, one along it and one around it, in red, blue and both.
+
+    The rings cross each other, so what red and blue reach covers the handle. A ring falls into
+    cells of both colors with and without green, as no cell may lie around the handle.
+    """
+    size, width = 6, draw(st.integers(1, 2))
+    vertices, faces = make_mesh("torus", size)
+    kinds = st.sampled_from([(RED,), (BLUE,), None])
+    labels: list[Sequence[int]] = []
+    for row in range(size):
+        for column in range(size):
+            both = (RED, BLUE) if (row // 3 + column // 3) % 2 else (RED, BLUE, GREEN)
+            inside = row < width or column < width
+            labels.append((draw(kinds) or both) if inside else (GREEN,))
+    return LabelledSurface("rings", ("red", "blue", "green"), vertices, faces, tuple(labels))
+
+
+@settings(max_examples=60, deadline=None)
+@given(mesh=crossed_rings())
+def test_what_is_in_conflict_cannot_pass_around_a_handle(mesh: LabelledSurface) -> None:
+    """Against trying all paths over mesh vertices."""
+    try:
+        instance = decompose(mesh, "mesh")
+    except InputError:
+        reject()
+    assert instance.surface is not None
+    cell_of = instance.surface.vertex_cell
+    first, second = ([r for r in color_regions(instance) if r[0] == color] for color in (RED, BLUE))
+    for one_region, other_region in product(first, second):
+        for found in conflicts(instance, one_region, other_region):
+            one, other = (
+                [{v for v, c in enumerate(cell_of) if c in area} for area in pair]
+                for pair in (found.one, found.other)
+            )
+            assert not can_pass(mesh, (RED, BLUE), one, other)

@@ -15,7 +15,7 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.variables import Variables
 
-__all__ = ["DEFINING", "REDUNDANT", "Group", "fixed_roots"]
+__all__ = ["DEFINING", "REDUNDANT", "Group", "first_petal", "fixed_roots"]
 
 Group = Callable[[cp_model.CpModel, DartGraph, Variables, Sequence[Region]], None]
 

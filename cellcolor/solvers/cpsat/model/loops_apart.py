@@ -17,19 +17,7 @@ from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.solvers.bounds.cover import Region
-from cellcolor.solvers.cpsat.model.constraints import (
-    cover,
-    equal_colors,
-    forced_roots,
-    most_links,
-    no_circles,
-    no_crossing,
-    one_chain,
-    one_color,
-    one_pointer,
-    roots,
-    strands_in_turn,
-)
+from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, first_petal
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.full import fewest_subcells, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
@@ -38,19 +26,7 @@ from cellcolor.union_find import UnionFind
 
 __all__ = ["Apart", "ApartModel", "build_apart", "loops_apart", "read_apart"]
 
-GROUPS = (
-    one_color,
-    one_pointer,
-    one_chain,
-    equal_colors,
-    no_crossing,
-    roots,
-    no_circles,
-    cover,
-    most_links,
-    forced_roots,
-    strands_in_turn,
-)
+GROUPS = tuple(group for group in (*DEFINING, *REDUNDANT) if group is not first_petal)
 """Without ``first_petal``: a loop with a single live dart may be bridged to others."""
 
 
