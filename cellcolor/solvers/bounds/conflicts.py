@@ -3,7 +3,7 @@
 Two color regions (``cover``) are looked at by themselves, their cells merged where nothing
 separates them (``merged_cells``). Around a hub, a cell of all colors with a ring of one-colored
 cells, the petals, two petals of one color and two of another that follow in turn are in conflict:
-whoever connects the first two parts the others. The proof is in docs/solver.md, "Conflicts".
+whoever connects the first two parts the others. The proof is in docs/bounds.md, "Conflicts".
 """
 
 from __future__ import annotations
@@ -172,7 +172,7 @@ class Side:
             far: another one.
 
         Returns:
-            One for each component of the wall (docs/solver.md, "Conflicts") of whose merged cells
+            One for each component of the wall (docs/bounds.md, "Conflicts") of whose merged cells
             some are parted.
         """
         if not self._wall or not {near, far} <= self._tree.keys():

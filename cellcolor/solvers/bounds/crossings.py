@@ -17,7 +17,7 @@ def enough_crossings(
     """Strands of each live edge that are enough for a minimum over all divisions.
 
     Of all divisions of the surface with the fewest segments take one with the fewest sub-cells,
-    and a spanning tree of each segment. Then (docs/solver.md, "Crossing an edge twice")
+    and a spanning tree of each segment. Then (docs/bounds.md, "Crossing an edge twice")
 
     - successive strands of an edge that the trees cross have different colors, so an edge with a
       single joinable color is crossed once;

@@ -1,4 +1,4 @@
-"""Cutting paths of a painting: how many curves part its cells (docs/solver.md)."""
+"""Cutting paths of a painting: how many curves part its cells (docs/encodings.md)."""
 
 from __future__ import annotations
 

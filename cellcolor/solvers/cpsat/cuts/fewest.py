@@ -1,4 +1,4 @@
-"""Fewest cutting paths once the number of segments is known (docs/solver.md)."""
+"""Fewest cutting paths once the number of segments is known (docs/encodings.md)."""
 
 from __future__ import annotations
 

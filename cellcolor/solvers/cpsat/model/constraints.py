@@ -203,7 +203,7 @@ def strands_in_turn(
     """The lower strands of an edge are joined first, successive ones in different colors.
 
     Which strands the corridors take is all the same; why their colors differ stands in
-    docs/solver.md, "Crossing an edge twice".
+    docs/bounds.md, "Crossing an edge twice".
     """
     seams = {seam.id for seam in graph.seams}
     index = {dart.name: number for number, dart in enumerate(graph.darts)}

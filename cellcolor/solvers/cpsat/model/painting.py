@@ -97,7 +97,7 @@ def canonical(graph: DartGraph, painting: Painting) -> Painting:
 
     Each of them leaves as many segments or fewer. The first two only add joins or take away
     sub-cells; the third takes away a join and a sub-cell, so that all this comes to an end. On a
-    graph without seams there are no more cutting paths than before either (docs/solver.md).
+    graph without seams there are no more cutting paths than before either (docs/encodings.md).
     """
     cells = [_Cell(loops, blocks) for loops, blocks in zip(graph.loops, painting, strict=True)]
     waiting = dict.fromkeys(reversed(range(len(cells))))

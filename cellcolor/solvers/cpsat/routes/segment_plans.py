@@ -2,7 +2,7 @@
 
 A segment plan looks at segments two at a time only. It can be made in milliseconds where the full
 model takes seconds; where there is none with so many segments, there is no division of the surface
-with so many either (docs/solver.md, "Plans").
+with so many either (docs/bounds.md, "Segment plans").
 """
 
 from __future__ import annotations
@@ -63,7 +63,7 @@ class Undecided(Exception):
 
 
 class Planner:
-    """Plans for an instance, with the partings found so far (docs/solver.md, "Conflicts").
+    """Plans for an instance, with the partings found so far (docs/bounds.md, "Conflicts").
 
     Args:
         instance: the topological graph.
