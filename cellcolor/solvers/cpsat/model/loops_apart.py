@@ -1,9 +1,9 @@
 """A model for divisions in which cutting paths connect no two loops of a cell.
 
 In such a division loops and sub-cells hang together like a forest (docs/encodings.md, "Fewest
-cutting paths"). So each loop is divided on its own, as if it were a cell's only one, and a sub-cell on one
-loop is joined to a sub-cell on another by a **bridge**, which may lie anywhere in the cell: bridges
-never cross, as long as those of a cell make no circle of its loops. No seams are needed.
+cutting paths"). So each loop is divided on its own, as if it were a cell's only one, and a sub-cell
+on one loop is joined to a sub-cell on another by a **bridge**, which may lie anywhere in the cell:
+bridges never cross, as long as those of a cell make no circle of its loops. No seams are needed.
 """
 
 from __future__ import annotations
