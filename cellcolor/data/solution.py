@@ -33,6 +33,7 @@ SCHEME_FORMAT = "cellcolor/scheme"
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 SearchSpace = Literal["paper", "surface"]
+"""Which divisions are looked for (docs/semantics.md, section 4)."""
 Status = Literal["optimal", "feasible", "unknown"]
 
 
