@@ -47,6 +47,7 @@ nitpicky = True
 _OTHERS = "annotated_types click coal fcl matplotlib mpl_toolkits networkx numpy ortools pinocchio"
 _OTHERS += " plotly pydantic rich scipy trimesh np nx pin"
 nitpick_ignore_regex = [
+    (r"py:attr", r"cellcolor\..*|\w+\.\w+"),  # they stand in the lists of their classes
     (r"py:.*", rf"({'|'.join([*_OTHERS.split(), *sys.stdlib_module_names])})(\..*)?"),
     # Type variables, names for type checkers only, what annotated_types says of numbers, and
     # halves of a signature that Sphinx cannot read because of a dataclass's default factory.

@@ -67,7 +67,10 @@ class PreparedScene:
         return self.workplace.robot
 
     def inverse(self, points: Array, directions: Array) -> Array:
-        """All branches (n, branches, joints) in rad; see :class:`InverseKinematics`."""
+        """All branches (n, branches, joints) in rad.
+
+        See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
+        """
         found = np.empty((len(points), len(self.kinematics.branches), self.robot.joints))
         for first in range(0, len(points), _AT_ONCE):
             self.deadline.check()
