@@ -37,6 +37,8 @@ class Refined:
 
     def surface(self) -> LabelledSurface:
         """The refined surface, to be decomposed, saved and planned on like any other."""
+        if len(self.vertices) == len(self.old.vertices):
+            return self.old
         origin = self.stands_for.tolist()
         old = {(crack.i, crack.j): crack.colors for crack in self.old.cracks}
         cracks = []
@@ -96,7 +98,9 @@ def _parted_face(
     face: tuple[int, int, int], middle: dict[tuple[int, int], int]
 ) -> list[tuple[int, int, int]]:
     """One triangle parted so that its neighbors, parted in the same way, fit."""
-    found = [middle.get((min(p, q), max(p, q))) for p, q in zip(face, face[1:] + face[:1], strict=True)]
+    found = [
+        middle.get((min(p, q), max(p, q))) for p, q in zip(face, face[1:] + face[:1], strict=True)
+    ]
     count = sum(m is not None for m in found)
     if count == 0:
         return [face]

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Mapping
 from heapq import heappop, heappush
 from itertools import pairwise
 
-from networkx.utils import UnionFind
+from cellcolor.union_find import UnionFind
 
 __all__ = ["TooNarrow", "grow_trees"]
 

@@ -36,8 +36,12 @@ def random_division(
     for cell, darts in zip(instance.cells, live_lists(instance, seams, strands), strict=True):
         blocks.append(_noncrossing(darts, rng))
         liked = favorite if favorite in cell.colors and rng.random() < 0.5 else None
-        colors.append([rng.choice(cell.colors) if liked is None or rng.random() < 0.5 else liked
-                       for _ in blocks[-1]])
+        colors.append(
+            [
+                rng.choice(cell.colors) if liked is None or rng.random() < 0.5 else liked
+                for _ in blocks[-1]
+            ]
+        )
     at = {
         strand: (cell, block)
         for cell, own in enumerate(blocks)
@@ -75,10 +79,12 @@ def random_division(
                     [
                         SubCell(
                             colors[cell.id][block],
-                            tuple([
-                                dart if strands == 1 and not seams else (dart, strand)
-                                for dart, strand in kept[cell.id, block]
-                            ]),
+                            tuple(
+                                [
+                                    dart if strands == 1 and not seams else (dart, strand)
+                                    for dart, strand in kept[cell.id, block]
+                                ]
+                            ),
                             segment[cell.id, block],
                         )
                         for block in held

@@ -1,0 +1,143 @@
+"""Where the darts of divided cells cross their edges on a refined mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Index
+from cellcolor.data.darts import Strand, strand_of, twin
+from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.solution import CellDivision
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
+from cellcolor.painting.refined import Refined
+from cellcolor.union_find import UnionFind
+
+__all__ = ["Region", "borders_of", "choose_gates", "regions_of", "steps_by_edge"]
+
+
+@dataclass(frozen=True, slots=True)
+class Region:
+    """A sub-cell as it is on the surface, where no seam parts anything.
+
+    Attributes:
+        segment: the segment it belongs to.
+        strands: its darts in state 1, those of seams left out.
+    """
+
+    segment: int
+    strands: frozenset[Strand]
+
+
+def regions_of(cell: CellDivision, seams: set[int]) -> list[Region]:
+    """The sub-cells of a cell: those that a seam parts are one.
+
+    What hangs on seams alone is left out, unless it is all that there is.
+
+    Args:
+        cell: the cell's division, in the cyclic list that seams make of its loops.
+        seams: the seams' ids.
+    """
+    holder = {
+        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
+    }
+    together = UnionFind(range(len(cell.subcells)))
+    for strand, number in holder.items():
+        if abs(strand[0]) in seams and twin(strand) in holder:
+            together.union(number, holder[twin(strand)])
+    regions = []
+    for parts in together.sets():
+        strands = frozenset(
+            strand
+            for part in parts
+            for strand in map(strand_of, cell.subcells[part].darts)
+            if abs(strand[0]) not in seams
+        )
+        regions.append(Region(cell.subcells[min(parts)].segment, strands))
+    return [region for region in regions if region.strands] or regions[:1]
+
+
+def borders_of(surface: LabelledSurface, mesh: ClosedMesh, cells: Index) -> list[Curve]:
+    """The topological edges of a surface, numbered from 1 as the decomposition does.
+
+    Args:
+        surface: the labelled surface.
+        mesh: its mesh, holes closed.
+        cells: (n,) the cell of each vertex.
+    """
+    outside = mesh.vertex_count - mesh.real_count
+    sets = [*map(frozenset, surface.vertex_colors), *[frozenset[int]()] * outside]
+    return Borders(
+        mesh,
+        [*cells.tolist(), *[OUTSIDE] * outside],
+        lambda a, b: (sets[a] & sets[b]) - surface.cracked(a, b),
+        lambda a, b: bool(surface.cracked(a, b)),
+    ).curves()
+
+
+def steps_by_edge(
+    refined: Refined, old_curves: Sequence[Curve], curves: Sequence[Curve]
+) -> dict[int, list[Step]]:
+    """The steps of each topological edge on the refined mesh, its left cell on their left.
+
+    Args:
+        refined: the refinement.
+        old_curves: the edges on the surface that was refined, numbered from 1.
+        curves: the edges on the refined surface, in any order and direction.
+    """
+    dart_of: dict[Step, int] = {}
+    for number, curve in enumerate(old_curves, start=1):
+        for a, b in curve.steps:
+            dart_of[a, b] = number
+            dart_of.setdefault((b, a), -number)
+    count, old_count = len(refined.vertices), len(refined.old.vertices)
+    # Vertices beyond the last are those that close the holes of the mesh, in the same order.
+    stands_for = {
+        v: v - count + old_count for curve in curves for step in curve.steps for v in step
+    }
+    stands_for |= dict(enumerate(refined.stands_for.tolist()))
+    found: dict[int, list[Step]] = {}
+    for curve in curves:
+        a, b = curve.steps[0]
+        dart = dart_of[stands_for[a], stands_for[b]]
+        steps = list(curve.steps)
+        found[abs(dart)] = steps if dart > 0 else [(b, a) for a, b in reversed(steps)]
+    return found
+
+
+def choose_gates(
+    regions: Sequence[Sequence[Region]], divided: set[int], steps: dict[int, list[Step]]
+) -> tuple[dict[Strand, int], list[int]]:
+    """The vertex from which each dart in state 1 of a divided cell crosses its edge.
+
+    The strands of an edge that are used share it evenly, and both sides of a strand get the two
+    ends of one mesh edge.
+
+    Args:
+        regions: those of each cell.
+        divided: the cells with several.
+        steps: of each topological edge, in order.
+
+    Returns:
+        The vertices, and the edges that cross fewer mesh edges than they have strands in use:
+        theirs are not among the vertices.
+    """
+    used: dict[int, set[int]] = {}
+    for cell in sorted(divided):
+        for region in regions[cell]:
+            for dart, strand in region.strands:
+                used.setdefault(abs(dart), set()).add(strand)
+    gates: dict[Strand, int] = {}
+    short = []
+    for edge, numbers in used.items():
+        along = steps[edge]
+        if len(numbers) > len(along):
+            short.append(edge)
+            continue
+        places = (2 * np.arange(len(numbers)) + 1) * len(along) // (2 * len(numbers))
+        for strand, place in zip(sorted(numbers), places.tolist(), strict=True):
+            gates[edge, strand], gates[-edge, strand] = along[place]
+    return gates, short
