@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Index
 from cellcolor.data.darts import Strand, strand_of, twin
-from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.solution import CellDivision
-from cellcolor.data.surface import LabelledSurface
-from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
+from cellcolor.decomposition.borders import Curve, Step
 from cellcolor.painting.refined import Refined
 from cellcolor.union_find import UnionFind
 
-__all__ = ["Region", "borders_of", "choose_gates", "regions_of", "steps_by_edge"]
+__all__ = ["Region", "choose_gates", "regions_of", "steps_by_edge"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,49 +57,28 @@ def regions_of(cell: CellDivision, seams: set[int]) -> list[Region]:
     return [region for region in regions if region.strands] or regions[:1]
 
 
-def borders_of(surface: LabelledSurface, mesh: ClosedMesh, cells: Index) -> list[Curve]:
-    """The topological edges of a surface, numbered from 1 as the decomposition does.
-
-    Args:
-        surface: the labelled surface.
-        mesh: its mesh, holes closed.
-        cells: (n,) the cell of each vertex.
-    """
-    outside = mesh.vertex_count - mesh.real_count
-    sets = [*map(frozenset, surface.vertex_colors), *[frozenset[int]()] * outside]
-    return Borders(
-        mesh,
-        [*cells.tolist(), *[OUTSIDE] * outside],
-        lambda a, b: (sets[a] & sets[b]) - surface.cracked(a, b),
-        lambda a, b: bool(surface.cracked(a, b)),
-    ).curves()
-
-
 def steps_by_edge(
-    refined: Refined, old_curves: Sequence[Curve], curves: Sequence[Curve]
+    refined: Refined, old_curves: Mapping[int, Curve], curves: Iterable[Curve]
 ) -> dict[int, list[Step]]:
     """The steps of each topological edge on the refined mesh, its left cell on their left.
 
     Args:
         refined: the refinement.
-        old_curves: the edges on the surface that was refined, numbered from 1.
+        old_curves: the edges on the surface that was refined, by their ids.
         curves: the edges on the refined surface, in any order and direction.
     """
     dart_of: dict[Step, int] = {}
-    for number, curve in enumerate(old_curves, start=1):
+    for edge, curve in old_curves.items():
         for a, b in curve.steps:
-            dart_of[a, b] = number
-            dart_of.setdefault((b, a), -number)
+            dart_of[a, b] = edge
+            dart_of.setdefault((b, a), -edge)
     count, old_count = len(refined.vertices), len(refined.old.vertices)
-    # Vertices beyond the last are those that close the holes of the mesh, in the same order.
-    stands_for = {
-        v: v - count + old_count for curve in curves for step in curve.steps for v in step
-    }
-    stands_for |= dict(enumerate(refined.stands_for.tolist()))
+    origin = refined.stands_for.tolist()
     found: dict[int, list[Step]] = {}
     for curve in curves:
-        a, b = curve.steps[0]
-        dart = dart_of[stands_for[a], stands_for[b]]
+        # Vertices beyond the last close the holes of the mesh, in the same order on both.
+        a, b = (origin[v] if v < count else v - count + old_count for v in curve.steps[0])
+        dart = dart_of[a, b]
         steps = list(curve.steps)
         found[abs(dart)] = steps if dart > 0 else [(b, a) for a, b in reversed(steps)]
     return found

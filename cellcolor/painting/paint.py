@@ -11,14 +11,15 @@ import numpy as np
 from cellcolor.arrays import Index
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.darts import Strand
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.decomposition.borders import ClosedMesh
+from cellcolor.decomposition import Decomposition
+from cellcolor.decomposition.borders import Borders, ClosedMesh
 from cellcolor.errors import InputError, RefusedResult, TooLarge
-from cellcolor.painting.gates import Region, borders_of, choose_gates, regions_of, steps_by_edge
+from cellcolor.painting.gates import Region, choose_gates, regions_of, steps_by_edge
 from cellcolor.painting.refined import Refined, unrefined
 from cellcolor.painting.trees import TooNarrow, grow_trees
 from cellcolor.union_find import UnionFind
@@ -53,7 +54,10 @@ class Painted:
 
 
 def paint(
-    surface: LabelledSurface, instance: Instance, solution: Solution, deadline: Deadline = NEVER
+    surface: LabelledSurface,
+    decomposition: Decomposition,
+    solution: Solution,
+    deadline: Deadline = NEVER,
 ) -> Painted:
     """Paint every vertex of a surface in the colors of a solution (docs/painting.md).
 
@@ -64,9 +68,8 @@ def paint(
 
     Args:
         surface: the labelled surface.
-        instance: its topological graph, with the edges numbered as
-            :func:`~cellcolor.decomposition.decompose` does.
-        solution: a valid solution of that instance.
+        decomposition: its topological graph, and where that lies on it.
+        solution: a valid solution of that graph.
         deadline: when to give up.
 
     Returns:
@@ -74,26 +77,25 @@ def paint(
         are proved to be the fewest for the surface.
 
     Raises:
-        InputError: the solution has no division, or the instance no surface.
+        InputError: the solution has no division, or it is not known where the graph's edges lie.
         OutOfTime: the deadline came first.
         TooLarge: the refined mesh would not fit into memory.
         RefusedResult: the checker counts other segments than the solution says.
     """
     if solution.cells is None or solution.segments is None:
         raise InputError(None, "cells", "holds no division to paint")
-    if instance.surface is None:
-        raise InputError(None, "surface", "is missing: there is nothing to paint on")
-    cell_of = np.array(instance.surface.vertex_cell, dtype=np.int64)
+    if len(decomposition.curves) < len(decomposition.instance.edges):
+        raise InputError(None, "edges", "are not numbered in the order in which they lie")
+    cell_of = np.array(decomposition.vertex_cell, dtype=np.int64)
     seams = {seam.id for seam in solution.seams}
     regions = [regions_of(cell, seams) for cell in solution.cells]
     divided = {number for number, own in enumerate(regions) if len(own) > 1}
-    old_curves = borders_of(surface, ClosedMesh(surface), cell_of)
     refined = unrefined(surface)
     while len(refined.vertices) <= MOST_VERTICES:
-        mesh = _Mesh(refined, cell_of)
         deadline.check()
-        curves = borders_of(mesh.surface, mesh.closed, mesh.cell_of)
-        steps = steps_by_edge(refined, old_curves, curves)
+        mesh = _Mesh(refined, cell_of)
+        curves = mesh.borders.curves(deadline)
+        steps = steps_by_edge(refined, decomposition.curves, curves)
         gates, short = choose_gates(regions, divided, steps)
         narrow = np.zeros(len(refined.vertices), dtype=bool)
         for edge in short:
@@ -120,6 +122,8 @@ class _Mesh:
         self.surface = refined.surface()
         self.closed = ClosedMesh(self.surface)
         self.cell_of = cell_of[refined.stands_for]
+        outside = [OUTSIDE] * (self.closed.vertex_count - self.closed.real_count)
+        self.borders = Borders(self.surface, self.closed, [*self.cell_of.tolist(), *outside])
 
     def cracked(self, a: int, b: int) -> bool:
         """Whether any color is cracked along a mesh edge."""

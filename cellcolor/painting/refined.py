@@ -2,9 +2,9 @@
 
 A new vertex lies in the middle of a mesh edge and copies one end of it: it has that end's colors,
 and stands for that end in all that follows. A mesh edge between vertices that stand for the same
-old vertex has no crack; any other has the crack of the old mesh edge that it stands for. Contracting
-every group of vertices that stand for one old vertex gives the old mesh again, so the topological
-graph of the refined surface is that of the old one (docs/painting.md).
+old vertex has no crack; any other has the crack of the old mesh edge that it stands for.
+Contracting every group of vertices that stand for one old vertex gives the old mesh again, so the
+topological graph of the refined surface is that of the old one (docs/painting.md).
 """
 
 from __future__ import annotations
@@ -40,12 +40,10 @@ class Refined:
         if len(self.vertices) == len(self.old.vertices):
             return self.old
         origin = self.stands_for.tolist()
-        old = {(crack.i, crack.j): crack.colors for crack in self.old.cracks}
         cracks = []
         for a, b in _edges(self.faces).tolist():
-            i, j = sorted((origin[a], origin[b]))
-            if (i, j) in old:
-                cracks.append(Crack(a, b, old[i, j]))
+            if colors := self.old.cracked(origin[a], origin[b]):
+                cracks.append(Crack(a, b, tuple(colors)))
         given_up = set(self.old.given_up)
         return LabelledSurface(
             name=self.old.name,

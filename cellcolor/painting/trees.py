@@ -184,9 +184,9 @@ class _Trees:
             for number, starts in by_walk.items():
                 ends = {f for other, found in by_walk.items() if other > number for f in found}
                 way = self._shortest(block, starts, ends)
-                if way and (best is None or len(way) < len(best[1])):
-                    if self._leaves_room(block, way):
-                        best = block, way
+                shorter = way and (best is None or len(way) < len(best[1]))
+                if way and shorter and self._leaves_room(block, way):
+                    best = block, way
         return best
 
     def _shortest(self, block: int, starts: set[int], ends: set[int]) -> list[int] | None:
@@ -236,12 +236,12 @@ class _Trees:
                     # The way is a wall to all but its own sub-cell.
                     if (f in taken) == (x in taken):
                         linked.union(here, "way" if x in taken else x)
-                elif (other := self.owner.get(x)) is not None and self.pieces[other] > 1:
-                    if f not in taken or other == block:
-                        linked.union(here, ("piece", self.piece[x]))
+                    continue
+                other = self._unfinished((f, x))
+                if other is not None and (f not in taken or other == block):
+                    linked.union(here, ("piece", self.piece[x]))
         for other, count in enumerate(self.pieces):
             pieces = {self.piece[v] for v, owner in self.owner.items() if owner == other}
-            if count > 1 and len({linked[("piece", piece)] for piece in pieces}) > 1:
-                # Its own way may also be met from what stays free.
+            if count > 1 and len({linked["piece", piece] for piece in pieces}) > 1:
                 return False
         return True

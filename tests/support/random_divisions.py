@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections import defaultdict
+from itertools import pairwise
 
 import networkx as nx
 
@@ -18,7 +19,7 @@ def random_seams(instance: Instance, strands: int, rng: random.Random) -> tuple[
     seams = []
     for cell in instance.cells:
         live = [loop for loop in cell.loops if any(instance.joinable(abs(d)) for d in loop)]
-        for near, far in zip(live, live[1:], strict=False):
+        for near, far in pairwise(live):
             number += 1
             seams.append(
                 Seam(number, cell.id, rng.choice(near), rng.choice(far), rng.randint(0, strands))

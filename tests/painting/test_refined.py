@@ -1,0 +1,64 @@
+"""Refined surfaces: the same topological graph, and the old vertices as they were."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from isomorphism import isomorphic
+
+from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.decomposition import decompose
+from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.painting.refined import unrefined
+
+SHAPES = st.sampled_from(["disc", "annulus", "sphere", "torus"])
+
+
+@given(st.integers(0, 10**6), SHAPES, st.integers(0, 4), st.floats(0.02, 1.0), st.integers(1, 3))
+@settings(max_examples=40, deadline=None)
+def test_the_graph_stays_what_it_was(
+    seed: int, shape: str, cracks: int, share: float, rounds: int
+) -> None:
+    """Whatever is marked to be refined, and however often: held to an independent isomorphism."""
+    surface = voronoi(seed, shape, size=9, regions=12, colors=3, cracks=cracks, holes=1)
+    rng = np.random.default_rng(seed)
+    refined = unrefined(surface)
+    for _ in range(rounds):
+        refined = refined.halved(rng.random(len(refined.vertices)) < share)
+    finer = refined.surface()
+    count = len(surface.vertices)
+    assert np.array_equal(finer.vertices[:count], surface.vertices)
+    assert finer.vertex_colors[:count] == surface.vertex_colors
+    assert isomorphic(decompose(finer), decompose(surface))
+
+
+def test_one_edge_between_two_cells_with_a_crack() -> None:
+    """By hand: the middle copies the marked end, and the crack stays beyond it."""
+    square = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]
+    surface = LabelledSurface(
+        "square", ("a", "b"), square, [[0, 1, 2], [0, 2, 3]], ((0, 1), (0,), (0,), (0,)),
+        (Crack(0, 2, (0,)),), given_up=(),
+    )  # fmt: skip
+    finer = unrefined(surface).halved(np.array([True, False, False, False])).surface()
+    # New vertices in the middle of 0-1, 0-2 and 0-3, in this order, all with the colors of 0.
+    assert finer.vertices[4:].tolist() == [[0.5, 0, 0], [0.5, 0.5, 0], [0, 0.5, 0]]
+    assert finer.vertex_colors[4:] == ((0, 1),) * 3
+    # 0-2 is 0-5-2 now: vertex 5 stands for 0, so that the crack is between 5 and 2. Of the first
+    # face a square 4-1-2-5 is left, parted between 2 and 4: that stands for 2-0 as well.
+    assert finer.cracks == (Crack(2, 4, (0,)), Crack(2, 5, (0,)))
+
+
+def test_unreachable_and_given_up_vertices_are_copied_as_such() -> None:
+    triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    surface = LabelledSurface(
+        "triangle", ("a",), triangle, [[0, 1, 2]], ((), (), (0,)), given_up=(1,)
+    )
+    finer = unrefined(surface).halved(np.array([False, True, False])).surface()
+    assert finer.vertex_colors == ((), (), (0,), (), ())
+    assert finer.given_up == (1, 3, 4)
+
+
+def test_without_marks_it_is_the_surface_itself() -> None:
+    surface = voronoi(1, "disc", size=8, regions=5, colors=2)
+    assert unrefined(surface).surface() is surface
