@@ -24,6 +24,7 @@ _ROOMS = {
     "cellcolor.data.surface": ("Crack", "LabelledSurface"),
     "cellcolor.deadline": ("OutOfTime",),
     "cellcolor.door.judging": ("check", "judge", "proven_range"),
+    "cellcolor.door.painting": ("paint",),
     "cellcolor.door.reading": ("read",),
     "cellcolor.door.result": ("Result",),
     "cellcolor.door.shipped": ("library",),
@@ -31,6 +32,7 @@ _ROOMS = {
     "cellcolor.door.solving": ("build", "decompose", "solve"),
     "cellcolor.errors": ("CellcolorError", "ContradictionError", "InputError", "TooLarge"),
     "cellcolor.oracle": ("ProvenRange", "Verdict"),
+    "cellcolor.painting.paint": ("Painted",),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 
@@ -49,6 +51,7 @@ __all__ = [
     "Instance",
     "LabelledSurface",
     "OutOfTime",
+    "Painted",
     "Plan",
     "ProvenRange",
     "Result",
@@ -62,6 +65,7 @@ __all__ = [
     "decompose",
     "judge",
     "library",
+    "paint",
     "proven_range",
     "read",
     "show",

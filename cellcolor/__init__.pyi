@@ -16,6 +16,7 @@ from cellcolor.deadline import OutOfTime as OutOfTime
 from cellcolor.door.judging import check as check
 from cellcolor.door.judging import judge as judge
 from cellcolor.door.judging import proven_range as proven_range
+from cellcolor.door.painting import paint as paint
 from cellcolor.door.reading import read as read
 from cellcolor.door.result import Result as Result
 from cellcolor.door.shipped import library as library
@@ -30,4 +31,5 @@ from cellcolor.errors import InputError as InputError
 from cellcolor.errors import TooLarge as TooLarge
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
+from cellcolor.painting.paint import Painted as Painted
 from cellcolor.version import __version__ as __version__

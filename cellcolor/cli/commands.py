@@ -224,6 +224,37 @@ def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
 
 
 @cellcolor.command()
+@click.argument("source", metavar="FILE", type=_INPUT)
+@click.argument("claim", metavar="SOLUTION.json", type=_PATH)
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT.surface.json",
+    required=True,
+    type=_PATH,
+    help="The painted surface; the plan on it is written beside, as OUT.plan.json.",
+)
+@click.option(
+    "--time-limit",
+    metavar="S",
+    type=_SECONDS,
+    help="Seconds, reading included.  [default: as long as it takes]",
+)
+def paint(source: Path, claim: Path, output: Path, time_limit: float | None) -> int:
+    """Paint every vertex of a surface in the colors of a solution.
+
+    FILE is a labelled surface, a scene, or an instance that names its surface. Where a cell is
+    divided and its mesh is too coarse for that, the surface is refined.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.paint import paint_files
+    from cellcolor.deadline import Deadline
+
+    return paint_files(source, claim, output, Deadline.after(time_limit, begun))
+
+
+@cellcolor.command()
 @click.argument("files", metavar="FILE…", nargs=-1, required=True, type=_INPUT)
 @click.option(
     "--time-limit",

@@ -15,6 +15,7 @@ from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders, ClosedMesh
@@ -30,7 +31,7 @@ MOST_VERTICES = 1_000_000
 """More are not made: they would not fit into the memory that is promised."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False, eq=False)
 class Painted:
     """A painted solution.
 
@@ -51,6 +52,12 @@ class Painted:
     segment_of: Index
     stands_for: Index
     merged: tuple[tuple[int, ...], ...]
+
+    def __str__(self) -> str:
+        lift_offs = count(max(0, self.segments - 1), "lift-off")
+        vertices = count(len(self.surface.vertices), "vertex", "vertices")
+        segments = count(self.segments, "segment")
+        return f"{self.surface.name}: painted in {segments}, {lift_offs}, on {vertices}"
 
 
 def paint(

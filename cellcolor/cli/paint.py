@@ -1,0 +1,64 @@
+"""``cellcolor paint``: a solution as one color for each vertex of a surface."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cellcolor.cli.exits import Exit
+from cellcolor.cli.inputs import read_subject
+from cellcolor.cli.terminal import complain, say
+from cellcolor.data import plan as plan_file
+from cellcolor.data import surface as surface_file
+from cellcolor.data.solution import Solution
+from cellcolor.data.wording import count, listed
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
+
+_SURFACE = kind_of_format(surface_file.FORMAT)
+_PLAN = kind_of_format(plan_file.FORMAT)
+_ENDING = ".surface.json"
+
+
+def paint_files(source: Path, claim: Path, output: Path, deadline: Deadline) -> Exit:
+    """Write a painted surface, and its plan beside it.
+
+    Args:
+        source: a labelled surface, a scene, or an instance that names its surface.
+        claim: a solution of it.
+        output: the surface's file, with the ending ``.surface.json``.
+        deadline: when to give up.
+    """
+    if not output.name.endswith(_ENDING) or is_stream(output):
+        raise InputError(str(output), None, f"must be a file with the ending {_ENDING}")
+    plan_path = output.with_name(output.name.removesuffix(_ENDING) + ".plan.json")
+    inputs = [source, claim]
+    check_output(output, _SURFACE, inputs)
+    check_output(plan_path, _PLAN, inputs)
+    solution = Solution.read(claim)
+
+    from cellcolor.door.painting import paint_by
+
+    try:
+        subject = read_subject(source, deadline)
+        painted = paint_by(subject, solution, deadline)
+    except OutOfTime:
+        complain(f"{source}: not painted: the time limit came first; nothing is written")
+        return Exit.STOPPED
+    except InputError as error:
+        raise error if error.file else error.in_file(str(claim)) from error
+    write(
+        [
+            Output(plan_path, _PLAN, [painted.plan.to_json().encode()]),
+            Output(output, _SURFACE, [painted.surface.to_json().encode()]),
+        ],
+        inputs,
+    )
+    added = len(painted.surface.vertices) - len(subject.surface.vertices)
+    refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
+    lift_offs = count(max(0, painted.segments - 1), "lift-off")
+    say(f"wrote {output}: {count(painted.segments, 'segment')}, {lift_offs}{refined}")
+    say(f"wrote {plan_path}")
+    for group in painted.merged:
+        say(f"  segments {listed(group)} of the solution touch in one color: painted they are one")
+    return Exit.DONE

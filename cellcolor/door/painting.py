@@ -1,0 +1,57 @@
+"""``cellcolor.paint``: from a solution to one color per vertex."""
+
+from __future__ import annotations
+
+from os import PathLike
+
+from cellcolor.checker.division import check_solution
+from cellcolor.data.solution import Solution
+from cellcolor.deadline import Deadline
+from cellcolor.door.result import Result
+from cellcolor.door.solving import deadline_after
+from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.errors import InputError
+from cellcolor.painting.paint import Painted
+from cellcolor.painting.paint import paint as paint_solution
+
+__all__ = ["paint", "paint_by"]
+
+
+def paint(
+    source: Solvable,
+    solution: Solution | Result | str | PathLike[str],
+    *,
+    time_limit: float | None = None,
+) -> Painted:
+    """Paint every vertex of a surface in the colors of a solution (docs/painting.md).
+
+    Args:
+        source: what was solved: a labelled surface, a scene, or an instance that names its
+            surface; its file, its shipped name, the value.
+        solution: its solution, or the file of one.
+        time_limit: seconds, None for as long as it takes.
+
+    Returns:
+        A plan that the checker finds valid, on the surface refined where it had to be. It has
+        exactly as many segments as the solution if these are proved to be the fewest.
+
+    Raises:
+        InputError: one of the two cannot be used, or they do not belong together.
+        OutOfTime: the time limit came first.
+        TooLarge: the refined mesh would not fit into memory.
+    """
+    deadline = deadline_after(time_limit)
+    if isinstance(solution, Result):
+        solution = solution.solution
+    elif not isinstance(solution, Solution):
+        solution = Solution.read(solution)
+    return paint_by(open_subject(source, deadline), solution, deadline)
+
+
+def paint_by(subject: Subject, solution: Solution, deadline: Deadline) -> Painted:
+    """The painting by a moment that may have passed already: :func:`paint`."""
+    surface, decomposition = subject.surface, subject.decomposition
+    problems = check_solution(decomposition.instance, solution).problems
+    if problems:
+        raise InputError(None, None, f"the solution is not valid: {problems[0]}")
+    return paint_solution(surface, decomposition, solution, deadline)

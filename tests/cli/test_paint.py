@@ -1,0 +1,89 @@
+"""``cellcolor paint``: both files, what is refused, and what the checker says of them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from commands import json_lines, run
+from library import INSTANCES, PAPER
+
+import cellcolor
+
+
+def painted(folder: Path, name: str, *options: object) -> tuple[Path, Path]:
+    solution = folder / "solution.json"
+    source = INSTANCES / name
+    assert run("solve", source, "--search-space", "surface", "-o", solution) == 0
+    output = folder / "painted.surface.json"
+    assert run("paint", source, solution, "-o", output, *options) == 0
+    return output, folder / "painted.plan.json"
+
+
+@pytest.mark.parametrize(
+    "name", ["paper/parallel-corridors.surface.json", "random/blobs_2.surface.json"]
+)
+def test_the_checker_finds_the_painting_valid_and_optimal(
+    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    surface, plan = painted(tmp_path, name)
+    said = capsys.readouterr().out
+    assert f"wrote {surface}" in said and f"wrote {plan}" in said
+    assert run("check", surface, plan, "--json") == 0
+    verdict = json_lines(capsys.readouterr().out)[0]
+    # The painted surface is solved anew: nobody is told what was proved before.
+    assert verdict["valid"] and verdict["optimal"]
+
+
+def test_wrong_files_are_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solution = tmp_path / "solution.json"
+    ring, corridors = PAPER / "ring.surface.json", PAPER / "parallel-corridors.surface.json"
+    assert run("solve", ring, "-o", solution) == 0
+    capsys.readouterr()
+    cases = [
+        ((corridors, solution, "-o", tmp_path / "x.surface.json"), "solution.json"),
+        ((ring, solution, "-o", tmp_path / "x.json"), "x.json: must be a file with the ending"),
+        ((ring, ring, "-o", tmp_path / "x.surface.json"), "ring.surface.json: format"),
+        ((PAPER / "three-loops.json", solution, "-o", tmp_path / "x.surface.json"), "surface: is"),
+        ((ring, solution, "-o", ring), "is an input"),
+    ]
+    before = ring.read_bytes()
+    for arguments, complaint in cases:
+        assert run("paint", *arguments) == 2
+        lines = capsys.readouterr().err.splitlines()
+        assert len(lines) == 1 and complaint in lines[0], lines
+    assert ring.read_bytes() == before
+    assert {path.name for path in tmp_path.iterdir()} == {"solution.json"}
+
+
+def test_a_foreign_plan_beside_it_is_not_overwritten(
+    tmp_path: Path,
+) -> None:
+    solution, foreign = tmp_path / "solution.json", tmp_path / "x.plan.json"
+    ring = PAPER / "ring.surface.json"
+    assert run("solve", ring, "-o", solution) == 0
+    foreign.write_text(json.dumps({"format": "somebody/else"}))
+    assert run("paint", ring, solution, "-o", tmp_path / "x.surface.json") == 2
+    assert json.loads(foreign.read_text()) == {"format": "somebody/else"}
+    assert not (tmp_path / "x.surface.json").exists()
+
+
+def test_out_of_time_nothing_is_written(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    solution = tmp_path / "solution.json"
+    ring = PAPER / "ring.surface.json"
+    assert run("solve", ring, "-o", solution) == 0
+    capsys.readouterr()
+    output = tmp_path / "x.surface.json"
+    assert run("paint", ring, solution, "-o", output, "--time-limit", "1e-6") == 3
+    assert "not painted" in capsys.readouterr().err
+    assert not output.exists()
+
+
+def test_in_python() -> None:
+    result = cellcolor.solve("parallel-corridors.surface.json", search_space="surface")
+    painting = cellcolor.paint("parallel-corridors.surface.json", result)
+    # Two corridors side by side through both middle cells (docs/semantics.md, section 4).
+    assert painting.segments == 2
+    assert cellcolor.judge(painting.surface, painting.plan).optimal
+    assert "2 segments, 1 lift-off" in str(painting)
