@@ -21,13 +21,11 @@ def painted(folder: Path, name: str, *options: object) -> tuple[Path, Path]:
     return output, folder / "painted.plan.json"
 
 
-@pytest.mark.parametrize(
-    "name", ["paper/parallel-corridors.surface.json", "random/blobs_2.surface.json"]
-)
+@pytest.mark.parametrize("name", ["paper/parallel-corridors", "random/blobs_2"])
 def test_the_checker_finds_the_painting_valid_and_optimal(
     tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    surface, plan = painted(tmp_path, name)
+    surface, plan = painted(tmp_path, f"{name}.surface.json")
     said = capsys.readouterr().out
     assert f"wrote {surface}" in said and f"wrote {plan}" in said
     assert run("check", surface, plan, "--json") == 0
