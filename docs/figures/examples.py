@@ -73,7 +73,7 @@ class Example:
 
     def segments(self, division: Solution) -> NDArray[np.int64]:
         """The segment of each point in a division, as ``cellcolor show`` paints it."""
-        return by_solution(self.surface, self.decomposition, division).labels
+        return by_solution(self.surface, self.decomposition, division)[1].labels
 
     @cached_property
     def edges(self) -> dict[int, Array]:
