@@ -12,7 +12,7 @@ from cellcolor.checker.drawable import can_be_drawn
 from cellcolor.checker.groups import Groups
 from cellcolor.checker.scheme_rules import (
     Joinable,
-    Painted,
+    PaintedCell,
     crossing,
     idle_cut,
     superfluous,
@@ -85,7 +85,7 @@ def check_division(
         return own_colors[edge] if edge in own_colors else frozenset(instance.joinable(edge))
 
     problems: list[str] = []
-    painted: list[Painted] = []
+    painted: list[PaintedCell] = []
     for cell, darts in zip(division, lists, strict=True):
         found = _cell_problems(instance, cell, darts) or _crossing_problems(cell, darts)
         problems += found
@@ -202,11 +202,11 @@ def _crossing_problems(cell: CellDivision, darts: Sequence[Strand]) -> list[str]
     return [f"cells[{cell.id}].subcells: {crossed[0]} and {crossed[1]} cross"]
 
 
-def _painted(cell: CellDivision, darts: Sequence[Strand]) -> Painted:
+def _painted(cell: CellDivision, darts: Sequence[Strand]) -> PaintedCell:
     block_of = {
         strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
     }
-    return Painted(darts, block_of, [sub.color for sub in cell.subcells])
+    return PaintedCell(darts, block_of, [sub.color for sub in cell.subcells])
 
 
 def _edge_problems(division: Division, joinable: Joinable) -> list[str]:
@@ -257,7 +257,7 @@ def _segments(division: Division) -> tuple[list[str], int]:
     return problems, len(components)
 
 
-def _not_canonical(cells: Sequence[Painted]) -> list[str]:
+def _not_canonical(cells: Sequence[PaintedCell]) -> list[str]:
     reasons = []
     for number, cell in enumerate(cells):
         block = superfluous(cell)

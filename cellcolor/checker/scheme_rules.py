@@ -13,7 +13,7 @@ Joinable = Callable[[Strand], frozenset[int]]
 
 
 @dataclass(frozen=True, slots=True)
-class Painted:
+class PaintedCell:
     """A cell's division as the rules see it.
 
     Attributes:
@@ -31,7 +31,7 @@ class Painted:
         return [dart for dart in self.darts if dart in self.block_of]
 
 
-def crossing(cell: Painted) -> tuple[int, int] | None:
+def crossing(cell: PaintedCell) -> tuple[int, int] | None:
     """Two sub-cells whose darts interleave around the border, so that their cuts would cross."""
     blocks = [cell.block_of[dart] for dart in cell.joined()]
     remaining = Counter(blocks)
@@ -49,7 +49,7 @@ def crossing(cell: Painted) -> tuple[int, int] | None:
     return None
 
 
-def superfluous(cell: Painted) -> int | None:
+def superfluous(cell: PaintedCell) -> int | None:
     """Rule 2: with two sub-cells or more, one that has fewer than two darts in state 1."""
     if len(cell.colors) < 2:
         return None
@@ -59,7 +59,7 @@ def superfluous(cell: Painted) -> int | None:
     return next((block for block, count in enumerate(counts) if count < 2), None)
 
 
-def idle_cut(cell: Painted) -> tuple[Strand, Strand] | None:
+def idle_cut(cell: PaintedCell) -> tuple[Strand, Strand] | None:
     """Rule 4: two successive darts in state 1 of different sub-cells with one color."""
     joined = cell.joined()
     for dart, following in zip(joined, joined[1:] + joined[:1], strict=True):
@@ -69,7 +69,7 @@ def idle_cut(cell: Painted) -> tuple[Strand, Strand] | None:
     return None
 
 
-def unavoidable_join(cells: Sequence[Painted], joinable: Joinable) -> Strand | None:
+def unavoidable_join(cells: Sequence[PaintedCell], joinable: Joinable) -> Strand | None:
     """Rule 5: an edge in state 0 that has to show one joinable color on both of its sides.
 
     Between two successive darts in state 1, the darts in state 0 show first the color of the
@@ -99,7 +99,7 @@ def unavoidable_join(cells: Sequence[Painted], joinable: Joinable) -> Strand | N
 _Literal = tuple[Strand, bool]
 
 
-def _gaps(cell: Painted) -> Iterator[tuple[list[Strand], int, int]]:
+def _gaps(cell: PaintedCell) -> Iterator[tuple[list[Strand], int, int]]:
     """The runs of darts in state 0, each with the colors before and after it."""
     joined = cell.joined()
     if not joined:

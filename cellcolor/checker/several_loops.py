@@ -9,7 +9,7 @@ from itertools import combinations
 from cellcolor.checker.cutting_paths import whole_subcells
 from cellcolor.checker.dart_lists import strands_along
 from cellcolor.checker.groups import Groups
-from cellcolor.checker.scheme_rules import Joinable, Painted, unavoidable_join
+from cellcolor.checker.scheme_rules import Joinable, PaintedCell, unavoidable_join
 from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
@@ -25,14 +25,14 @@ class PaintedLoops:
     """
 
     id: int
-    loops: tuple[Painted, ...]
+    loops: tuple[PaintedCell, ...]
 
     @property
-    def whole(self) -> Painted:
+    def whole(self) -> PaintedCell:
         """All loops as if they were one."""
         darts = [dart for loop in self.loops for dart in loop.darts]
         block_of = {dart: block for loop in self.loops for dart, block in loop.block_of.items()}
-        return Painted(darts, block_of, self.loops[0].colors)
+        return PaintedCell(darts, block_of, self.loops[0].colors)
 
     def unconnected_pair(self) -> tuple[int, int] | None:
         """Two sub-cells of one color that no chain of loops and sub-cells connects."""
@@ -68,7 +68,7 @@ def on_loops(
             for loop in instance.live_loops[cell.id]
         ]
         painted = tuple(
-            Painted(loop, {dart: block_of[dart] for dart in loop if dart in block_of}, colors)
+            PaintedCell(loop, {dart: block_of[dart] for dart in loop if dart in block_of}, colors)
             for loop in loops
         )
         if painted:
@@ -82,8 +82,8 @@ def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable)
     A loop without darts in state 1 lies in one sub-cell of its cell, whichever suits, and all its
     darts show that color. Such loops are tried one after the other.
     """
-    settled: list[Painted] = []
-    open_loops: list[tuple[Painted, list[int]]] = []
+    settled: list[PaintedCell] = []
+    open_loops: list[tuple[PaintedCell, list[int]]] = []
     for cell in cells:
         colors = sorted(set(cell.loops[0].colors))
         for loop in cell.loops:
@@ -99,7 +99,7 @@ def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable)
             return found
         loop, colors = open_loops[number]
         for color in colors:
-            settled.append(Painted(loop.darts, {}, [color]))
+            settled.append(PaintedCell(loop.darts, {}, [color]))
             found = stuck(number + 1)
             settled.pop()
             if found is None:

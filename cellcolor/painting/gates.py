@@ -98,8 +98,8 @@ def choose_gates(
         steps: of each topological edge, in order.
 
     Returns:
-        The vertices, and the edges that cross fewer mesh edges than they have strands in use:
-        theirs are not among the vertices.
+        The vertices, and the edges that cross fewer mesh edges than they have strands in use. Of
+        these no vertex is given.
     """
     used: dict[int, set[int]] = {}
     for cell in sorted(divided):
