@@ -31,9 +31,9 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES
+from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.target.placement import rotation_from_rpy
 
 TOP = Path(__file__).parents[1]
 SCENES, ROBOTS = TOP / "instances" / "scenes", TOP / "models" / "robots"

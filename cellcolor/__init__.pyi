@@ -13,6 +13,7 @@ from cellcolor.data.solution import SubCell as SubCell
 from cellcolor.data.surface import Crack as Crack
 from cellcolor.data.surface import LabelledSurface as LabelledSurface
 from cellcolor.deadline import OutOfTime as OutOfTime
+from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.judging import check as check
 from cellcolor.door.judging import judge as judge
 from cellcolor.door.judging import proven_range as proven_range
@@ -20,7 +21,6 @@ from cellcolor.door.painting import paint as paint
 from cellcolor.door.reading import read as read
 from cellcolor.door.result import Result as Result
 from cellcolor.door.shipped import library as library
-from cellcolor.door.showing import Drawing as Drawing
 from cellcolor.door.showing import show as show
 from cellcolor.door.solving import build as build
 from cellcolor.door.solving import decompose as decompose

@@ -10,8 +10,8 @@ from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import open_file
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import say
+from cellcolor.door.drawing import View, draw, kind_of_picture, picture_of
 from cellcolor.door.extras import extras_for
-from cellcolor.door.showing import View, draw, kind_of_picture, picture_of
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, write
 

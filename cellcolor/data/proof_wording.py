@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from cellcolor.data.wording import count, listed
 
 if TYPE_CHECKING:
+    from cellcolor.data.bound import Bound
     from cellcolor.data.instance import Instance
-    from cellcolor.data.solution import Solution
 
 __all__ = ["in_words", "reason_of", "witness_in_words"]
 
@@ -22,7 +22,28 @@ _REASONS = {
 """Why no division of the surface has fewer segments, for each kind of bound (docs/formats.md)."""
 
 
-def in_words(solution: Solution, reason: str | None = None) -> str:
+class _Answer(Protocol):
+    """What of a :class:`~cellcolor.data.solution.Solution` is said in words."""
+
+    @property
+    def segments(self) -> int | None: ...
+    @property
+    def lift_offs(self) -> int | None: ...
+    @property
+    def status(self) -> str: ...
+    @property
+    def search_space(self) -> str: ...
+    @property
+    def lower_bound(self) -> int: ...
+    @property
+    def surface_lower_bound(self) -> int: ...
+    @property
+    def proved_for_surface(self) -> bool: ...
+    @property
+    def bounds(self) -> tuple[Bound, ...] | None: ...
+
+
+def in_words(solution: _Answer, reason: str | None = None) -> str:
     """Segments, lift-offs and proof, like ``2 segments, 1 lift-off, optimal: proved for …``.
 
     Args:
@@ -46,7 +67,7 @@ def in_words(solution: Solution, reason: str | None = None) -> str:
     )
 
 
-def reason_of(solution: Solution) -> str | None:
+def reason_of(solution: _Answer) -> str | None:
     """Why no division of the surface has fewer segments, by the kind of its greatest bound.
 
     None where nothing needs a reason (a single segment) or none is given in the solution.

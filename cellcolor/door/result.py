@@ -20,7 +20,7 @@ from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, kind_of_format, write
 
 if TYPE_CHECKING:
-    from cellcolor.door.showing import Drawing
+    from cellcolor.door.drawing import Drawing
 
 __all__ = ["Result"]
 
@@ -88,9 +88,9 @@ class Result:
         Raises:
             InputError: the extra ``viz`` is not installed, or the file cannot be written.
         """
-        from cellcolor.door.showing import show
+        import cellcolor
 
-        return show(self, path, **view)
+        return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
         return in_words(self.solution, witness_in_words(self.instance, self.witness))

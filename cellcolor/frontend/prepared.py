@@ -21,6 +21,7 @@ from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.contact.collision import body_ends
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
 from cellcolor.frontend.contact.tip import Tip
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.coarse import too_coarse
 from cellcolor.frontend.reach.postures import Workplace
 from cellcolor.frontend.reach.validity import Judge
@@ -28,7 +29,6 @@ from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points
 from cellcolor.frontend.tables import in_file
-from cellcolor.frontend.target.surface import Surface
 
 __all__ = ["PreparedScene", "family_of", "prepare", "robot_of"]
 

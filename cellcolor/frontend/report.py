@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.data.wording import count
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.survey import Survey
-from cellcolor.frontend.target.surface import Surface
 
 __all__ = ["BuildReport", "ColorReport", "make_report"]
 

@@ -17,13 +17,13 @@ from pydantic import (
 )
 
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
-from cellcolor.frontend.reach.validity_test import VALIDITY_TESTS, ValidityTest
+from cellcolor.frontend.parts.arrays import ArraysObject
+from cellcolor.frontend.parts.part import PARTS, Part
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.reach.validity_interface import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table
-from cellcolor.frontend.target.arrays import ArraysObject
-from cellcolor.frontend.target.part import PARTS, Part
-from cellcolor.frontend.target.placement import Placement
 
 __all__ = ["Ground", "Scene"]
 

@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.target.surface import Faces, Surface, face_normals
+from cellcolor.frontend.parts.surface import Faces, Surface, face_normals
 
 __all__ = ["Survey", "survey"]
 

@@ -95,11 +95,11 @@ def _format_schema(described: Format) -> dict[str, Any]:
 def _table_schema(file: str) -> dict[str, Any]:
     """A scene's or a setup's. It needs the extra ``frontend``."""
     from cellcolor.frontend.contact.obstacle import OBSTACLES
-    from cellcolor.frontend.reach.validity_test import VALIDITY_TESTS
+    from cellcolor.frontend.parts.part import PARTS
+    from cellcolor.frontend.reach.validity_interface import VALIDITY_TESTS
     from cellcolor.frontend.scene import Scene
     from cellcolor.frontend.setup import Setup
     from cellcolor.frontend.tables import FileTable
-    from cellcolor.frontend.target.part import PARTS
 
     model = Scene if file == "scene" else Setup
     schema: dict[str, Any] = model.model_json_schema(schema_generator=_Untitled)

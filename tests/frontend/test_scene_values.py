@@ -18,8 +18,8 @@ from shipped import ROBOTS, WOK, edited
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene, Setup, build_surface
 from cellcolor.frontend.contact.primitives import BoxObstacle, SphereObstacle
-from cellcolor.frontend.target.arrays import ArraysObject
-from cellcolor.frontend.target.shapes import CapObject, disc_mesh, spherical_cap
+from cellcolor.frontend.parts.arrays import ArraysObject
+from cellcolor.frontend.parts.shapes import CapObject, disc_mesh, spherical_cap
 
 SETUP = ROBOTS / "ur5_polishing.toml"
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) / 10

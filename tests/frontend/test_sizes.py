@@ -18,9 +18,9 @@ from cellcolor.cli import main
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface, sizes
 from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.remesh import refine
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.target.mesh_file import load_mesh
-from cellcolor.frontend.target.remesh import refine
 
 Varied = Callable[..., Scene]
 

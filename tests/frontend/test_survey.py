@@ -14,11 +14,11 @@ from shipped import SCENES, edited
 from cellcolor.cli import main
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.ur import UrGeometry
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.shapes import disc_mesh, grid_mesh, rectangle, spherical_cap
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.survey import survey
-from cellcolor.frontend.target.placement import Placement
-from cellcolor.frontend.target.shapes import disc_mesh, grid_mesh, rectangle, spherical_cap
-from cellcolor.frontend.target.surface import Surface
 
 
 def turned_over(surface: Surface) -> Surface:

@@ -8,9 +8,9 @@ from typing import Literal
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Positive
-from cellcolor.frontend.target.mesh_file import load_mesh
-from cellcolor.frontend.target.surface import Faces
 
 __all__ = ["MeshObstacle"]
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.registry import Registry
-from cellcolor.frontend.target.placement import Placement
-from cellcolor.frontend.target.surface import Faces
 
 __all__ = ["OBSTACLES", "Obstacle"]
 

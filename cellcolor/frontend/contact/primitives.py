@@ -14,9 +14,9 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.solids import Solid
+from cellcolor.frontend.parts.placement import rotation_from_rpy
+from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length
-from cellcolor.frontend.target.placement import rotation_from_rpy
-from cellcolor.frontend.target.surface import Faces
 
 __all__ = ["BoxObstacle", "CylinderObstacle", "SphereObstacle"]
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.target.surface import Faces, every_edge
+from cellcolor.frontend.parts.surface import Faces, every_edge
 
 __all__ = ["sample_mesh"]
 

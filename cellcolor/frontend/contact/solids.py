@@ -22,7 +22,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import body_poses, body_shape
 from cellcolor.frontend.contact.samples import sample_mesh
-from cellcolor.frontend.target.surface import Faces
+from cellcolor.frontend.parts.surface import Faces
 
 __all__ = ["Solid", "mesh_solid"]
 

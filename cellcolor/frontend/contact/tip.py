@@ -13,7 +13,7 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import longest_steps
 from cellcolor.frontend.contact.solids import Solid
-from cellcolor.frontend.target.surface import Faces, Surface, along_edges
+from cellcolor.frontend.parts.surface import Faces, Surface, along_edges
 
 __all__ = ["Tip"]
 

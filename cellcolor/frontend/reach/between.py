@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.frontend.target.surface import Surface, along_edges
+from cellcolor.frontend.parts.surface import Surface, along_edges
 
 __all__ = ["at_domain_border", "remains_valid", "strides"]
 

@@ -18,9 +18,9 @@ from scipy.sparse.csgraph import connected_components
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack
 from cellcolor.errors import InputError
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
 from cellcolor.frontend.reach.validity import Candidates
-from cellcolor.frontend.target.surface import Surface
 
 __all__ = [
     "Coloring",

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.setup import Continuity
-from cellcolor.frontend.target.surface import Surface, along_edges
 
 __all__ = ["Measure", "Motions", "Probe", "follow_edges", "joint_step"]
 

@@ -14,7 +14,7 @@ from cellcolor.arrays import Mask
 from cellcolor.frontend.arm.kinematics import manipulability, static_torques
 from cellcolor.frontend.contact.collision import hits_ground, hits_itself
 from cellcolor.frontend.reach.postures import Postures
-from cellcolor.frontend.reach.validity_test import ValidityTest
+from cellcolor.frontend.reach.validity_interface import ValidityTest
 
 __all__ = ["STANDARD_TESTS", "StandardTest"]
 

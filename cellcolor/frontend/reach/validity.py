@@ -15,7 +15,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.reach.postures import Postures, Workplace
 from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
-from cellcolor.frontend.reach.validity_test import ValidityTest
+from cellcolor.frontend.reach.validity_interface import ValidityTest
 
 __all__ = ["NO_SOLUTION", "Candidates", "Judge", "Verdicts", "turned_into_limits"]
 

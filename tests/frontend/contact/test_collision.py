@@ -27,10 +27,10 @@ from cellcolor.frontend.contact.collision import (
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.primitives import BoxObstacle, CylinderObstacle, SphereObstacle
 from cellcolor.frontend.contact.solids import mesh_solid
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.target.placement import Placement
-from cellcolor.frontend.target.shapes import disc_mesh, spherical_cap
-from cellcolor.frontend.target.surface import Surface
 
 CONTACT = 0.0005  # m; verdicts may differ nearer to contact than this
 EXEMPT = ("base_link", "shoulder_link")

@@ -20,8 +20,8 @@ from cellcolor.frontend.contact.collision import body_poses, body_shape
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.contact.samples import sample_mesh
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
-from cellcolor.frontend.target.shapes import disc_mesh, spherical_cap
-from cellcolor.frontend.target.surface import Surface
+from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
+from cellcolor.frontend.parts.surface import Surface
 
 BODIES = {
     "ball": (0.0, 0.04, False),

@@ -20,11 +20,11 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
 from cellcolor.frontend.contact.primitives import BoxObstacle, SphereObstacle
 from cellcolor.frontend.contact.tip import Tip
+from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
-from cellcolor.frontend.target.placement import Placement, rotation_from_rpy
-from cellcolor.frontend.target.shapes import RectangleObject, disc_mesh
-from cellcolor.frontend.target.surface import Surface
 
 HEIGHT = 0.1  # m, of the plane
 SHAFT = 0.01  # m, from the tip to the body of the shipped tool

@@ -14,6 +14,8 @@ from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.contact.collision import longest_steps
 from cellcolor.frontend.contact.primitives import CylinderObstacle
+from cellcolor.frontend.parts.shapes import disc_mesh
+from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach.between import (
     at_domain_border,
@@ -21,8 +23,6 @@ from cellcolor.frontend.reach.between import (
     strides,
 )
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.target.shapes import disc_mesh
-from cellcolor.frontend.target.surface import Surface, along_edges
 
 
 def plane() -> Surface:

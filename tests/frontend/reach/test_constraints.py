@@ -15,10 +15,10 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
 from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.parts.mesh_file import load_mesh
+from cellcolor.frontend.parts.remesh import refine
+from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh, spherical_cap
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.target.mesh_file import load_mesh
-from cellcolor.frontend.target.remesh import refine
-from cellcolor.frontend.target.shapes import RectangleObject, disc_mesh, spherical_cap
 
 Varied = Callable[..., Scene]
 KINEMATIC = {

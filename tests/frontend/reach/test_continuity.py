@@ -18,6 +18,8 @@ from cellcolor.data.surface import Crack
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.parts.shapes import disc_mesh
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import (
     Coloring,
     color_nodes,
@@ -29,8 +31,6 @@ from cellcolor.frontend.reach.continuity import (
 from cellcolor.frontend.reach.smooth import Measure, joint_step
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.setup import Continuity
-from cellcolor.frontend.target.shapes import disc_mesh
-from cellcolor.frontend.target.surface import Surface
 
 NEAR = 0.01  # m^3
 POLICY = Continuity(

@@ -11,10 +11,10 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.parts.remesh import refine
+from cellcolor.frontend.parts.shapes import CapObject
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.target.remesh import refine
-from cellcolor.frontend.target.shapes import CapObject
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 

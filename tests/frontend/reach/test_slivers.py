@@ -16,10 +16,10 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, build_surface
+from cellcolor.frontend.parts.shapes import grid_mesh, rectangle
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes, node_links
 from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.setup import Setup, Slivers
-from cellcolor.frontend.target.shapes import grid_mesh, rectangle
 
 
 def row(*sets: str) -> tuple[Array, Array, Coloring]:

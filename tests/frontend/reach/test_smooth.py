@@ -10,11 +10,11 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from cellcolor.arrays import Array
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import link
 from cellcolor.frontend.reach.smooth import Measure, Motions, Probe, follow_edges
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.setup import Continuity
-from cellcolor.frontend.target.surface import Surface
 
 POLICY = Continuity(
     base_step_rad=0.1,

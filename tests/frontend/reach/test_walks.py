@@ -21,10 +21,10 @@ from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.contact.primitives import SphereObstacle
+from cellcolor.frontend.parts.surface import along_edges
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import joint_step
-from cellcolor.frontend.target.surface import along_edges
 
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
 STEPS = 25

@@ -6,9 +6,9 @@ from abc import abstractmethod
 from pathlib import Path
 
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.tables import Table
-from cellcolor.frontend.target.surface import Surface
 
 __all__ = ["PARTS", "Part"]
 
@@ -38,9 +38,9 @@ PARTS: Registry[Part] = Registry(
     "cellcolor.parts",
     Part,  # type: ignore[type-abstract]
     {
-        "spherical-cap": "cellcolor.frontend.target.shapes:CapObject",
-        "pipe": "cellcolor.frontend.target.shapes:PipeObject",
-        "rectangle": "cellcolor.frontend.target.shapes:RectangleObject",
-        "mesh": "cellcolor.frontend.target.mesh_file:MeshObject",
+        "spherical-cap": "cellcolor.frontend.parts.shapes:CapObject",
+        "pipe": "cellcolor.frontend.parts.shapes:PipeObject",
+        "rectangle": "cellcolor.frontend.parts.shapes:RectangleObject",
+        "mesh": "cellcolor.frontend.parts.mesh_file:MeshObject",
     },
 )

@@ -7,8 +7,8 @@ import trimesh
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.parts.surface import Faces, every_edge, face_normals
 from cellcolor.frontend.sizes import check_refinement, check_vertices
-from cellcolor.frontend.target.surface import Faces, every_edge, face_normals
 
 __all__ = ["refine", "repair"]
 

@@ -16,11 +16,10 @@ from scipy.spatial.transform import Rotation
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.target.mesh_file import MeshObject, load_mesh
-from cellcolor.frontend.target.part import Part
-from cellcolor.frontend.target.placement import Placement
-from cellcolor.frontend.target.shapes import (
+from cellcolor.frontend.parts.mesh_file import MeshObject, load_mesh
+from cellcolor.frontend.parts.part import Part
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.shapes import (
     PipeObject,
     RectangleObject,
     disc_mesh,
@@ -29,7 +28,8 @@ from cellcolor.frontend.target.shapes import (
     rectangle,
     spherical_cap,
 )
-from cellcolor.frontend.target.surface import Surface
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.scene import Scene
 
 
 def double_areas(points: Array, faces: Array) -> Array:

@@ -13,9 +13,9 @@ from pydantic import PlainValidator, model_serializer
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.target.mesh import mesh_surface
-from cellcolor.frontend.target.part import Part
-from cellcolor.frontend.target.surface import Faces, Surface
+from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.part import Part
+from cellcolor.frontend.parts.surface import Faces, Surface
 
 __all__ = ["ArraysObject"]
 

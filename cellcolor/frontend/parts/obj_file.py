@@ -17,7 +17,7 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.target.surface import Faces
+from cellcolor.frontend.parts.surface import Faces
 
 __all__ = ["read_obj"]
 

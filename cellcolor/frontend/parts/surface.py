@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index
-from cellcolor.frontend.target.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 
 __all__ = ["Faces", "Surface", "along_edges", "every_edge", "face_normals"]
 

@@ -10,10 +10,10 @@ from pydantic import Field, FiniteFloat
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.parts.part import Part
+from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import MOST_VERTICES, check_vertices
 from cellcolor.frontend.tables import Length
-from cellcolor.frontend.target.part import Part
-from cellcolor.frontend.target.surface import Faces, Surface
 
 __all__ = [
     "CapObject",

@@ -9,9 +9,9 @@ from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.parts.remesh import refine, repair
+from cellcolor.frontend.parts.surface import Faces, Surface, face_normals
 from cellcolor.frontend.sizes import check_vertices
-from cellcolor.frontend.target.remesh import refine, repair
-from cellcolor.frontend.target.surface import Faces, Surface, face_normals
 
 __all__ = ["mesh_surface"]
 
@@ -35,7 +35,7 @@ def mesh_surface(
         faces: (m, 3) vertex indices, counter-clockwise as seen from outside.
         meters_per_unit: of the coordinates.
         max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
-        mend: see :func:`~cellcolor.frontend.target.remesh.repair`.
+        mend: see :func:`~cellcolor.frontend.parts.remesh.repair`.
         deadline: when to give up.
 
     Raises:

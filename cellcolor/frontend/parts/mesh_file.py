@@ -13,12 +13,12 @@ import trimesh
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.obj_file import read_obj
+from cellcolor.frontend.parts.part import Part
+from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import check_faces
 from cellcolor.frontend.tables import Positive
-from cellcolor.frontend.target.mesh import mesh_surface
-from cellcolor.frontend.target.obj_file import read_obj
-from cellcolor.frontend.target.part import Part
-from cellcolor.frontend.target.surface import Faces, Surface
 
 __all__ = ["MeshObject", "load_mesh"]
 
@@ -47,13 +47,13 @@ def load_mesh(
     mend: bool = False,
     deadline: Deadline = NEVER,
 ) -> Surface:
-    """A mesh file as a surface, checked; see :func:`~cellcolor.frontend.target.mesh.mesh_surface`.
+    """A mesh file as a surface, checked; see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
 
     STL has no shared vertices, so there the corners with equal coordinates are one vertex.
 
     Args:
         meters_per_unit: of the file's coordinates.
-        max_edge_m, mend: see :func:`~cellcolor.frontend.target.mesh.mesh_surface`.
+        max_edge_m, mend: see :func:`~cellcolor.frontend.parts.mesh.mesh_surface`.
         deadline: when to give up; not looked at while another library reads the file.
 
     Raises:

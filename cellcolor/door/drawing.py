@@ -1,0 +1,206 @@
+"""Pictures of whatever was opened: which parts they need, and the files that they go to."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Callable
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cellcolor.checker.division import check_solution
+from cellcolor.data.solution import Solution
+from cellcolor.door.extras import extras_for
+from cellcolor.door.subject import Subject
+from cellcolor.errors import InputError
+from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, write
+from cellcolor.pictures.interface import Given
+from cellcolor.pictures.registry import make_picture
+
+if TYPE_CHECKING:
+    from cellcolor.pictures.interface import Drawn, Picture, Source
+
+__all__ = ["Drawing", "View", "draw", "kind_of_picture", "picture_of"]
+
+_KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Drawing:
+    """A picture, drawn but in no file yet; a notebook shows it, to be turned with the mouse.
+
+    Attributes:
+        picture: what it consists of.
+    """
+
+    picture: Drawn
+
+    def render(self, suffix: str) -> bytes:
+        """The bytes of a file that ends in ``.html``, ``.png`` or ``.svg``.
+
+        Raises:
+            InputError: the extra ``viz`` is not installed.
+        """
+        with extras_for(f"a picture {suffix}"):
+            if suffix == ".html":
+                from cellcolor.pictures import interactive
+
+                return interactive.render(self.picture)
+            from cellcolor.pictures import static
+
+            return static.render(self.picture, suffix[1:])
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write it to a file .html, .png or .svg; nothing but an older picture is overwritten.
+
+        Raises:
+            InputError: another ending, something else is there, or it cannot be written.
+        """
+        kind = kind_of_picture(Path(path))
+        write([Output(Path(path), kind, [self.render(Path(path).suffix)])])
+
+    def __str__(self) -> str:
+        return self.picture.title
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.picture.title!r}>"
+
+    def _repr_html_(self) -> str:
+        page = html.escape(self.render(".html").decode(), quote=True)
+        return f'<iframe srcdoc="{page}" width="100%" height="600" frameborder="0"></iframe>'
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """What to look at.
+
+    Attributes:
+        name: of the picture, one of :data:`cellcolor.pictures.registry.PICTURES`.
+        solution: whose segments, or its file.
+        color: whose domain, by name or number.
+        vertex: that the arm is on.
+        branch: of the arm, or of the reasons, by name or number.
+    """
+
+    name: str
+    solution: Solution | str | PathLike[str] | None = None
+    color: str | int | None = None
+    vertex: int | None = None
+    branch: str | int | None = None
+
+
+def kind_of_picture(path: Path) -> FileKind:
+    """The kind of file that a picture goes to.
+
+    Raises:
+        InputError: no picture has this ending.
+    """
+    kind = _KINDS.get(path.suffix)
+    if kind is None:
+        raise InputError(str(path), None, "must end in .html, .png or .svg")
+    return kind
+
+
+def picture_of(view: View) -> Picture:
+    """The picture that a view names, which takes what the view gives and lacks nothing.
+
+    Raises:
+        InputError: there is no such picture, or an option is missing or too much.
+    """
+    picture = make_picture(view.name)
+    options: dict[Source, object] = {
+        "color": view.color,
+        "vertex": view.vertex,
+        "branch": view.branch,
+        "solution": view.solution,
+    }
+    for part, given in options.items():
+        if given is None and part in picture.needs:
+            raise InputError(None, part, f"the picture {view.name} needs it")
+        if given is not None and part not in picture.needs + picture.takes:
+            raise InputError(None, part, f"the picture {view.name} does not take it")
+    return picture
+
+
+def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
+    """A picture, drawn of the parts that it declares.
+
+    Args:
+        picture: what :func:`picture_of` has for the view.
+        subject: what is to be seen.
+        view: what to look at.
+
+    Raises:
+        InputError: a part is not there, or these parts cannot be drawn together.
+    """
+    file = None if subject.path is None else str(subject.path)
+
+    def vertex() -> int:
+        count, asked = len(subject.surface.vertices), view.vertex or 0
+        if 0 <= asked < count:
+            return asked
+        raise InputError(file, "vertex", f"{asked} is not among 0 to {count - 1}")
+
+    def color() -> int:
+        place = None if subject.surface_path is None else str(subject.surface_path)
+        return _number(subject.surface.colors, view.color, place, "colors")
+
+    def branch() -> int:
+        return _number(subject.reasons.branches, view.branch, file, "branch")
+
+    make: dict[Source, Callable[[], object]] = {
+        "build": subject.build,
+        "surface": lambda: subject.surface,
+        "graph": subject.graph,
+        "decomposition": lambda: subject.decomposition,
+        "solution": lambda: _solution(subject, view.solution),
+        "reasons": lambda: subject.reasons,
+        "color": color,
+        "vertex": vertex,
+        "branch": branch,
+    }
+    if "surface" in picture.needs and not subject.names_surface:
+        message = "is missing: without a surface only the graph can be shown (--graph)"
+        raise InputError(file, "surface", message)
+    asked: dict[Source, object] = {
+        "color": view.color,
+        "vertex": view.vertex,
+        "branch": view.branch,
+        "solution": view.solution,
+        "build": subject.built,
+    }
+    missing = {part for part, given in asked.items() if given is None}
+    if not subject.names_surface:
+        missing |= {"surface", "decomposition"}
+    parts = {part: make[part]() for part in make if part in picture.needs}
+    parts |= {part: make[part]() for part in picture.takes if part not in missing}
+    try:
+        return Drawing(picture.draw(Given(parts)))
+    except InputError as error:
+        raise (error if error.file or file is None else error.in_file(file)) from error
+
+
+def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, field: str) -> int:
+    """The number of something given by name or by number."""
+    if asked in names:
+        return names.index(str(asked))
+    if str(asked).isdecimal() and int(str(asked)) < len(names):
+        return int(str(asked))
+    known = ", ".join(f"{number} {name!r}" for number, name in enumerate(names)) or "none"
+    raise InputError(file, field, f"no {asked!r} among {known}")
+
+
+def _solution(subject: Subject, claim: Solution | str | PathLike[str] | None) -> Solution:
+    """A solution that has a division, and is valid for the subject."""
+    assert claim is not None
+    file = None if isinstance(claim, Solution) else str(claim)
+    solution = claim if isinstance(claim, Solution) else Solution.read(claim)
+    instance = subject.graph()
+    problems = check_solution(instance, solution).problems
+    if problems:
+        message = f"no valid solution of {subject.path or instance.name}: {problems[0]}"
+        raise InputError(file, None, message)
+    if solution.cells is None:
+        raise InputError(file, "cells", "no division was found")
+    return solution
