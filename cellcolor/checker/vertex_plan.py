@@ -1,4 +1,4 @@
-"""Is a plan legal on its labelled surface, and how many segments does it have?"""
+"""The checker of plans: whether a plan is legal on its labelled surface, and its segments."""
 
 from __future__ import annotations
 
@@ -28,10 +28,11 @@ class PlanReport:
 
 
 def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
-    """Hold a plan against its surface and count its segments.
+    """Check a plan, one color for each vertex, against its surface and count its segments.
 
-    Segments are the connected components of equal color over the mesh edges without a crack for
-    that color (docs/formats.md). This looks at the mesh alone, never at the topological graph.
+    Two vertices of one color are in the same segment if mesh edges without a crack for that color
+    lead from one to the other through vertices of that color (docs/formats.md). This looks at the
+    mesh alone, never at the topological graph.
     """
     count = len(surface.vertices)
     if len(plan.vertex_colors) != count:
@@ -51,7 +52,7 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
     segments: Groups[int] = Groups()
     for vertex, color in enumerate(plan.vertex_colors):
         if color is not None:
-            segments.find(vertex)
+            segments.find(vertex)  # makes the vertex a group of its own
     for a, b in surface.left_of:
         color = plan.vertex_colors[a]
         if color is None or color != plan.vertex_colors[b]:

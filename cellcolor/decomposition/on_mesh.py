@@ -21,7 +21,7 @@ class Decomposition:
 
     Attributes:
         instance: the graph.
-        curves: where each edge lies, by its id; empty if that is not known.
+        curves: where each topological edge lies, by its id; empty if that is not known.
         vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable.
     """
 
@@ -33,16 +33,16 @@ class Decomposition:
 def locate(
     surface: LabelledSurface, instance: Instance, vertex_cell: Sequence[int]
 ) -> Decomposition:
-    """Where an instance that was read lies on its surface; its areas and coverage are measured.
-
-    Edges are found again by their numbers, which the decomposition gives in the order in which it
-    finds their curves. If one has other sides or joinable colors than its curve, somebody else
-    has numbered them, and no curve is known.
+    """Find where an instance that was read from a file lies on its surface.
 
     Args:
         surface: the labelled surface.
         instance: its topological graph.
         vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable.
+
+    Returns:
+        The instance, with the areas of its cells and its coverage measured anew, and the curves of
+        its edges. There are none if another program has numbered the edges.
     """
     cells = np.array(vertex_cell, dtype=np.int64)
     reached = cells != OUTSIDE
@@ -58,6 +58,12 @@ def locate(
 
 
 def _curves(surface: LabelledSurface, instance: Instance, cell_of: list[int]) -> dict[int, Curve]:
+    """The curve of each edge, by its id; none at all if the ids do not fit the curves.
+
+    The decomposition numbers edges in the order in which it finds their curves, so the curves are
+    looked for again in that order. An edge has to have the same cells on its sides and the same
+    joinable colors as the curve of its number. Otherwise another program has numbered the edges.
+    """
     mesh = ClosedMesh(surface)
     cell_of = cell_of + [OUTSIDE] * (mesh.vertex_count - mesh.real_count)
     borders = Borders(surface, mesh, cell_of)

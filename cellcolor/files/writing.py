@@ -30,11 +30,13 @@ __all__ = [
 ]
 
 MARKER = "cellcolor/picture"
-"""What pictures carry: ``generator`` of a page, ``Creator`` of the others."""
+"""The mark of every picture of ours: the ``generator`` of an HTML page, the ``Creator`` of a PNG or
+SVG file. It tells pictures that may be overwritten from those of other programs."""
 SIDE_MARKER = b"cellcolor/reasons"
-"""The comment of the archive that a side file is."""
+"""The mark of a side file, which says what became of each candidate of a surface. A side file is a
+ZIP archive, and this is the archive's comment."""
 
-_LOOKED_AT = 4096  # bytes at the beginning and at the end of a file that may be ours
+_LOOKED_AT = 4096  # bytes at each end of a file that are searched for our mark
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +53,10 @@ class FileKind:
 
 
 def kind_of_format(name: str) -> FileKind:
-    """JSON documents, and JSON Lines whose first line is one: their ``format`` comes first."""
+    """The kind of JSON document with this ``format``, which is its first member.
+
+    JSON Lines are of the same kind if their first line is such a document.
+    """
     begin = rb'\s*\{\s*"format"\s*:\s*"' + re.escape(name.encode()) + rb'"'
     return FileKind(f"a file of the format {name}", re.compile(begin))
 
@@ -94,7 +99,10 @@ def is_stream(path: Path) -> bool:
 
 
 def is_standard_output(path: Path) -> bool:
-    """Whether a path leads to where this process prints, the null device excepted."""
+    """Whether a path leads to this process's standard output.
+
+    A device that is no terminal does not count, above all the null device.
+    """
     try:
         own, other = os.fstat(1), path.stat()
     except (OSError, ValueError):
@@ -105,13 +113,13 @@ def is_standard_output(path: Path) -> bool:
 def check_output(path: Path, kind: FileKind, inputs: Iterable[Path] = ()) -> None:
     """Refuse a place where writing would destroy something, or cannot succeed.
 
-    What a file of another format holds is never lost: an existing file has to be of the kind
-    that is about to be written, or empty. That covers what inputs refer to as well.
+    An existing file is replaced only if it is no input, and either is empty or has the kind that is
+    about to be written. So no file of another kind is lost, such as a mesh that an input refers to.
 
     Args:
         path: where a file is to be written.
-        kind: of the file.
-        inputs: files that are read.
+        kind: of the file to be written.
+        inputs: files that the same command reads.
 
     Raises:
         InputError: with the reason.
@@ -143,7 +151,7 @@ def is_folder(path: Path) -> bool:
     """Whether a folder is there.
 
     Raises:
-        InputError: nothing can have this name, or nobody may look.
+        InputError: no file can have this name, or this process may not look there.
     """
     try:
         return path.is_dir()
@@ -152,10 +160,10 @@ def is_folder(path: Path) -> bool:
 
 
 def is_folder_or_nothing(path: Path) -> bool:
-    """Whether a folder is there already; where it is not, one can be made.
+    """Whether a folder is there; False if nothing is, so that one can be made.
 
     Raises:
-        InputError: something else is there.
+        InputError: something else is there, or stands where a folder above it has to be.
     """
     if is_folder(path):
         return True
@@ -169,15 +177,16 @@ def write(outputs: Sequence[Output], inputs: Sequence[Path] = ()) -> None:
     """Write files that belong together: all of them or, after any failure or signal, none.
 
     Every file is written to a temporary name first; then all are renamed in the order given,
-    which no signal but SIGKILL interrupts. What is to vouch for the others goes last. Devices and
-    pipes are written to directly, before anything is renamed.
+    which no signal but SIGKILL interrupts. A file that refers to the others has to be the last, so
+    that it is never there before them. Devices and pipes are written to directly, before any file
+    is renamed.
 
     Args:
         outputs: the files.
-        inputs: see :func:`check_output`, which is asked again.
+        inputs: files that the same command reads; :func:`check_output` is called with them again.
 
     Raises:
-        InputError: a place cannot be written to, or two files would go to one.
+        InputError: a file cannot be written, or two files would have the same path.
     """
     for output in outputs:
         check_output(output.path, output.kind, inputs)
@@ -222,7 +231,7 @@ def _place(path: Path) -> Path:
 def _same(place: Path, source: Path) -> bool:
     try:
         return place.samefile(source)
-    except OSError:  # no such input, which is said elsewhere
+    except OSError:  # there is no such input; whoever reads it says so
         return False
 
 

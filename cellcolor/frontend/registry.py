@@ -1,7 +1,8 @@
-"""Kinds by name: those of this package, and those that other distributions register.
+"""Classes that a file names by their kind: those of this package, and those of others.
 
-A kind is imported when a scene or setup names it, and not before. Another distribution registers
-one by an entry point, in its ``pyproject.toml``::
+Scenes and setups say of a part, an obstacle, a validity test or an arm which kind it is. There is a
+registry for each of the four. A kind is imported when a file names it, and not before. Another
+distribution registers one by an entry point, in its ``pyproject.toml``::
 
     [project.entry-points."cellcolor.parts"]
     torus = "torus_part:Torus"
@@ -24,17 +25,24 @@ T = TypeVar("T")
 
 
 class Registry(Generic[T]):
-    """Classes by the name that files have for them."""
+    """Classes of one sort, such as all parts, by the name that files have for them."""
 
     def __init__(self, group: str, base: type[T], own: Mapping[str, str]) -> None:
-        """``own`` are those of this package, ``module:class`` each; ``group`` has all others."""
+        """Register the classes of this package.
+
+        Args:
+            group: of entry points, in which other distributions register theirs.
+            base: what every class has to be derived from.
+            own: the classes of this package by name, each written as ``module:class``.
+        """
         self._group, self._base, self._own = group, base, own
 
     def find(self, name: str) -> type[T]:
         """The class of that name.
 
         Raises:
-            InputError: there is none, there are two, or it cannot be imported or is no such class.
+            InputError: no class has this name, or two have it; it cannot be imported; or it is not
+                derived from the base class.
         """
         if name in self._own:
             found = [EntryPoint(name, self._own[name], self._group)]
@@ -50,7 +58,7 @@ class Registry(Generic[T]):
         (point,) = found
         try:
             loaded = point.load()
-        except Exception as error:  # whatever somebody else's module runs into
+        except Exception as error:  # code of another distribution may raise anything
             message = f"{name!r} ({point.value}) cannot be imported: {error!r}"
             raise InputError(None, None, message) from error
         if not (isinstance(loaded, type) and issubclass(loaded, self._base)):
@@ -60,7 +68,10 @@ class Registry(Generic[T]):
 
 
 def of_kind(registry: Registry[Any], content: object) -> Table:
-    """The table of the class that the content's ``kind`` names; for validators of pydantic."""
+    """Read a file's table as the class that its key ``kind`` names.
+
+    Validators of pydantic call this, so errors are raised in the way that pydantic expects.
+    """
     if not isinstance(content, Mapping):
         raise PydanticCustomError("no_table", "must be a table with a kind")
     kind = content.get("kind")

@@ -1,6 +1,7 @@
 """Colors that people with color-vision deficiencies can tell apart.
 
-Where there are more things than colors these repeat, so every picture also has numbers or names.
+If there are more things to draw than colors in a palette, colors are used again. So every picture
+also has numbers or names.
 """
 
 from __future__ import annotations
@@ -19,7 +20,8 @@ AREAS = (
     "#AAAA00",
     "#BBCC33",
 )
-"""Light enough for black text (Paul Tol, Colour Schemes, 2021: "light", without its grey)."""
+"""For areas: light enough for black text. These are the colors of "light" in Paul Tol, Colour
+Schemes, 2021, without its grey."""
 
 LINES = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#000000")
 """For lines and small pieces (Okabe and Ito, Color Universal Design, 2008)."""
@@ -37,23 +39,28 @@ REASONS = (
     "#661100",
     "#777777",
 )
-"""For classes with a fixed meaning (Paul Tol: "muted", with a brown of his and a grey)."""
+"""For the reasons why points are out of reach. These are the colors of Paul Tol's "muted", one of
+his browns, and a grey."""
 
 FAINT = "#DDDDDD"
+"""The lighter grey, for unreachable points and for what is in the background."""
 GREY = "#AAAAAA"
+"""The darker grey, for points that were given up."""
 INK = "#222222"
+"""Nearly black, for borders and text."""
 WARNING = "#CC3311"
+"""Red, for cracks and for a vertex that is picked out."""
 
 
 def assign(neighbors: Mapping[int, Set[int]], palette: tuple[str, ...] = AREAS) -> list[str]:
-    """A fill for each of the classes 0, 1, …; neighbors differ as long as the palette allows.
+    """A fill for each area 0, 1, …; neighbors differ as long as the palette has enough fills.
 
     Args:
-        neighbors: the classes next to each class; all of them are keys.
-        palette: the fills; while there are no more classes than fills none is used twice.
+        neighbors: the areas next to each area; every area is a key.
+        palette: the fills. None is used twice unless there are more areas than fills.
 
     Returns:
-        one fill for each class, in their order.
+        One fill for each area, in their order.
     """
     uses = [0] * len(palette)
     chosen: dict[int, int] = {}

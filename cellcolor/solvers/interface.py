@@ -16,10 +16,12 @@ from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
 
 PORTFOLIO = 8
-"""CP-SAT's workers unless asked for otherwise: different searches, useful beyond the cores."""
+"""CP-SAT's workers unless asked for otherwise. Each worker searches in a way of its own, so that
+more workers than cores are of use."""
 
 STRANDS: dict[SearchSpace, int] = {"paper": 1, "surface": 2}
-"""Strands per topological edge unless asked for otherwise; in ``paper`` there is no other."""
+"""Strands per topological edge unless asked for otherwise. A strand is one of the parallel
+corridors that may cross an edge. In ``paper`` no other number is allowed."""
 
 OnProgress = Callable[[int | None, int], None]
 """Called with the segments of the best division so far (None: none yet) and the lower bound."""
@@ -30,7 +32,7 @@ class Start:
     """A legal division to start from.
 
     Attributes:
-        division: as a solution has it.
+        division: the sub-cells of every cell, in the form of ``Solution.cells``.
         seams: the seams that its darts refer to.
     """
 
@@ -44,21 +46,21 @@ class Options:
 
     Attributes:
         search_space: ``paper``, or ``surface`` for any division of the physical surface.
-        strands: strands per topological edge, at least 1; left out, what ``STRANDS`` has for the
-            search space.
+        strands: strands per topological edge, at least 1. If it is left out it is the number that
+            ``STRANDS`` has for the search space.
         deadline: when everything has to end.
         workers: CP-SAT's search workers, at most 1000, None for ``PORTFOLIO``.
-        seed: of everything random.
-        start: a division to start from, for solvers that are able to.
+        seed: for everything that is random.
+        start: a division to start from, for solvers that can do this.
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
-            paths, for solvers that are able to.
+            paths, for solvers that can do this.
 
     Raises:
         InputError: an option is out of its range, or strands are asked for in ``paper``.
     """
 
     search_space: SearchSpace = "paper"
-    strands: Annotated[int, Ge(1)] = cast(int, None)  # until __post_init__
+    strands: Annotated[int, Ge(1)] = cast(int, None)  # None only until __post_init__
     deadline: Deadline = NEVER
     workers: Annotated[int, Ge(1), Le(1000)] | None = None
     seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
@@ -68,7 +70,7 @@ class Options:
     def __post_init__(self) -> None:
         if self.strands is None:
             object.__setattr__(self, "strands", STRANDS.get(self.search_space, 1))
-        settle(self)
+        settle(self)  # checks the annotations above
         if self.search_space == "paper" and self.strands != STRANDS["paper"]:
             raise InputError(
                 None, "strands", f"must be 1 in search space 'paper', is {self.strands}"
@@ -104,16 +106,16 @@ class Answer:
 class Abilities:
     """What a solver declares that it can do; it is asked for nothing else.
 
-    The least that every solver does is to divide cells with one live loop (one border loop with
-    edges that can be joined) in the search space ``paper``.
+    A live loop is a border loop with edges that can be joined. Every solver divides cells with one
+    live loop in the search space ``paper``.
 
     Attributes:
-        search_spaces: what it can search.
-        several_loops: divides cells with several live loops as well.
-        optimal_schemes: lists all optimal schemes: it is a :class:`SchemeSolver`.
-        schemes_of_several_loops: does so even where cells have several live loops.
-        start: can start from a division (``Options.start``).
-        fewest_cuts: can look for the fewest cutting paths (``Options.fewest_cuts``).
+        search_spaces: those that it can search.
+        several_loops: it divides cells with several live loops as well.
+        optimal_schemes: it lists all optimal schemes, so it is a :class:`SchemeSolver`.
+        schemes_of_several_loops: it does so even where cells have several live loops.
+        start: it can start from a division (``Options.start``).
+        fewest_cuts: it can look for the fewest cutting paths (``Options.fewest_cuts``).
     """
 
     search_spaces: tuple[SearchSpace, ...] = ("paper",)
@@ -144,7 +146,12 @@ class SchemeSolver(Solver, Protocol):
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int
     ) -> Iterator[Division]:
-        """Every scheme (semantics: docs/semantics.md, section 3) with the given minimum, once.
+        """Every scheme (docs/semantics.md, section 3) with the fewest segments, each once.
+
+        Args:
+            instance: the topological graph.
+            options: how to search.
+            segments: the fewest, which have been proved before.
 
         Raises:
             OutOfTime: the deadline came first.

@@ -1,4 +1,4 @@
-"""CP-SAT models solved so that Ctrl-C is heard, within a deadline."""
+"""CP-SAT models solved within a deadline, so that Ctrl-C ends the search and not the process."""
 
 from __future__ import annotations
 
@@ -16,18 +16,19 @@ __all__ = ["make_cp_solver", "solve_interruptibly"]
 def make_cp_solver(
     deadline: Deadline, workers: int, seed: int, effort: float | None = None
 ) -> cp_model.CpSolver:
-    """A solver with limits.
+    """A CP-SAT solver with limits.
 
     Args:
         deadline: when to stop.
         workers: its search workers.
-        seed: of everything random.
-        effort: deterministic seconds a worker, None for as long as there is time.
+        seed: for everything that is random.
+        effort: the limit for each worker in OR-Tools' deterministic time, which measures the work
+            done and not the clock; None for as long as there is time.
     """
     solver = cp_model.CpSolver()
     solver.parameters.num_workers = workers
     solver.parameters.random_seed = seed
-    # Left to itself, OR-Tools makes the next Ctrl-C kill the process.
+    # If OR-Tools caught the signal, the next Ctrl-C would kill the process.
     solver.parameters.catch_sigint_signal = False
     if isfinite(deadline.moment):
         solver.parameters.max_time_in_seconds = deadline.left
@@ -41,15 +42,15 @@ def solve_interruptibly(
     model: cp_model.CpModel,
     found: Callable[[int], None] | None = None,
 ) -> tuple[cp_model.CpSolverStatus, KeyboardInterrupt | None]:
-    """Solve in a thread, so that an interrupt here ends the search with its best.
+    """Solve in a thread of its own, so that Ctrl-C here ends the search and keeps the best found.
 
     Args:
-        solver: see above.
+        solver: made by :func:`make_cp_solver`.
         model: what to solve.
         found: called with the objective of each better solution, in a thread of the solver.
 
     Returns:
-        The solver's status, and the interrupt that ended it, if one did.
+        The solver's status, and the interrupt that ended the search, None if none did.
     """
     status: list[cp_model.CpSolverStatus] = []
     finished = Event()
@@ -61,7 +62,8 @@ def solve_interruptibly(
             finished.set()
 
     Thread(target=work).start()
-    # Not Thread.join: interrupted, it takes a running thread for a finished one (Python 3.11).
+    # Thread.join cannot be used: in Python 3.11, once it has been interrupted, it takes a thread
+    # that is still running for a finished one.
     interrupt: KeyboardInterrupt | None = None
     while not finished.is_set():
         try:
@@ -73,6 +75,8 @@ def solve_interruptibly(
 
 
 class _Watcher(cp_model.CpSolverSolutionCallback):
+    """Hands the objective of each better solution on to a function."""
+
     def __init__(self, found: Callable[[int], None]) -> None:
         super().__init__()
         self._found = found

@@ -33,12 +33,15 @@ def voronoi(
 ) -> LabelledSurface:
     """Random Voronoi regions on a mesh, each color on some of them.
 
-    Regions are those of random seeds on the mesh's graph with random lengths, so that their
-    borders are ragged. Cells with a handle, which no instance may have, are cut: half of their
-    regions gain or lose a color until none is left; a cell of one region falls into finer ones.
+    A region has the vertices that are nearest to one random seed vertex. Distances are measured
+    along mesh edges, each of random length, so that the borders of the regions are ragged.
+
+    A cell with a handle, as a torus has one, may be in no instance. Such cells are cut until none
+    is left: about half of the regions of the cell gain or lose a color. A cell that is a single
+    region is first divided into smaller regions.
 
     Args:
-        seed: of everything random.
+        seed: for everything that is random.
         shape: of the surface, see :data:`cellcolor.lab.families.meshes.SHAPES`.
         size: about the square root of the number of vertices, six or more.
         regions: how many Voronoi regions, one or more, before islands, holes and cuts.
@@ -58,14 +61,14 @@ def voronoi(
             None, None, f"{len(vertices)} vertices cannot have {regions} regions, {colors} colors"
         )
     rng = np.random.default_rng([seed, size, regions, colors])
-    third = directed_edges(faces, len(vertices))
+    third = directed_edges(faces, len(vertices))  # the third vertex of the triangle left of (a, b)
     neighbors: list[list[int]] = [[] for _ in vertices]
     for a, b in third:
         neighbors[a].append(b)
         if (b, a) not in third:
             neighbors[b].append(a)
     region = _nearest(rng, neighbors, rng.choice(len(vertices), regions, replace=False).tolist())
-    sets = _reached(rng, region, neighbors, colors, coverage, scattered)
+    sets = _reached(rng, region, neighbors, colors, coverage, scattered)  # by region
     for number in range(islands + holes):
         center = int(rng.integers(len(vertices)))
         disc = {center, *neighbors[center]}
@@ -74,7 +77,7 @@ def voronoi(
         for vertex in disc:
             region[vertex] = len(sets)
         sets.append({int(rng.integers(colors))} if number < islands else set())
-    # On a disc, an annulus and a sphere every cell is planar.
+    # No part of a disc, an annulus or a sphere has a handle.
     while shape in ("torus", "double torus"):
         found = _cells_with_handles(third, neighbors, [sets[own] for own in region])
         if not found:
@@ -117,7 +120,11 @@ def _reached(
     coverage: tuple[float, float],
     scattered: bool,
 ) -> list[set[int]]:
-    """The colors of each region."""
+    """The colors of each region: each color is put on a random share of the regions.
+
+    ``coverage`` has the least and the largest share. The regions of a color are drawn one by one
+    from all of them if ``scattered``, else from those beside the regions that it already has.
+    """
     count = max(region) + 1
     beside: list[set[int]] = [set() for _ in range(count)]
     for vertex, others in enumerate(neighbors):
@@ -142,9 +149,10 @@ def _reached(
 def _cells_with_handles(
     third: dict[tuple[int, int], int], neighbors: list[list[int]], sets: list[set[int]]
 ) -> list[list[int]]:
-    """The vertices of each cell of a closed mesh that is not planar, cracks not counted.
+    """The vertices of each cell of a closed mesh that has a handle.
 
-    A cell that cracks divide is part of one without them, and planar if that is.
+    Cracks are left out of account. A cracked cell is part of the cell that would be there without
+    cracks, and a part of a cell without handles has none either.
     """
     owner = [-1] * len(neighbors)
     cells: list[list[int]] = []
@@ -159,7 +167,8 @@ def _cells_with_handles(
                     owner[other] = len(cells)
                     cell.append(other)
         cells.append(cell)
-    # Euler's formula, each cell closed with a disc at each of its border loops: 2 for a sphere.
+    # Vertices - edges + triangles of each cell, and 1 for a disc that closes each of its border
+    # loops. By Euler's formula that is 2 for a sphere, so for a cell without handles, else less.
     euler = [len(cell) for cell in cells]
     border: list[tuple[int, int]] = []
     for (a, b), c in third.items():
@@ -189,7 +198,10 @@ def _cut(
     neighbors: list[list[int]],
     colors: int,
 ) -> None:
-    """Make a cell fall apart: half of its regions gain or lose one color."""
+    """Change one random color on about half of a cell's regions, so that the cell falls apart.
+
+    A cell that is a single region is divided into eight regions at most before that.
+    """
     inside = sorted({region[vertex] for vertex in cell})
     if len(inside) == 1:
         place = {vertex: index for index, vertex in enumerate(cell)}

@@ -1,4 +1,8 @@
-"""clingo as a :class:`cellcolor.solvers.interface.Solver`."""
+"""The answer-set solver clingo as a :class:`cellcolor.solvers.interface.Solver`.
+
+The problem is stated in ``coloring.lp`` beside this module. This module writes an instance as facts
+for that model, runs clingo, and reads the division off the last answer set.
+"""
 
 from __future__ import annotations
 
@@ -20,18 +24,22 @@ if TYPE_CHECKING:
 __all__ = ["ClingoSolver", "asp_facts"]
 
 _OPTIONS = ("--opt-strategy=usc,stratify", "--parallel-mode=2")
-"""Core-guided and stratified: the quickest of the strategies that were tried."""
+"""Two threads that search core-guided and stratified: of what was tried, the quickest."""
 
 _MOST_CROSSINGS = 5_000_000
-"""Pairs of chords within cells, each a rule that two cutting paths do not cross. Nothing can
-interrupt clingo while it writes them down, which takes up to ten seconds for so many."""
+"""The most pairs of crossing links that a model may have. A link goes from one dart of a cell to
+another, and for every two links that would cross the model has a rule. Nothing can interrupt clingo
+while it writes the rules down, which takes up to ten seconds for so many."""
 
 _HEARD_AFTER = 0.1
-"""Seconds after which an interrupt is heard: nothing of Python runs while clingo is waited for."""
+"""Seconds between two looks at the deadline. Python handles a signal, such as Ctrl-C, only then."""
 
 
 class ClingoSolver:
-    """Fewest segments in the search space ``paper``, for cells with one live loop each."""
+    """Fewest segments in the search space ``paper``, for cells with one live loop each.
+
+    A live loop is a border loop with edges that can be joined.
+    """
 
     abilities = Abilities()
 
@@ -90,11 +98,11 @@ class ClingoSolver:
 
 
 def asp_facts(instance: Instance) -> str:
-    """An instance as facts for the model, one fact a line.
+    """An instance as facts for the model ``coloring.lp``, which lists them; one fact a line.
 
     Raises:
-        InputError: a cell has several loops with live darts, which the model does not know.
-        TooLarge: a cell has too many live darts.
+        InputError: a cell has several loops with live darts, which the model cannot divide.
+        TooLarge: the cells have so many live darts that the model would not be written in time.
     """
     facts = []
     crossings = 0
@@ -119,10 +127,14 @@ def asp_facts(instance: Instance) -> str:
 def _division(instance: Instance, symbols: Sequence[Symbol]) -> Division:
     """The division that an answer set describes: its sub-cells are chains of linked darts.
 
-    The model may leave an edge unjoined between two sub-cells of one segment, which would close a
-    circle of them. A division does not (docs/semantics.md, section 3, rule 5). So every unjoined
-    dart is given to the sub-cell before it in cyclic order, and joined if its color is met across
-    the edge; that takes no segment more.
+    In the model the sub-cells of a segment form a tree: it does not join an edge that would close a
+    circle of them. In a division such an edge has to be joined, because it has the same color on
+    both sides (docs/semantics.md, section 3, rule 5). So every dart that the model left unjoined is
+    given to the sub-cell before it in cyclic order, and its edge is joined if the dart on the other
+    side then has the same, joinable color. That makes no new segment.
+
+    A sub-cell is named here by its first dart and its color. The first dart is 0 for the one
+    sub-cell of a cell without joined darts.
     """
     color: dict[int, int] = {}
     after: dict[int, int] = {}
@@ -132,8 +144,8 @@ def _division(instance: Instance, symbols: Sequence[Symbol]) -> Division:
             color[first] = second
         else:
             after[first] = second
-    start = {dart: dart for dart in after}  # of the chain that a dart is linked into
-    shown: dict[int, tuple[int, int]] = {}  # the first dart and the color of each sub-cell
+    start = {dart: dart for dart in after}  # the first dart of the chain that a dart is in
+    shown: dict[int, tuple[int, int]] = {}  # the sub-cell that each live dart is given to
     for cell in instance.cells:
         live = [dart for loop in instance.live_loops[cell.id] for dart in loop]
         for dart in live:

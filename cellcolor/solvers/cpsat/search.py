@@ -24,9 +24,9 @@ from cellcolor.solvers.cpsat.model.full import (
     add_hint,
     full_model,
     model_size,
+    not_built,
     read_painting,
     seams_size,
-    too_large,
 )
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, moved, segments_of
 from cellcolor.solvers.cpsat.model_runs import Runner
@@ -271,7 +271,7 @@ class PartSearch:
         # Every worker has a copy of its own.
         size *= max(1.0, (self._options.workers or PORTFOLIO) / PORTFOLIO)
         if size > LARGEST_MODEL:
-            self.notes.append(too_large(size))
+            self.notes.append(not_built(size))
         return size <= LARGEST_MODEL
 
     def _hint(self, built: Model, graph: DartGraph) -> None:

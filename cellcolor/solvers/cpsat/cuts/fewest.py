@@ -11,7 +11,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.cuts.counting import count_cuts, unseamed
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.full import LARGEST_MODEL, model_size, seams_size, too_large
+from cellcolor.solvers.cpsat.model.full import LARGEST_MODEL, model_size, not_built, seams_size
 from cellcolor.solvers.cpsat.model.loops_apart import build_apart, loops_apart, read_apart
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical
 from cellcolor.solvers.cpsat.model.seams import Seamed, SeamWriter
@@ -106,7 +106,7 @@ class FewestCuts:
             graph = dart_graph(apart.instance, colors, self._strands, seams)
             size = model_size(graph)
         if size > LARGEST_MODEL:
-            self.notes.append(too_large(size))
+            self.notes.append(not_built(size))
             return 0.0
         built = build_apart(apart, graph, self._regions, self._segments, groups=groups)
         solver, status = self._solve(built.model)

@@ -1,4 +1,9 @@
-"""The full model: build it, hint it, solve it, read the painting off it."""
+"""The CP-SAT model of the whole problem: its size, its making, its hint, and what it has found.
+
+A painting is a division with a color for each sub-cell, and a **block** is a sub-cell of it. Before
+the model is solved it is hinted with a known painting. Afterwards the painting is read off it.
+Solving is left to the callers.
+"""
 
 from __future__ import annotations
 
@@ -23,17 +28,17 @@ __all__ = [
     "fewest_subcells",
     "full_model",
     "model_size",
+    "not_built",
     "read_painting",
     "seams_size",
-    "too_large",
 ]
 
 MANY_DARTS = 300
-"""Darts of a cell beyond which its terms are not counted one by one: then any two of its darts are
-taken to have a color in common, which gives a number that is too large rather than too small."""
+"""In a cell with more darts than this, terms are not counted one by one. Any two of its darts are
+then taken to have a color in common, so that the number is too large rather than too small."""
 
 LARGEST_MODEL = 1e6
-"""Terms of a model that is built: with 8 workers OR-Tools takes up to 2.2 kB for each."""
+"""The most terms of a model that is built. With 8 workers OR-Tools takes up to 2.2 kB for each."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +48,7 @@ class Model:
     Attributes:
         model: the model.
         variables: its variables.
-        fixed_roots: cells that are the root of their segment in it.
+        fixed_roots: cells in which their segment has its root.
     """
 
     model: cp_model.CpModel
@@ -54,8 +59,9 @@ class Model:
 def model_size(graph: DartGraph) -> float:
     """About how many terms the constraints of a model have, without building it.
 
-    Nearly all are in ``no_crossing``: two literals for each three darts of a cell, as far as
-    darts have a common color; then in ``roots``, with some for each two.
+    Nearly all of them are in ``no_crossing``. Two darts of a cell with a common color have a link
+    of two literals, and each of these stands in two constraints for every dart between the two.
+    The other constraints add a few terms for each two darts of a cell.
     """
     total = 0.0
     for cell in graph.lists:
@@ -68,7 +74,7 @@ def model_size(graph: DartGraph) -> float:
         for place, one in enumerate(colors):
             for far in range(place + 1, count):
                 if not one.isdisjoint(colors[far]):
-                    # Two literals, twice for each dart between the two.
+                    # First the terms of ``no_crossing``, then those of other constraints.
                     total += 4 * (far - place - 1) + 8 * len(one)
     return total
 
@@ -76,7 +82,8 @@ def model_size(graph: DartGraph) -> float:
 def seams_size(seams: Sequence[Seam]) -> float:
     """About how many terms a model has for its seams alone, told before its graph is made.
 
-    All darts of a cell's seams have all of its colors in common.
+    Each strand of a seam gives its cell two darts, and any two of them have a color in common. The
+    widths of seams double from loop to loop, so they are cut off before a number overflows.
     """
     widths: dict[int, int] = {}
     for seam in seams:
@@ -84,7 +91,7 @@ def seams_size(seams: Sequence[Seam]) -> float:
     return sum(2 / 3 * (2 * min(width, 10**6)) ** 3 for width in widths.values())
 
 
-def too_large(size: float) -> str:
+def not_built(size: float) -> str:
     """The sentence that says that a model of so many terms was not built."""
     return f"A model of {size:.1g} terms was not built; {LARGEST_MODEL:.1g} are the most."
 
@@ -95,12 +102,12 @@ def full_model(
     groups: Sequence[Group] = DEFINING + REDUNDANT,
     deadline: Deadline = NEVER,
 ) -> Model:
-    """The model of fewest segments.
+    """The model that minimizes the number of segments.
 
     Args:
         graph: the dart graph.
         regions: the color regions of the instance, for the set-cover constraint.
-        groups: the constraint groups.
+        groups: the functions that add its constraints.
         deadline: when to stop.
 
     Raises:
@@ -123,10 +130,11 @@ def fewest_subcells(
     segments: int,
     more: Sequence[cp_model.IntVar] = (),
 ) -> None:
-    """Turn a model into one of fewest sub-cells, with so many segments.
+    """Change what a model minimizes: the number of sub-cells, at a given number of segments.
 
-    Sub-cells are the segments and the joins of their trees. What a seam parts is one sub-cell on
-    the surface, so joins across seams do not count.
+    The joins of a segment make a tree of its sub-cells, so there are as many sub-cells as segments
+    and joins together. Two sub-cells that are joined across a seam are one on the surface, so joins
+    across seams do not count.
 
     Args:
         model: the model.
@@ -134,7 +142,7 @@ def fewest_subcells(
         v: its variables.
         alone: per cell, whether it has no dart in state 1.
         segments: how many there have to be.
-        more: what else counts like a sub-cell.
+        more: further literals, each of which counts like one more sub-cell.
     """
     seams = {seam.id for seam in graph.seams}
     joins = [
@@ -143,12 +151,17 @@ def fewest_subcells(
         if abs(graph.darts[edge].name[0]) not in seams
     ]
     model.add(sum(v.root) + sum(alone) == segments)
+    # Every cell has a sub-cell at least, which gives the solver a bound to begin with.
     model.add(sum(joins) >= len(alone) - segments)
     model.minimize(sum([*joins, *more]))
 
 
 def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:
-    """The sub-cells of a solved model; its counted joins only."""
+    """The painting that a solved model has found.
+
+    Darts are in state 1 only where the model counts a join. Edges whose join would close a circle
+    of sub-cells are left unjoined.
+    """
     color_of: dict[int, int] = {}
     for (edge, color), literal in v.joined.items():
         if solver.boolean_value(literal):
@@ -173,10 +186,11 @@ def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> 
 
 
 def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
-    """Hint a whole painting: every variable that its forest of joins fixes.
+    """Hint a model with a whole painting: its joins, pointers, roots and ranks.
 
-    A segment in which every cell is divided has no root that the model allows; then nothing is
-    hinted, since half a hint only misleads.
+    The joins of the painting are thinned out to a forest, one tree for each segment. A root has to
+    be in an undivided cell. If some segment has none, nothing is hinted, since a hint of some
+    variables only would mislead the search.
     """
     forest = _forest(graph, painting, built.fixed_roots)
     if forest is None:
@@ -187,15 +201,16 @@ def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
     def choose(literal: cp_model.IntVar) -> None:
         ones.add(literal.index)
 
+    # The darts of the forest's joins: the block of each, and whether its parent lies across.
     counted: dict[int, tuple[Block, bool]] = {}
-    for child, parent in forest.parent.items():
-        holder = forest.blocks[child]
-        if parent is None:
+    for child, dart_up in forest.dart_up.items():
+        if dart_up is None:
             continue
-        choose(v.up[parent])
-        twin = graph.darts[parent].twin
-        choose(v.joined[min(parent, twin), holder.color])
-        counted[parent] = (holder, True)
+        own = forest.blocks[child]
+        choose(v.up[dart_up])
+        twin = graph.darts[dart_up].twin
+        choose(v.joined[min(dart_up, twin), own.color])
+        counted[dart_up] = (own, True)
         counted[twin] = (forest.blocks[forest.block_of[twin]], False)
     for number, cell in enumerate(graph.lists):
         if not any(dart in counted for dart in cell):
@@ -225,29 +240,37 @@ def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
 
 @dataclass(slots=True)
 class _Forest:
-    """A spanning forest of the sub-cells under joined edges.
+    """Joins that connect the blocks of each segment as a tree. Blocks are given by their index.
 
     Attributes:
-        blocks: all sub-cells.
-        block_of: the sub-cell of each dart in state 1.
-        parent: per sub-cell, in breadth-first order, the dart across which its parent lies.
-        depth: per sub-cell, pointers across edges from it to its root.
+        blocks: all blocks of a painting.
+        block_of: the block of each dart in state 1.
+        dart_up: per block, in breadth-first order, its own dart across which its parent lies; None
+            for a root.
+        depth: per block, how many joins lead from it to its root.
     """
 
     blocks: list[Block]
     block_of: dict[int, int]
-    parent: dict[int, int | None]
+    dart_up: dict[int, int | None]
     depth: dict[int, int]
 
 
 def _forest(graph: DartGraph, painting: Painting, fixed: set[int]) -> _Forest | None:
+    """A forest with its roots in undivided cells, None if a segment has no such cell.
+
+    Args:
+        graph: the dart graph.
+        painting: what to connect.
+        fixed: cells that have to have the roots of their segments.
+    """
     blocks = [block for cell in painting for block in cell]
     block_of = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     forest = _Forest(blocks, block_of, {}, {})
     undivided = [len(cell) == 1 for cell in painting for _ in cell]
     at_fixed = [number in fixed for number, cell in enumerate(painting) for _ in cell]
-    # Where the root is fixed, there; else at a cell with many darts: a cell with one dart may be a
-    # root only if it is the first of its kind.
+    # A root is where it is fixed, else in a cell with several darts if there is one. For of several
+    # cells with one dart around a sub-cell only the first may be a root (``first_petal``).
     order = sorted(
         (number for number in range(len(blocks)) if undivided[number]),
         key=lambda number: (
@@ -257,17 +280,17 @@ def _forest(graph: DartGraph, painting: Painting, fixed: set[int]) -> _Forest | 
         ),
     )
     for root in order:
-        if root in forest.parent:
+        if root in forest.dart_up:
             continue
-        forest.parent[root], forest.depth[root] = None, 0
+        forest.dart_up[root], forest.depth[root] = None, 0
         queue = deque([root])
         while queue:
             number = queue.popleft()
             for dart in sorted(blocks[number].darts):
                 twin = graph.darts[dart].twin
                 child = block_of[twin]
-                if child not in forest.parent:
-                    forest.parent[child] = twin
+                if child not in forest.dart_up:
+                    forest.dart_up[child] = twin
                     forest.depth[child] = forest.depth[number] + 1
                     queue.append(child)
-    return forest if len(forest.parent) == len(blocks) else None
+    return forest if len(forest.dart_up) == len(blocks) else None

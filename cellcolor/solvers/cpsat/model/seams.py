@@ -30,9 +30,9 @@ from cellcolor.solvers.cpsat.model.full import (
     fewest_subcells,
     full_model,
     model_size,
+    not_built,
     read_painting,
     seams_size,
-    too_large,
 )
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.union_find import UnionFind
@@ -161,7 +161,7 @@ class SeamWriter:
         colors = [frozenset(cell.colors) for cell in instance.cells]
         small = dart_graph(instance, colors, dict.fromkeys(alone.local.values(), 1), alone.seams)
         if (size := model_size(small)) > LARGEST_MODEL:
-            raise TooLarge(too_large(size))
+            raise TooLarge(not_built(size))
         built = full_model(small, color_regions(instance))
         segments = len(instance.colors)
         fewest_subcells(built.model, small, built.variables, built.variables.alone, segments)
