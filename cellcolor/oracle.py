@@ -2,10 +2,12 @@
 
 A planner that paints every vertex of a labelled surface in one of its colors cannot have fewer
 segments than the surface allows. :func:`proven_range` says how few that is, and :func:`judge`
-holds a plan against it::
+holds a plan against it. The front door has both::
 
-    surface = LabelledSurface.read(Path("part.surface.json"))
-    verdict = judge(surface, Plan(tuple(my_planner(surface))))
+    import cellcolor
+
+    surface = cellcolor.read("part.surface.json")
+    verdict = cellcolor.judge(surface, my_planner(surface))
     assert verdict.valid, verdict.problems
     assert verdict.beatable_by == 0  # proved: no division of the surface has fewer segments
 
