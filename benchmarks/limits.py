@@ -20,8 +20,9 @@ import subprocess
 import sys
 import tempfile
 import time
+import traceback
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import median
@@ -238,6 +239,15 @@ def _plan(surface: LabelledSurface, file: Path) -> Path:
     return plan
 
 
+def _finished(tasks: list[Future[Run]]) -> Iterator[Run]:
+    """The runs of all tasks; a fault of the measurement itself is told and costs one run only."""
+    for task in tasks:
+        try:
+            yield task.result()
+        except Exception:
+            traceback.print_exc()
+
+
 def given(file: Path, folder: Path, limit: float) -> Iterator[Run]:
     """The runs of a file, with every command that takes it."""
     for variant in VARIANTS:
@@ -316,7 +326,7 @@ def main() -> int:
                 for kind in arguments.kinds
                 for number in range(arguments.count)
             ]
-            results = (task.result() for task in tasks)
+            results = _finished(tasks)
         for run in results:
             runs.append(run)
             lines.write(json.dumps(asdict(run)) + "\n")

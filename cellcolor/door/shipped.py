@@ -49,7 +49,9 @@ def find_file(source: str | os.PathLike[str]) -> Path:
     try:
         path = Path(source)
         there = path.exists() and not path.is_dir()
-    except (OSError, TypeError, ValueError):
+    except OSError as error:
+        raise InputError(str(source), None, error.strerror or "cannot be read") from error
+    except (TypeError, ValueError):
         raise InputError(str(source), None, "is no name of a file") from None
     if there or not isinstance(source, str):
         return path
