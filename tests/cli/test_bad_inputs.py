@@ -253,7 +253,7 @@ def test_broken_claim(
 RING = str(PAPER / "ring.json")
 USAGE = {
     "no command": [],
-    "unknown command": ["paint"],
+    "unknown command": ["polish"],
     "no file": ["solve"],
     "unknown option": ["solve", RING, "--fast"],
     "unknown solver": ["solve", RING, "--solver", "sat"],
