@@ -273,6 +273,7 @@ USAGE = {
     "warm start of two": ["solve", RING, RING, "--warm-start", RING],
     "build without output": ["build", str(PAPER / "ring.surface.json")],
     "check of one file": ["check", RING],
+    "paint without output": ["paint", RING, RING],
     "check of three files": ["check", RING, RING, RING],
     "bench of nothing": ["bench"],
 }
@@ -280,7 +281,7 @@ USAGE = {
 
 @pytest.mark.parametrize("arguments", USAGE.values(), ids=USAGE.keys())
 def test_bad_usage(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    command = "cellcolor" if arguments[:1] in ([], ["paint"]) else f"cellcolor {arguments[0]}"
+    command = "cellcolor" if arguments[:1] in ([], ["polish"]) else f"cellcolor {arguments[0]}"
     assert refused(arguments, capsys, f"{command}: ") == ""
 
 
