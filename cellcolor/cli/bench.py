@@ -54,10 +54,11 @@ def bench_files(files: Sequence[Path], time_limit: float) -> Exit:
         )
         proved = all(run.optimal for run in runs.values())
         codes.append(Exit.DONE if proved else Exit.STOPPED)
-    console().print(table)
-    console().print(
-        f"ratio: {_SOLVERS[0]} seconds over {_SOLVERS[1]} seconds; > not proved in time"
-    )
+    if table.row_count:
+        console().print(table)
+        console().print(
+            f"ratio: {_SOLVERS[0]} seconds over {_SOLVERS[1]} seconds; > not proved in time"
+        )
     return worst(codes)
 
 

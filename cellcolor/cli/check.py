@@ -38,7 +38,10 @@ def check_files(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -
         if as_json:
             print_json({"file": str(claim), "error": message})
         return Exit.STOPPED
-    if is_plan and opened.given_surface is not None:
+    if is_plan:
+        if opened.given_surface is None:
+            message = f"is a plan, which goes with a labelled surface or a scene; {subject} is none"
+            raise InputError(str(claim), "format", message)
         verdict = _check_plan(opened, claim, deadline)
     else:
         verdict = _check_solution(opened, claim)

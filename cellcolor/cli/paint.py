@@ -41,6 +41,9 @@ def paint_files(source: Path, claim: Path, output: Path, deadline: Deadline) -> 
 
     try:
         subject = read_subject(source, deadline)
+        if subject.surface_path is not None:  # of an instance: what it names is read as well
+            inputs.append(subject.surface_path)
+        check_output(output, _SURFACE, inputs)
         painted = paint_by(subject, solution, deadline)
     except OutOfTime:
         complain(f"{source}: not painted: the time limit came first; nothing is written")

@@ -9,6 +9,7 @@ from cellcolor.data.wording import count, listed
 
 if TYPE_CHECKING:
     from cellcolor.data.bound import Bound
+    from cellcolor.data.coverage import Coverage
     from cellcolor.data.instance import Instance
 
 __all__ = ["in_words", "reason_of", "witness_in_words"]
@@ -41,6 +42,8 @@ class _Answer(Protocol):
     def proved_for_surface(self) -> bool: ...
     @property
     def bounds(self) -> tuple[Bound, ...] | None: ...
+    @property
+    def coverage(self) -> Coverage | None: ...
 
 
 def in_words(solution: _Answer, reason: str | None = None) -> str:
@@ -52,6 +55,8 @@ def in_words(solution: _Answer, reason: str | None = None) -> str:
             solution's bounds say; only used if the number is proved for any division.
     """
     if solution.segments is None or solution.lift_offs is None:
+        if solution.coverage is not None and solution.coverage.covered == 0:
+            return "no division: no point of the surface can be covered"
         return f"no division found; at least {count(solution.lower_bound, 'segment')}"
     found = f"{count(solution.segments, 'segment')}, {count(solution.lift_offs, 'lift-off')}"
     if solution.proved_for_surface:

@@ -272,8 +272,9 @@ class LabelledSurface:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
+        document = read_document(path)
         try:
-            return cls.from_document(read_document(path))
+            return cls.from_document(document)
         except InputError as error:
             raise error.in_file(str(path)) from error
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 from collections.abc import Callable
 from dataclasses import dataclass
+from numbers import Integral
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,6 +15,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.door.extras import extras_for
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
 from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, write
 from cellcolor.pictures.interface import Given
 from cellcolor.pictures.registry import make_picture
@@ -57,8 +59,9 @@ class Drawing:
         Raises:
             InputError: another ending, something else is there, or it cannot be written.
         """
-        kind = kind_of_picture(Path(path))
-        write([Output(Path(path), kind, [self.render(Path(path).suffix)])])
+        place = path_of(path)
+        kind = kind_of_picture(place)
+        write([Output(place, kind, [self.render(place.suffix)])])
 
     def __str__(self) -> str:
         return self.picture.title
@@ -137,10 +140,10 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     file = None if subject.path is None else str(subject.path)
 
     def vertex() -> int:
-        count, asked = len(subject.surface.vertices), view.vertex or 0
-        if 0 <= asked < count:
-            return asked
-        raise InputError(file, "vertex", f"{asked} is not among 0 to {count - 1}")
+        count, asked = len(subject.surface.vertices), view.vertex
+        if isinstance(asked, Integral) and 0 <= asked < count:
+            return int(asked)
+        raise InputError(file, "vertex", f"{asked!r} is not among 0 to {count - 1}")
 
     def color() -> int:
         place = None if subject.surface_path is None else str(subject.surface_path)
@@ -161,7 +164,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
         "branch": branch,
     }
     if "surface" in picture.needs and not subject.names_surface:
-        message = "is missing: without a surface only the graph can be shown (--graph)"
+        message = f"{subject.why_no_surface}; only the graph can be shown (--graph)"
         raise InputError(file, "surface", message)
     asked: dict[Source, object] = {
         "color": view.color,

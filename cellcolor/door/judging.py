@@ -122,6 +122,9 @@ def judge_by(
     bounds: ProvenRange | None = None,
 ) -> Verdict:
     """The verdict on a plan by a moment that may have passed already: :func:`judge`."""
+    if bounds is not None and not isinstance(bounds, ProvenRange):
+        message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
+        raise InputError(None, "bounds", message)
     if isinstance(plan, (str, PathLike)):
         plan = Plan.read(plan)
     elif not isinstance(plan, Plan):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import html
 from dataclasses import dataclass, field
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data import solution as solution_file
@@ -17,6 +16,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
 from cellcolor.files.writing import Output, kind_of_format, write
 
 if TYPE_CHECKING:
@@ -76,7 +76,7 @@ class Result:
             InputError: there is something else, or it cannot be written.
         """
         kind = kind_of_format(solution_file.FORMAT)
-        write([Output(Path(path), kind, [self.solution.to_json().encode()])])
+        write([Output(path_of(path), kind, [self.solution.to_json().encode()])])
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> Drawing:
         """Draw the segments on the surface, or the graph where there is no surface.

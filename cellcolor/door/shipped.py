@@ -10,6 +10,7 @@ import os
 from pathlib import Path
 
 from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
 
 __all__ = ["Library", "find_file", "library"]
 
@@ -46,20 +47,18 @@ def find_file(source: str | os.PathLike[str]) -> Path:
     Raises:
         InputError: neither a path, nor a file or a name that is known.
     """
+    path = path_of(source)
     try:
-        path = Path(source)
         there = path.exists() and not path.is_dir()
-    except OSError as error:
-        raise InputError(str(source), None, error.strerror or "cannot be read") from error
-    except (TypeError, ValueError):
-        raise InputError(str(source), None, "is no name of a file") from None
+    except (OSError, ValueError):  # a name that is too long, say
+        return path  # whoever reads it says what is wrong
     if there or not isinstance(source, str):
         return path
     files = _files()
     if source in files:
         return files[source]
     if path.suffix or path.name != source or path.is_dir():
-        return path  # whoever reads it says what is wrong
+        return path
     from difflib import get_close_matches
 
     close = get_close_matches(source, files, n=1)

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from os import PathLike
-from pathlib import Path
 
 from cellcolor.data.solution import Solution
 from cellcolor.door.drawing import Drawing, View, draw, kind_of_picture, picture_of
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Solvable, Subject, open_subject
 from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
 
 __all__ = ["show"]
 
@@ -19,7 +19,7 @@ def show(
     path: str | PathLike[str] | None = None,
     *,
     view: str | None = None,
-    solution: Solution | str | PathLike[str] | None = None,
+    solution: Solution | Result | str | PathLike[str] | None = None,
     color: str | int | None = None,
     vertex: int | None = None,
     branch: str | int | None = None,
@@ -35,7 +35,7 @@ def show(
         path: a file .html, .png or .svg; None draws without writing, for notebooks.
         view: the picture: ``cells``, ``color``, ``graph``, ``reasons`` (why points are out of
             reach), ``segments`` or ``arm``; None for what the options below ask for.
-        solution: by segment, in this solution or its file.
+        solution: by segment, in this solution, result or file of one.
         color: where one color is available, by its name or number.
         vertex: the arm on this vertex, in one ``branch``.
         branch: an inverse-kinematic branch, by its name or number.
@@ -44,7 +44,9 @@ def show(
         InputError: there is nothing of that kind to be seen, or the file cannot be written.
     """
     if path is not None:
-        kind_of_picture(Path(path))
+        kind_of_picture(path_of(path))
+    if isinstance(solution, Result):
+        solution = solution.solution
     subject = source.subject if isinstance(source, Result) else open_subject(source)
     if view is None:
         asked = {"color": color, "arm": vertex, "segments": solution}

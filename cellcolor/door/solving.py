@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from numbers import Real
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -161,8 +162,8 @@ def deadline_after(time_limit: float | None) -> Deadline:
     """
     if time_limit is None:
         return NEVER
-    number = isinstance(time_limit, (int, float)) and not isinstance(time_limit, bool)
+    number = isinstance(time_limit, Real) and not isinstance(time_limit, bool)
     if not number or not 0 < time_limit < math.inf:
         message = f"must be a positive number of seconds or None, is {time_limit!r}"
         raise InputError(None, "time_limit", message)
-    return Deadline.after(time_limit)
+    return Deadline.after(float(time_limit))

@@ -131,7 +131,7 @@ class Subject:
             return self.given_surface
         assert self.given_instance is not None
         if not self.names_surface:
-            raise InputError(self._file, "surface", "is missing: this is a graph without a surface")
+            raise InputError(self._file, "surface", self.why_no_surface)
         assert self.surface_path is not None
         surface = LabelledSurface.read(self.surface_path)
         self._same_surface(self.given_instance, surface)
@@ -151,6 +151,17 @@ class Subject:
         if self.given_instance is None:
             return True
         return self.path is not None and self.given_instance.surface is not None
+
+    @property
+    def why_no_surface(self) -> str:
+        """What is wrong with its field ``surface`` where :attr:`names_surface` is false."""
+        reference = None if self.given_instance is None else self.given_instance.surface
+        if reference is None:
+            return "is missing: this is a graph without a surface"
+        return (
+            f"lies in {reference.path!r} beside the instance's file, and a value read from there "
+            "does not know where that is: give the file, or the surface"
+        )
 
     @property
     def _file(self) -> str | None:

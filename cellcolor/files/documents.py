@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 from collections.abc import Sequence
 from os import PathLike
-from pathlib import Path
 from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
 from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
 
 T = TypeVar("T")
 
@@ -72,12 +72,12 @@ def read_text(path: str | PathLike[str]) -> str:
         InputError: the file is missing, unreadable or not UTF-8.
     """
     try:
-        return Path(path).read_text(encoding="utf-8")
+        return path_of(path).read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise InputError(str(path), None, "not UTF-8 text") from error
     except OSError as error:
         raise InputError(str(path), None, error.strerror or "cannot be read") from error
-    except (TypeError, ValueError) as error:  # no path at all; a name with a zero character
+    except ValueError as error:  # a name with a zero character
         raise InputError(str(path), None, "is no name of a file") from error
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from dataclasses import fields
 from functools import cache
 from typing import Any, TypeVar, get_type_hints
@@ -67,7 +68,9 @@ def validate_python(adapter: TypeAdapter[T], content: Any, member: str) -> T:
 
 def _first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
     fault = error.errors(include_url=False)[0]
-    return fault["loc"], fault["msg"]
+    # Lists and arrays are taken as well, and JSON's sentence is the one that says so.
+    message = re.sub("valid (tuple|list)$", "valid array", fault["msg"])
+    return fault["loc"], message
 
 
 def plain(content: Any) -> Any:

@@ -14,8 +14,10 @@ from pydantic import (
     ValidationInfo,
     field_serializer,
     model_serializer,
+    model_validator,
 )
 
+from cellcolor.errors import InputError
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
 from cellcolor.frontend.parts.arrays import ArraysObject
 from cellcolor.frontend.parts.part import PARTS, Part
@@ -87,6 +89,15 @@ class Scene(FileTable):
     ground: Ground | None = None
     obstacle: tuple[AnyObstacle, ...] = ()
     validity_test: tuple[AnyTest, ...] = ()
+
+    @model_validator(mode="before")
+    @classmethod
+    def _no_setup(cls, content: Any) -> Any:
+        """Say what is wrong with a setup that is taken for a scene, not that it lacks a name."""
+        if isinstance(content, dict) and "robot" in content and "setup" not in content:
+            message = "is a robot's setup, not a scene: a scene names one as its 'setup'"
+            raise InputError(None, None, message)
+        return content
 
     @model_serializer(mode="wrap")
     def _tests_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:

@@ -19,6 +19,7 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat,
 
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
+from cellcolor.files.paths import path_of
 
 __all__ = [
     "Coordinate",
@@ -104,7 +105,7 @@ class FileTable(Table):
             InputError: unreadable, not TOML, or what :class:`Table` refuses; names the file and
                 the key.
         """
-        path = Path(file)
+        path = path_of(file)
         content = _toml(path)
         for name in FileTable.model_fields:
             if name in content:
@@ -164,5 +165,7 @@ def _fault(error: ValidationError) -> InputError:
     key = ""
     for part in first["loc"]:
         key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else part
-    message = "unknown key" if first["type"] == "extra_forbidden" else first["msg"]
+    message = first["msg"].removeprefix("Value error, ")  # pydantic's words for a ValueError
+    if first["type"] == "extra_forbidden":
+        message = "unknown key"
     return InputError(None, key or None, message)

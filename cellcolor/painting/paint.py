@@ -10,6 +10,7 @@ import numpy as np
 
 from cellcolor.arrays import Index
 from cellcolor.checker.vertex_plan import check_plan
+from cellcolor.data.comparing import same_members
 from cellcolor.data.darts import Strand
 from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.plan import Plan
@@ -58,6 +59,15 @@ class Painted:
         vertices = count(len(self.surface.vertices), "vertex", "vertices")
         segments = count(self.segments, "segment")
         return f"{self.surface.name}: painted in {segments}, {lift_offs}, on {vertices}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+    def __eq__(self, other: object) -> bool:
+        return same_members(self, other) if isinstance(other, Painted) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.surface, self.plan))
 
 
 def paint(

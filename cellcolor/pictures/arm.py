@@ -50,7 +50,7 @@ class ArmPicture:
                 f"{result.branches[branch]!r} is not valid on vertex {vertex}: "
                 f"{result.reason_names[reasons[branch]]}; valid there: {', '.join(valid) or 'none'}"
             )
-            raise InputError(None, "--branch", message)
+            raise InputError(None, "branch", message)
         return arm_at(result, vertex, branch)
 
 

@@ -187,8 +187,32 @@ class TestBench:
         assert [str(RING), "3", "2", "2"] in rows
         assert [str(ZEROS), "5", "6", "2"] in rows
 
+    def test_no_table_of_nothing(self, tmp_path: Path, capsys: Capture) -> None:
+        assert run("bench", tmp_path / "none.json") == 2
+        out, err = capsys.readouterr()
+        assert out == "" and len(err.splitlines()) == 1
+
     def test_a_bad_file_does_not_stop_the_others(self, tmp_path: Path, capsys: Capture) -> None:
         assert run("bench", tmp_path / "none.json", RING) == 2
         out, err = capsys.readouterr()
         assert str(RING) in out
         assert len(err.splitlines()) == 1
+
+
+def test_a_plan_is_not_checked_against_a_graph(tmp_path: Path, capsys: Capture) -> None:
+    plan = tmp_path / "plan.json"
+    plan.write_text('{"format": "cellcolor/plan", "version": 1, "vertex_colors": [0]}')
+    assert run("check", RING, plan) == 2
+    assert capsys.readouterr().err == (
+        f"cellcolor: {plan}: format: is a plan, which goes with a labelled surface or a scene; "
+        f"{RING} is none\n"
+    )
+
+
+def test_an_instance_is_not_written_where_it_would_be_a_scene(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    output = tmp_path / "wok.toml"
+    assert run("build", RING.with_suffix(".surface.json"), "-o", output) == 2
+    assert "must not end in .toml" in capsys.readouterr().err
+    assert not output.exists()

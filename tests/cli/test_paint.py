@@ -85,3 +85,20 @@ def test_in_python() -> None:
     assert painting.segments == 2
     assert cellcolor.judge(painting.surface, painting.plan).optimal
     assert "2 segments, 1 lift-off" in str(painting)
+
+
+def test_the_surface_that_an_instance_names_is_not_overwritten(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    surface, instance = tmp_path / "c.surface.json", tmp_path / "c.json"
+    surface.write_bytes((PAPER / "parallel-corridors.surface.json").read_bytes())
+    before = surface.read_bytes()
+    assert run("build", surface, "-o", instance) == 0
+    solution = tmp_path / "solution.json"
+    assert run("solve", instance, "--search-space", "surface", "-o", solution) == 0
+    capsys.readouterr()
+    assert run("paint", instance, solution, "-o", surface) == 2
+    assert capsys.readouterr().err == (
+        f"cellcolor: {surface}: is an input, which would be overwritten\n"
+    )
+    assert surface.read_bytes() == before and not (tmp_path / "c.plan.json").exists()

@@ -44,7 +44,7 @@ def test_arms(tmp_path: Path, capsys: Capture) -> None:
     vertex, branch = (int(k) for k in np.argwhere(result.reasons == Reason.GROUND)[0])
     name = result.branches[branch]
     arm = [scene, "-o", tmp_path / "x.png", "--vertex"]
-    refused([*arm, vertex, "--branch", name], capsys, name, "not valid", "ground")
+    refused([*arm, vertex, "--branch", name], capsys, f": branch: '{name}' is not valid", "ground")
     refused([*arm, 91, "--branch", name], capsys, "vertex", "0 to 90")
     refused([*arm, 0, "--branch", "elbow"], capsys, "branch", "'elbow'", name)
     refused([*arm, 0, "--branch", "8"], capsys, "branch", "'8'")

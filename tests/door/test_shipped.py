@@ -69,7 +69,7 @@ def test_a_path_is_no_name() -> None:
         ("qqqqqq", "qqqqqq: is no file, and nothing of that name is shipped"),
         ("wokk.toml", "wokk.toml: No such file or directory"),
         ("some/where", "some/where: No such file or directory"),
-        ("", ": "),
+        ("", "'' is no name of a file"),
         ("a\0b", "is no file, and nothing of that name is shipped"),
     ],
 )

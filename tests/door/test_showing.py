@@ -133,3 +133,18 @@ def test_a_surface_of_another_solution_is_refused() -> None:
     other = cellcolor.solve(PAPER / "ring.surface.json")
     with pytest.raises(InputError, match="no valid solution of"):
         cellcolor.show(SURFACE, solution=other.solution)
+
+
+def test_a_result_is_a_solution_too() -> None:
+    result = cellcolor.solve(SURFACE)
+    drawings = [cellcolor.show(SURFACE, solution=s) for s in (result, result.solution)]
+    assert drawings[0].render(".svg") == drawings[1].render(".svg")
+
+
+@pytest.mark.parametrize("vertex", ["0", 1.5, -1, 10**6])
+def test_what_is_no_vertex_is_refused(vertex: Any) -> None:
+    pytest.importorskip("pinocchio")
+    from shipped import shipped
+
+    with pytest.raises(InputError, match=rf"vertex: {vertex!r} is not among 0 to "):
+        cellcolor.show(shipped("wok", 50), vertex=vertex, branch=0)

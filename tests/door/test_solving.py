@@ -19,6 +19,7 @@ from shipped import ROBOTS, SCENES
 
 import cellcolor
 from cellcolor import InputError, Instance, LabelledSurface, Plan, Solution
+from cellcolor.cli import main
 
 RING = PAPER / "ring.json"
 RING_SURFACE = PAPER / "ring.surface.json"
@@ -74,8 +75,6 @@ def test_read_takes_every_format(tmp_path: Path) -> None:
 
 
 def test_read_gives_the_solution_before_schemes(tmp_path: Path) -> None:
-    from cellcolor.cli import main
-
     file = tmp_path / "schemes.jsonl"
     assert main(["solve", str(RING), "--all", "-o", str(file)]) == 0
     assert len(file.read_text(encoding="utf-8").splitlines()) > 1
@@ -124,7 +123,7 @@ def test_a_result_says_what_is_proved_and_why() -> None:
         "1 segment, 0 lift-offs, optimal: proved for any division of the surface"
     )
     bare = drawn("AA AA", {"A": []})
-    assert str(cellcolor.solve(bare)) == "no division found; at least 0 segments"
+    assert str(cellcolor.solve(bare)) == "no division: no point of the surface can be covered"
 
 
 def test_a_result_is_a_value(tmp_path: Path) -> None:
@@ -341,3 +340,33 @@ def _torus() -> LabelledSurface:
 def test_time_ends_the_work() -> None:
     with pytest.raises(cellcolor.OutOfTime):
         cellcolor.solve(INSTANCES / "random" / "blobs_0.surface.json", time_limit=1e-9)
+
+
+def test_numbers_of_numpy_are_seconds() -> None:
+    assert cellcolor.solve(HALVES, time_limit=np.int64(60)).segments == 2  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("bounds", [3, (2, 2), "exactly 2"])
+def test_bounds_are_a_proven_range(bounds: Any) -> None:
+    with pytest.raises(InputError, match=r"^bounds: must be what cellcolor\.proven_range returns"):
+        cellcolor.judge(HALVES, [0] * len(HALVES.vertices), bounds=bounds)
+
+
+def test_a_setup_is_no_scene() -> None:
+    pytest.importorskip("pinocchio")
+    with pytest.raises(InputError, match=r"ur5_polishing\.toml: is a robot's setup, not a scene"):
+        cellcolor.solve("ur5_polishing")
+
+
+def test_an_instance_read_from_a_file_says_where_its_surface_is(tmp_path: Path) -> None:
+    """A value does not know the folder that it was read from."""
+    surface, file = tmp_path / "s.surface.json", tmp_path / "s.json"
+    surface.write_text(HALVES.to_json(), encoding="utf-8")
+    assert main(["build", str(surface), "-o", str(file)]) == 0
+    assert cellcolor.proven_range(file).exact
+    functions: list[Any] = [cellcolor.proven_range, lambda i: cellcolor.show(i, view="cells")]
+    for function in functions:
+        with pytest.raises(InputError, match=r"surface: lies in 's\.surface\.json' beside"):
+            function(cellcolor.read(file))
+        with pytest.raises(InputError, match="surface: is missing"):
+            function(cellcolor.read(RING))

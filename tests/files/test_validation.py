@@ -179,9 +179,9 @@ CELL = Cell(0, (0,), ((1,),))
 REFUSED: dict[str, tuple[Callable[[], object], str, str]] = {
     "cell numbered True": (lambda: Cell(True, (0,), ()), "id", "integer"),
     "color as float": (lambda: Cell(0, (1.0,), ()), "colors[0]", "integer"),
-    "colors as text": (lambda: Cell(0, "01", ()), "colors", "tuple"),
-    "colors as a set": (lambda: Cell(0, {0, 1}, ()), "colors", "tuple"),
-    "loop of one number": (lambda: Cell(0, (0,), (1,)), "loops[0]", "tuple"),
+    "colors as text": (lambda: Cell(0, "01", ()), "colors", "array"),
+    "colors as a set": (lambda: Cell(0, {0, 1}, ()), "colors", "array"),
+    "loop of one number": (lambda: Cell(0, (0,), (1,)), "loops[0]", "array"),
     "endless area": (lambda: Cell(0, (0,), (), float("inf")), "area", "finite"),
     "area less than nothing": (lambda: Cell(0, (0,), (), -1.0), "area", "greater"),
     "edge of a name": (lambda: Edge("1", 0, 1), "id", "integer"),
@@ -283,7 +283,7 @@ def test_plans_are_taken_or_refused_as_from_a_file(colors: Any) -> None:
         try:
             return make().vertex_colors, None
         except InputError as error:
-            return None, str(error).replace("valid array", "valid tuple")
+            return None, str(error)
 
     made = outcome(lambda: Plan(colors))
     text = json.dumps(document, allow_nan=True)

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import random
+from dataclasses import replace
 
 import networkx as nx
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from library import INSTANCES
+from library import INSTANCES, PAPER
 from random_divisions import random_division, random_seams
 
+import cellcolor
 from cellcolor.data.solution import InstanceReference, Solution, count_segments
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
@@ -100,3 +104,14 @@ def test_a_solution_without_a_division_is_refused() -> None:
     decomposition = decomposition_of(surface)
     with pytest.raises(InputError, match="cells: holds no division to paint"):
         paint(surface, decomposition, solve(decomposition.instance, Options()))
+
+
+def test_a_painting_is_a_value() -> None:
+    surface = LabelledSurface.read(PAPER / "parallel-corridors.surface.json")
+    result = cellcolor.solve(surface, search_space="surface")
+    painting = cellcolor.paint(surface, result)
+    again = pickle.loads(pickle.dumps(painting))
+    assert again == painting == copy.deepcopy(painting) and hash(again) == hash(painting)
+    assert painting != replace(painting, segment_of=painting.segment_of[::-1])
+    assert painting != "painting"
+    assert repr(painting) == f"<Painted {painting}>"

@@ -1,0 +1,24 @@
+"""The names of files that callers hand over."""
+
+from __future__ import annotations
+
+from os import PathLike
+from pathlib import Path
+
+from cellcolor.errors import InputError
+
+__all__ = ["path_of"]
+
+
+def path_of(name: str | PathLike[str]) -> Path:
+    """The path that a file's name stands for.
+
+    Raises:
+        InputError: it is neither a text nor a path, or an empty text.
+    """
+    try:
+        if isinstance(name, str) and not name:
+            raise TypeError  # pathlib would take it for the folder that one is in
+        return Path(name)
+    except TypeError as error:
+        raise InputError(None, None, f"{name!r:.100} is no name of a file") from error

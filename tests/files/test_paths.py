@@ -1,0 +1,47 @@
+"""What is a file's name, and what is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cellcolor
+from cellcolor import InputError
+from cellcolor.files.paths import path_of
+
+RESULT = cellcolor.solve("ring")
+FUNCTIONS: dict[str, Any] = {
+    "read": cellcolor.read,
+    "build": cellcolor.build,
+    "check": lambda name: cellcolor.check("ring", name),
+    "start": lambda name: cellcolor.solve("ring", start=name),
+    "save": RESULT.save,
+    "plot": lambda name: RESULT.plot(name),
+    "drawing": lambda name: RESULT.plot().save(name),
+    **{
+        kind.__name__: kind.read
+        for kind in (
+            cellcolor.Instance,
+            cellcolor.LabelledSurface,
+            cellcolor.Plan,
+            cellcolor.Solution,
+        )
+    },
+}
+
+
+def test_texts_and_paths_are_names() -> None:
+    assert path_of("a/b.json") == path_of(Path("a/b.json")) == Path("a", "b.json")
+
+
+@pytest.mark.parametrize(
+    "name", [3, True, [], b"ring.json", "", np.zeros((3, 3)), cellcolor], ids=repr
+)
+@pytest.mark.parametrize("function", FUNCTIONS)
+def test_anything_else_is_refused_in_one_line(function: str, name: Any) -> None:
+    with pytest.raises(InputError, match=r"is no name of a file$") as caught:
+        FUNCTIONS[function](name)
+    assert "\n" not in str(caught.value) and len(str(caught.value)) < 150
