@@ -11,6 +11,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -24,6 +25,8 @@ from cellcolor.pictures.picture import Layer, Picture2D, Picture3D
 __all__ = ["render"]
 
 _LIGHT = np.array([0.3, -0.5, 0.81])
+_SMALLEST = 3.5
+"""Points; what is written in smaller letters is not read."""
 _STYLE = {
     "font.size": 9,
     "svg.fonttype": "none",
@@ -61,8 +64,18 @@ def _side(figure: Figure, handles: Sequence[Patch | Line2D], notes: Sequence[str
     for handle in handles:
         if str(handle.get_label()).startswith("_"):
             handle.set_label(f" {handle.get_label()}")
-    place = {"loc": "upper left", "bbox_to_anchor": (0.64, 0.93)}
-    figure.legend(handles=handles, fontsize=size, ncols=columns, frameon=False, **place)
+    left = 0.64
+
+    def legend(size: float) -> Legend:
+        place = {"loc": "upper left", "bbox_to_anchor": (left, 0.93)}
+        return figure.legend(handles=handles, fontsize=size, ncols=columns, frameon=False, **place)
+
+    drawn = legend(size)
+    room = (0.99 - left) * figure.bbox.width
+    width = drawn.get_window_extent().width
+    if width > room:  # long names would be cut off at the edge
+        drawn.remove()
+        legend(max(_SMALLEST, size * room / width))
     figure.text(0.65, 0.03, "\n".join(notes), fontsize=7, va="bottom")
 
 
