@@ -1,23 +1,19 @@
 """Classes that a file names by their kind: those of this package, and those of others.
 
 Scenes and setups say of a part, an obstacle, a validity test or an arm which kind it is. There is a
-registry for each of the four. A kind is imported when a file names it, and not before. Another
-distribution registers one by an entry point, in its ``pyproject.toml``::
-
-    [project.entry-points."cellcolor.parts"]
-    torus = "torus_part:Torus"
+registry for each of the four (:mod:`cellcolor.registered`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from importlib.metadata import EntryPoint, entry_points
 from typing import Any, Generic, TypeVar
 
 from pydantic_core import PydanticCustomError
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.tables import Table
+from cellcolor.registered import find, load
 
 __all__ = ["Registry", "of_kind"]
 
@@ -44,23 +40,8 @@ class Registry(Generic[T]):
             InputError: no class has this name, or two have it; it cannot be imported; or it is not
                 derived from the base class.
         """
-        if name in self._own:
-            found = [EntryPoint(name, self._own[name], self._group)]
-        else:
-            others = entry_points(group=self._group, name=name)
-            found = list({point.value: point for point in others}.values())
-        if not found:
-            known = sorted({*self._own, *entry_points(group=self._group).names})
-            raise InputError(None, None, f"unknown kind {name!r}; known: {', '.join(known)}")
-        if len(found) > 1:
-            values = " and ".join(sorted(point.value for point in found))
-            raise InputError(None, None, f"{name!r} is registered twice: {values}")
-        (point,) = found
-        try:
-            loaded = point.load()
-        except Exception as error:  # code of another distribution may raise anything
-            message = f"{name!r} ({point.value}) cannot be imported: {error!r}"
-            raise InputError(None, None, message) from error
+        point = find(name, self._own, self._group)
+        loaded = load(point)
         if not (isinstance(loaded, type) and issubclass(loaded, self._base)):
             message = f"{name!r} ({point.value}) is no {self._base.__name__}"
             raise InputError(None, None, message)

@@ -8,10 +8,11 @@ Other packages register theirs as entry points of the group ``cellcolor.solvers`
 
 from __future__ import annotations
 
-from importlib.metadata import EntryPoint, entry_points
+from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING
 
 from cellcolor.errors import InputError
+from cellcolor.registered import find, known_names, load
 
 if TYPE_CHECKING:
     from cellcolor.solvers.interface import Solver
@@ -39,8 +40,7 @@ OWN_NAMES = tuple(_OWN)
 
 def solver_names() -> tuple[str, ...]:
     """The names of all solvers, this package's first; none of them is imported for that."""
-    others = {point.name for point in entry_points(group=GROUP)} - _OWN.keys()
-    return (*OWN_NAMES, *sorted(others))
+    return known_names(_OWN, GROUP)
 
 
 def make_solver(name: str) -> Solver:
@@ -51,28 +51,24 @@ def make_solver(name: str) -> Solver:
             registered cannot be imported or is no solver.
         ModuleNotFoundError: a solver of this package needs an extra that is not installed.
     """
+    point = find(name, _OWN, GROUP, "solver")
     if name in _OWN:
-        solver: Solver = EntryPoint(name, _OWN[name], GROUP).load()()
+        solver: Solver = point.load()()
         return solver
-    points = {point.value: point for point in entry_points(group=GROUP, name=name)}
-    if not points:
-        known = ", ".join(solver_names())
-        raise InputError(None, "solver", f"there is no {name!r}; there are {known}")
-    if len(points) > 1:
-        raise InputError(None, "solver", f"{name!r} is registered as {' and as '.join(points)}")
-    return _load(*points.values())
+    return _made(point)
 
 
-def _load(point: EntryPoint) -> Solver:
+def _made(point: EntryPoint) -> Solver:
     """A solver of another package, whose faults are told in a line."""
     from cellcolor.solvers.interface import Abilities
 
     where = f"{point.name!r}, registered as {point.value},"
+    make = load(point, "solver")
     try:
-        solver: Solver = point.load()()
+        solver: Solver = make()
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        raise InputError(None, "solver", f"{where} cannot be loaded: {reason}") from error
+        raise InputError(None, "solver", f"{where} cannot be made: {reason}") from error
     if not isinstance(getattr(solver, "abilities", None), Abilities):
         raise InputError(None, "solver", f"{where} is no solver: it declares no abilities")
     return solver

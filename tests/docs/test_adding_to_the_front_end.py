@@ -108,11 +108,11 @@ def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (("torus_part:Torus", "torus_part:Tyre"), "cannot be imported: AttributeError"),
-        (("torus_part:Torus", "no_such_module:Torus"), "cannot be imported: ModuleNotFound"),
+        (("torus_part:Torus", "torus_part:Tyre"), "cannot be loaded: AttributeError"),
+        (("torus_part:Torus", "no_such_module:Torus"), "cannot be loaded: ModuleNotFound"),
         (("torus_part:Torus", "torus_part:Surface"), "is no Part"),
-        (("torus = ", "tyre = "), "unknown kind 'torus'; known: mesh, pipe, rectangle, .*, tyre"),
-        (("torus = ", "torus = torus_part:Part\ntorus = "), "is registered twice"),
+        (("torus = ", "tyre = "), "there is no 'torus'; there are .*, mesh, tyre"),
+        (("torus = ", "torus = torus_part:Part\ntorus = "), "is registered as .* and as "),
     ],
 )
 def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: str) -> None:
@@ -135,7 +135,7 @@ def test_no_reason_has_two_meanings(tmp_path: Path) -> None:
 
 def test_an_unknown_family_of_arms() -> None:
     scene = shipped("wok").varied(setup={"robot": {"kinematics": "tentacle"}})
-    with pytest.raises(InputError, match="unknown kind 'tentacle'; known: ur") as caught:
+    with pytest.raises(InputError, match="there is no 'tentacle'; there are ur") as caught:
         build_surface(scene)
     assert caught.value.field == "robot.kinematics"
 
