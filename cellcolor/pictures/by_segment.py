@@ -84,7 +84,8 @@ def by_solution(
         notes.append("Fills repeat: the numbers tell segments apart.")
     if divided:
         named = f"{'cell' if len(divided) == 1 else 'cells'} {listed(divided)}"
-        way = "One way to cut is drawn." if decomposition.curves else "Not painted."
+        drawn = "One way to cut is drawn, in black as well."
+        way = drawn if decomposition.curves else "Not painted."
         notes.append(f"Divided: {named}. {way}")
     if added := len(fine.vertices) - len(surface.vertices):
         notes.append(f"The mesh is refined for that: {count(added, 'vertex', 'vertices')} more.")
@@ -94,11 +95,16 @@ def by_solution(
         title,
         labels,
         classes,
-        borders=cells[stands_for],
+        borders=_pieces(cells[stands_for], labels),
         cracks=fine.crack_colors,
         notes=tuple(notes),
     )
     return fine, view
+
+
+def _pieces(cells: Labels, labels: Labels) -> Labels:
+    """A number for each part of a cell that is in one segment, so that cuts are drawn as well."""
+    return cells * (int(labels.max(initial=0)) + 1) + labels
 
 
 def _painted(
