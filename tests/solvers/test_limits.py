@@ -22,6 +22,7 @@ from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_
 from cellcolor.solvers.bounds.domination import drop_dominated
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import search, windows
+from cellcolor.solvers.cpsat.cuts import fewest
 from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.full import full_model, model_size
@@ -330,3 +331,21 @@ def test_twenty_loops() -> None:
     found = solve(instance, Options(deadline=Deadline.after(4.0), workers=1, fewest_cuts=True))
     assert found.segments is not None
     assert any("was not built" in note for note in found.notes) or found.proved_for_surface
+
+
+@pytest.mark.parametrize("fewest_cuts", [False, True])
+def test_what_there_is_no_time_to_build_is_not_begun(
+    monkeypatch: pytest.MonkeyPatch, fewest_cuts: bool
+) -> None:
+    """A hub of 130 petals: by the estimate its model takes longer than all the time there is."""
+
+    def never(*_arguments: object, **_named: object) -> None:
+        raise AssertionError("a model was begun")
+
+    monkeypatch.setattr(search, "full_model", never)
+    monkeypatch.setattr(fewest, "build_apart", never)
+    instance = hub(1, 130, 4)
+    options = Options(deadline=Deadline.after(1.0), fewest_cuts=fewest_cuts)
+    assert 4e5 * model_module.SECONDS_A_TERM > 1.0
+    found = solve(instance, options, "cp-sat-model" if not fewest_cuts else "cp-sat")
+    assert found.segments is not None

@@ -14,12 +14,13 @@ from math import ceil, isfinite
 from ortools.sat.python import cp_model
 
 from cellcolor.data.solution import Seam
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, widened
 from cellcolor.solvers.cpsat.model.full import (
     LARGEST_MODEL,
+    SECONDS_A_TERM,
     Model,
     add_hint,
     full_model,
@@ -252,8 +253,11 @@ class PartSearch:
         if not self._fits(seams_size(seams)):
             return
         graph = dart_graph(self._instance, colors, strands, seams, self._part.loops)
-        if not self._fits(model_size(graph)):
+        size = model_size(graph)
+        if not self._fits(size):
             return
+        if size * SECONDS_A_TERM > deadline.left:
+            raise OutOfTime("building the model would take longer than there is time")
         built = full_model(graph, color_regions(self._instance, colors), deadline=deadline)
         self._hint(built, graph)
         solver = self._runner.solver(None if final else TRIAL_EFFORT, deadline)

@@ -11,7 +11,13 @@ from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.cuts.counting import count_cuts, unseamed
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.full import LARGEST_MODEL, model_size, not_built, seams_size
+from cellcolor.solvers.cpsat.model.full import (
+    LARGEST_MODEL,
+    SECONDS_A_TERM,
+    model_size,
+    not_built,
+    seams_size,
+)
 from cellcolor.solvers.cpsat.model.loops_apart import build_apart, loops_apart, read_apart
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical
 from cellcolor.solvers.cpsat.model.seams import Seamed, SeamWriter
@@ -107,6 +113,8 @@ class FewestCuts:
             size = model_size(graph)
         if size > LARGEST_MODEL:
             self.notes.append(not_built(size))
+            return 0.0
+        if size * SECONDS_A_TERM > self._runner.left:
             return 0.0
         built = build_apart(apart, graph, self._regions, self._segments, groups=groups)
         solver, status = self._solve(built.model)
