@@ -201,7 +201,7 @@ def test_depth_is_refused_before_the_stack_ends() -> None:
 
 
 def test_time_limit_gives_the_best_so_far() -> None:
-    """40 petals are out of reach, so that only the limit ends this: no useful bound from 6 colors."""
+    """40 petals are out of reach, and 6 colors give no useful bound: only the limit ends this."""
     instance = hub(0, 40, 6)
     assert instance.known is not None and instance.known.paper is not None
     answer = SOLVER.minimize(instance, Options(deadline=Deadline.after(0.5)))
