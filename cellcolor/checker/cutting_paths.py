@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from cellcolor.checker.groups import Groups
 from cellcolor.data.darts import Strand, strand_of, twin
@@ -28,15 +29,26 @@ def cutting_paths(instance: Instance, division: Division, seams: Sequence[Seam] 
     )
 
 
-def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, frozenset[Strand]]]:
-    """The sub-cells of a cell as they are on the surface, where no seam parts anything.
+class WholeSubCell(NamedTuple):
+    """A sub-cell as it is on the surface, where no seam parts anything.
+
+    Attributes:
+        color: the color it is painted in.
+        segment: the segment it belongs to.
+        strands: its darts in state 1, those of seams left out.
+    """
+
+    color: int
+    segment: int
+    strands: frozenset[Strand]
+
+
+def whole_subcells(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
+    """The sub-cells of a cell: those that only a seam parts are one.
 
     Args:
         cell: the cell's division, in the cyclic list that seams make of its loops.
         seams: the seams' ids.
-
-    Returns:
-        The color of each sub-cell and its darts in state 1, without those of seams.
     """
     holder = {
         strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
@@ -48,8 +60,9 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, froze
         if abs(strand[0]) in seams and twin(strand) in holder:
             whole.join(number, holder[twin(strand)])
     return [
-        (
+        WholeSubCell(
             cell.subcells[min(parts)].color,
+            cell.subcells[min(parts)].segment,
             frozenset(
                 strand
                 for part in parts
@@ -61,7 +74,7 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[tuple[int, froze
     ]
 
 
-def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[Strand]]]) -> int:
+def _of_cell(cell: Cell, subcells: Sequence[WholeSubCell]) -> int:
     """Sub-cells less one, and loops less the groups of loops that the curves cannot but connect.
 
     Loops and sub-cells that meet make a graph; loops on a common circle of it are in one group.
@@ -74,8 +87,8 @@ def _of_cell(cell: Cell, subcells: Sequence[tuple[int, frozenset[Strand]]]) -> i
     meetings: nx.Graph[tuple[str, int]] = nx.Graph()
     meetings.add_edges_from(
         (("sub-cell", number), ("loop", loop_of[dart]))
-        for number, (_, strands) in enumerate(subcells)
-        for dart, _ in strands
+        for number, subcell in enumerate(subcells)
+        for dart, _ in subcell.strands
     )
     groups: Groups[int] = Groups()
     for loop in range(len(cell.loops)):

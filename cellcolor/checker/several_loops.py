@@ -61,8 +61,10 @@ def on_loops(
     found = []
     for cell, divided in zip(instance.cells, division, strict=True):
         subcells = whole_subcells(divided, virtual)
-        block_of = {dart: number for number, (_, darts) in enumerate(subcells) for dart in darts}
-        colors = [color for color, _ in subcells]
+        block_of = {
+            dart: number for number, subcell in enumerate(subcells) for dart in subcell.strands
+        }
+        colors = [subcell.color for subcell in subcells]
         loops = [
             [strand for dart in loop for strand in strands_along(dart, strands)]
             for loop in instance.live_loops[cell.id]

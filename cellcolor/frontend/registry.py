@@ -7,7 +7,7 @@ registry for each of the four (:mod:`cellcolor.registered`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Generic, TypeVar
+from typing import Generic, TypeVar
 
 from pydantic_core import PydanticCustomError
 
@@ -18,6 +18,7 @@ from cellcolor.registered import find, load
 __all__ = ["Registry", "of_kind"]
 
 T = TypeVar("T")
+Kind = TypeVar("Kind", bound=Table)
 
 
 class Registry(Generic[T]):
@@ -31,7 +32,7 @@ class Registry(Generic[T]):
             base: what every class has to be derived from.
             own: the classes of this package by name, each written as ``module:class``.
         """
-        self._group, self._base, self._own = group, base, own
+        self._group, self.base, self._own = group, base, own
 
     def find(self, name: str) -> type[T]:
         """The class of that name.
@@ -42,17 +43,19 @@ class Registry(Generic[T]):
         """
         point = find(name, self._own, self._group)
         loaded = load(point)
-        if not (isinstance(loaded, type) and issubclass(loaded, self._base)):
-            message = f"{name!r} ({point.value}) is no {self._base.__name__}"
+        if not (isinstance(loaded, type) and issubclass(loaded, self.base)):
+            message = f"{name!r} ({point.value}) is no {self.base.__name__}"
             raise InputError(None, None, message)
         return loaded
 
 
-def of_kind(registry: Registry[Any], content: object) -> Table:
-    """Read a file's table as the class that its key ``kind`` names.
+def of_kind(registry: Registry[Kind], content: object) -> Kind:
+    """Read a file's table as the class that its key ``kind`` names; take a value as it is.
 
     Validators of pydantic call this, so errors are raised in the way that pydantic expects.
     """
+    if isinstance(content, registry.base):
+        return content
     if not isinstance(content, Mapping):
         raise PydanticCustomError("no_table", "must be a table with a kind")
     kind = content.get("kind")
@@ -62,5 +65,4 @@ def of_kind(registry: Registry[Any], content: object) -> Table:
         found = registry.find(kind)
     except InputError as error:
         raise PydanticCustomError("kind", "{text}", {"text": error.message}) from error
-    table: Table = found.model_validate(content)
-    return table
+    return found.model_validate(content)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from os import PathLike
 from typing import Annotated, Any, Self
 
@@ -36,30 +37,6 @@ class Ground(Table):
     height_m: Coordinate
 
 
-def _part(content: Any) -> Part:
-    if isinstance(content, Part):
-        return content
-    found = of_kind(PARTS, content)
-    assert isinstance(found, Part)
-    return found
-
-
-def _obstacle(content: Any) -> Obstacle:
-    if isinstance(content, Obstacle):
-        return content
-    found = of_kind(OBSTACLES, content)
-    assert isinstance(found, Obstacle)
-    return found
-
-
-def _test(content: Any) -> ValidityTest:
-    if isinstance(content, ValidityTest):
-        return content
-    found = of_kind(VALIDITY_TESTS, content)
-    assert isinstance(found, ValidityTest)
-    return found
-
-
 def _setup(content: Any, info: ValidationInfo) -> Any:
     """A setup by its file's name is read."""
     if isinstance(content, str) and "folder" in info.data:
@@ -67,9 +44,9 @@ def _setup(content: Any, info: ValidationInfo) -> Any:
     return content
 
 
-AnyPart = Annotated[SerializeAsAny[Part], PlainValidator(_part)]
-AnyTest = Annotated[SerializeAsAny[ValidityTest], PlainValidator(_test)]
-AnyObstacle = Annotated[SerializeAsAny[Obstacle], PlainValidator(_obstacle)]
+AnyPart = Annotated[SerializeAsAny[Part], PlainValidator(partial(of_kind, PARTS))]
+AnyTest = Annotated[SerializeAsAny[ValidityTest], PlainValidator(partial(of_kind, VALIDITY_TESTS))]
+AnyObstacle = Annotated[SerializeAsAny[Obstacle], PlainValidator(partial(of_kind, OBSTACLES))]
 
 
 class Scene(FileTable):

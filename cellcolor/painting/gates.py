@@ -3,34 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.data.darts import Strand, strand_of, twin
+from cellcolor.checker.cutting_paths import WholeSubCell, whole_subcells
+from cellcolor.data.darts import Strand
 from cellcolor.data.solution import CellDivision
 from cellcolor.decomposition.borders import Curve, Step
 from cellcolor.painting.refined import Refined
-from cellcolor.union_find import UnionFind
 
-__all__ = ["Region", "choose_gates", "regions_of", "steps_by_edge"]
-
-
-@dataclass(frozen=True, slots=True)
-class Region:
-    """A sub-cell as it is on the surface, where no seam parts anything.
-
-    Attributes:
-        segment: the segment it belongs to.
-        strands: its darts in state 1, those of seams left out.
-    """
-
-    segment: int
-    strands: frozenset[Strand]
+__all__ = ["choose_gates", "steps_by_edge", "subcells_on_surface"]
 
 
-def regions_of(cell: CellDivision, seams: set[int]) -> list[Region]:
-    """The sub-cells of a cell: those that a seam parts are one.
+def subcells_on_surface(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
+    """The sub-cells of a cell that have a place on its border.
 
     What hangs on seams alone is left out, unless it is all that there is.
 
@@ -38,23 +24,8 @@ def regions_of(cell: CellDivision, seams: set[int]) -> list[Region]:
         cell: the cell's division, in the cyclic list that seams make of its loops.
         seams: the seams' ids.
     """
-    holder = {
-        strand_of(name): number for number, sub in enumerate(cell.subcells) for name in sub.darts
-    }
-    together = UnionFind(range(len(cell.subcells)))
-    for strand, number in holder.items():
-        if abs(strand[0]) in seams and twin(strand) in holder:
-            together.union(number, holder[twin(strand)])
-    regions = []
-    for parts in together.sets():
-        strands = frozenset(
-            strand
-            for part in parts
-            for strand in map(strand_of, cell.subcells[part].darts)
-            if abs(strand[0]) not in seams
-        )
-        regions.append(Region(cell.subcells[min(parts)].segment, strands))
-    return [region for region in regions if region.strands] or regions[:1]
+    whole = whole_subcells(cell, seams)
+    return [subcell for subcell in whole if subcell.strands] or whole[:1]
 
 
 def steps_by_edge(
@@ -85,7 +56,7 @@ def steps_by_edge(
 
 
 def choose_gates(
-    regions: Sequence[Sequence[Region]], divided: set[int], steps: dict[int, list[Step]]
+    subcells: Sequence[Sequence[WholeSubCell]], divided: set[int], steps: dict[int, list[Step]]
 ) -> tuple[dict[Strand, int], list[int]]:
     """The vertex from which each dart in state 1 of a divided cell crosses its edge.
 
@@ -93,7 +64,7 @@ def choose_gates(
     ends of one mesh edge.
 
     Args:
-        regions: those of each cell.
+        subcells: those of each cell.
         divided: the cells with several.
         steps: of each topological edge, in order.
 
@@ -103,8 +74,8 @@ def choose_gates(
     """
     used: dict[int, set[int]] = {}
     for cell in sorted(divided):
-        for region in regions[cell]:
-            for dart, strand in region.strands:
+        for subcell in subcells[cell]:
+            for dart, strand in subcell.strands:
                 used.setdefault(abs(dart), set()).add(strand)
     gates: dict[Strand, int] = {}
     short = []

@@ -9,6 +9,7 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 
 from cellcolor.arrays import Index
+from cellcolor.checker.cutting_paths import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.comparing import same_members
 from cellcolor.data.darts import Strand
@@ -20,16 +21,13 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders, ClosedMesh
-from cellcolor.errors import InputError, RefusedResult, TooLarge
-from cellcolor.painting.gates import Region, choose_gates, regions_of, steps_by_edge
+from cellcolor.errors import InputError, RefusedResult
+from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
 from cellcolor.painting.refined import Refined, unrefined
 from cellcolor.painting.trees import TooNarrow, grow_trees
 from cellcolor.union_find import UnionFind
 
 __all__ = ["Painted", "paint"]
-
-MOST_VERTICES = 1_000_000
-"""More are not made: they would not fit into the memory that is promised."""
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -105,30 +103,29 @@ def paint(
         raise InputError(None, "edges", "are not numbered in the order in which they lie")
     cell_of = np.array(decomposition.vertex_cell, dtype=np.int64)
     seams = {seam.id for seam in solution.seams}
-    regions = [regions_of(cell, seams) for cell in solution.cells]
-    divided = {number for number, own in enumerate(regions) if len(own) > 1}
+    subcells = [subcells_on_surface(cell, seams) for cell in solution.cells]
+    divided = {number for number, own in enumerate(subcells) if len(own) > 1}
     refined = unrefined(surface)
-    while len(refined.vertices) <= MOST_VERTICES:
+    while True:
         deadline.check()
         mesh = _Mesh(refined, cell_of)
         curves = mesh.borders.curves(deadline)
         steps = steps_by_edge(refined, decomposition.curves, curves)
-        gates, short = choose_gates(regions, divided, steps)
+        gates, short = choose_gates(subcells, divided, steps)
         narrow = np.zeros(len(refined.vertices), dtype=bool)
         for edge in short:
             ends = [vertex for step in steps[edge] for vertex in step]
             narrow[ends] = True
         trees: dict[int, int] = {}
         for cell in deadline.watch(sorted(divided)):
-            found = mesh.trees(cell, regions[cell], gates)
+            found = mesh.trees(cell, subcells[cell], gates)
             if found is None:
                 narrow |= mesh.cell_of == cell
             else:
                 trees |= found
         if not narrow.any():
-            return _painted(mesh, regions, divided, trees, solution)
+            return _painted(mesh, subcells, divided, trees, solution)
         refined = refined.halved(narrow)
-    raise TooLarge(f"the painting would need more than {MOST_VERTICES:,} vertices")
 
 
 class _Mesh:
@@ -141,39 +138,47 @@ class _Mesh:
         self.cell_of = cell_of[refined.stands_for]
         outside = [OUTSIDE] * (self.closed.vertex_count - self.closed.real_count)
         self.borders = Borders(self.surface, self.closed, [*self.cell_of.tolist(), *outside])
+        self.around: dict[int, list[int]] = {}
+        for a, b in self.closed.third:
+            self.around.setdefault(a, []).append(b)
 
     def cracked(self, a: int, b: int) -> bool:
         """Whether any color is cracked along a mesh edge."""
         return bool(self.surface.cracked(a, b))
 
+    def within_cell(self, a: int, b: int) -> bool:
+        """Whether a mesh edge from a vertex to whatever is beside it lies within one cell."""
+        inside = b < len(self.cell_of) and self.cell_of[a] == self.cell_of[b]
+        return bool(inside) and not self.cracked(a, b)
+
     def trees(
-        self, cell: int, regions: Sequence[Region], gates: dict[Strand, int]
+        self, cell: int, subcells: Sequence[WholeSubCell], gates: dict[Strand, int]
     ) -> dict[int, int] | None:
         """The segment of each vertex on the trees of a cell; None if it is too narrow for them."""
-        if any(strand not in gates for region in regions for strand in region.strands):
+        if any(strand not in gates for subcell in subcells for strand in subcell.strands):
             return {}  # an edge is too short, and will be refined for that
         own = np.flatnonzero(self.cell_of == cell).tolist()
-        terminals = [[gates[strand] for strand in sorted(region.strands)] for region in regions]
+        terminals = [[gates[strand] for strand in sorted(subcell.strands)] for subcell in subcells]
         try:
-            trees = grow_trees(own, self.closed.third, self.cracked, terminals)
+            trees = grow_trees(own, self.around, self.closed.third, self.cracked, terminals)
         except TooNarrow:
             return None
-        return {vertex: regions[number].segment for vertex, number in trees.items()}
+        return {vertex: subcells[number].segment for vertex, number in trees.items()}
 
 
 def _painted(
     mesh: _Mesh,
-    regions: Sequence[Sequence[Region]],
+    subcells: Sequence[Sequence[WholeSubCell]],
     divided: set[int],
     trees: dict[int, int],
     solution: Solution,
 ) -> Painted:
     """The painting, with what the checker finds in it."""
     segment_of = np.full(len(mesh.cell_of), -1, dtype=np.int64)
-    for cell, own in enumerate(regions):
+    for cell, own in enumerate(subcells):
         if cell not in divided:
             segment_of[mesh.cell_of == cell] = own[0].segment
-    for vertex, segment in _spread(mesh, divided, trees).items():
+    for vertex, segment in _spread(mesh, trees).items():
         segment_of[vertex] = segment
     color = {sub.segment: sub.color for cell in solution.cells or () for sub in cell.subcells}
     plan = Plan(tuple([color.get(segment) for segment in segment_of.tolist()]))
@@ -191,14 +196,8 @@ def _painted(
     return Painted(mesh.surface, plan, report.segments, segment_of, mesh.refined.stands_for, merged)
 
 
-def _spread(mesh: _Mesh, divided: set[int], trees: dict[int, int]) -> dict[int, int]:
+def _spread(mesh: _Mesh, trees: dict[int, int]) -> dict[int, int]:
     """The segment of every vertex of the divided cells: that of the tree nearest along the mesh."""
-    cell_of = mesh.cell_of.tolist()
-    around: dict[int, list[int]] = {}
-    for a, b in mesh.surface.left_of:
-        if cell_of[a] == cell_of[b] and cell_of[a] in divided and not mesh.cracked(a, b):
-            around.setdefault(a, []).append(b)
-            around.setdefault(b, []).append(a)
     places = mesh.surface.vertices
     segment: dict[int, int] = {}
     queue = [(0.0, vertex, number) for vertex, number in trees.items()]
@@ -208,8 +207,8 @@ def _spread(mesh: _Mesh, divided: set[int], trees: dict[int, int]) -> dict[int, 
         if vertex in segment:
             continue
         segment[vertex] = number
-        for other in around.get(vertex, ()):
-            if other not in segment:
+        for other in mesh.around[vertex]:
+            if other not in segment and mesh.within_cell(vertex, other):
                 length = float(np.linalg.norm(places[vertex] - places[other]))
                 heappush(queue, (far + length, other, number))
     return segment

@@ -15,8 +15,13 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.errors import TooLarge
 
-__all__ = ["Refined", "unrefined"]
+__all__ = ["MOST_VERTICES", "Refined", "unrefined"]
+
+MOST_VERTICES = 250_000
+"""No surface is refined beyond that, so that painting it stays within the memory that is promised
+(docs/painting.md has what was measured)."""
 
 
 @dataclass(frozen=True)
@@ -61,9 +66,16 @@ class Refined:
 
         The new vertex copies an end that is in ``roomy``, so what was marked gets wider: where
         there was a single vertex there is one with a neighbor in every direction.
+
+        Raises:
+            TooLarge: there would be more than ``MOST_VERTICES``.
         """
         edges = _edges(self.faces)
         parted = edges[roomy[edges].any(axis=1)]
+        needed = len(self.vertices) + len(parted)
+        if needed > MOST_VERTICES:
+            most = f"at most {MOST_VERTICES:,} are made"
+            raise TooLarge(f"the painting would need {needed:,} vertices, {most}")
         copied = np.where(roomy[parted[:, 0]], parted[:, 0], parted[:, 1])
         first = len(self.vertices)
         middle = {

@@ -13,17 +13,18 @@ What is too narrow for that has to be refined.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from heapq import heappop, heappush
 from itertools import pairwise
 
+from cellcolor.decomposition.borders import Step
 from cellcolor.union_find import UnionFind
 
 __all__ = ["TooNarrow", "grow_trees"]
 
-Step = tuple[int, int]
-
 _AT_A_WALL, _AT_A_PIECE = 10, 1000
+"""What a way pays for a vertex there; elsewhere it pays 1. It makes long detours round a piece of
+another sub-cell, which has to be reached later, and short ones round other walls."""
 
 
 class TooNarrow(Exception):
@@ -32,6 +33,7 @@ class TooNarrow(Exception):
 
 def grow_trees(
     vertices: Iterable[int],
+    around: Mapping[int, Sequence[int]],
     third: Mapping[Step, int],
     cracked: Callable[[int, int], bool],
     terminals: list[list[int]],
@@ -40,6 +42,7 @@ def grow_trees(
 
     Args:
         vertices: those of the cell.
+        around: the neighbors of each vertex over mesh edges.
         third: the triangle on the left of each directed mesh edge, of a mesh without border.
         cracked: whether a mesh edge has a crack, given either way round.
         terminals: the vertices that each sub-cell has to contain, non-crossing.
@@ -50,13 +53,14 @@ def grow_trees(
     Raises:
         TooNarrow: there is no room, or two sub-cells have one terminal in common.
     """
-    return _Trees(vertices, third, cracked, terminals).grown()
+    return _Trees(vertices, around, third, cracked, terminals).grown()
 
 
 class _Trees:
     def __init__(
         self,
         vertices: Iterable[int],
+        around: Mapping[int, Sequence[int]],
         third: Mapping[Step, int],
         cracked: Callable[[int, int], bool],
         terminals: list[list[int]],
@@ -64,10 +68,7 @@ class _Trees:
         self.free = set(vertices)
         self.third = third
         self.cracked = cracked
-        self.around: dict[int, list[int]] = {v: [] for v in self.free}
-        for a, b in third:
-            if a in self.free:
-                self.around[a].append(b)
+        self.around = around
         self.owner: dict[int, int] = {}
         self.piece: UnionFind[int] = UnionFind()
         self.pieces = [len(set(own)) for own in terminals]
@@ -102,12 +103,7 @@ class _Trees:
 
     def _walks(self) -> list[list[Step]]:
         """Every walk round what is free, as steps (free vertex, what is beside it)."""
-        left = {
-            (f, x)
-            for f in sorted(self.free)
-            for x in self.around[f]
-            if x not in self.free or self.cracked(f, x)
-        }
+        left = {(f, x) for f in self.free for x in self.around[f] if self._is_wall(f, x)}
         walks = []
         for first in sorted(left):
             if first not in left:
@@ -126,7 +122,7 @@ class _Trees:
     def _following(self, step: Step) -> Step:
         f, x = step
         w = self.third[f, x]
-        if w not in self.free or self.cracked(f, w):
+        if self._is_wall(f, w):
             return f, w
         if self._is_wall(w, x):
             return w, x
@@ -143,6 +139,7 @@ class _Trees:
         return list(passed)
 
     def _is_wall(self, f: int, x: int) -> bool:
+        """Whether no tree can grow from a free vertex to what is beside it."""
         return x not in self.free or self.cracked(f, x)
 
     def _unfinished(self, step: Step) -> int | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 import pytest
 
@@ -18,8 +20,15 @@ def grid(size: int) -> ClosedMesh:
     return ClosedMesh(LabelledSurface("grid", ("a",), vertices, faces, ((0,),) * size**2))
 
 
+def grown(vertices: Iterable[int], mesh: ClosedMesh, terminals: list[list[int]]) -> dict[int, int]:
+    around: dict[int, list[int]] = {}
+    for a, b in mesh.third:
+        around.setdefault(a, []).append(b)
+    return grow_trees(vertices, around, mesh.third, lambda _a, _b: False, terminals)
+
+
 def trees(size: int, terminals: list[list[int]]) -> dict[int, int]:
-    return grow_trees(range(size**2), grid(size).third, lambda _a, _b: False, terminals)
+    return grown(range(size**2), grid(size), terminals)
 
 
 def connected(size: int, found: dict[int, int], number: int) -> bool:
@@ -49,10 +58,10 @@ def test_what_crosses_is_refused() -> None:
 
 def test_too_few_rows_are_refused() -> None:
     # Three rows hold two nested trees over a middle one, two rows do not.
-    found = grow_trees(range(21), _strip(3).third, lambda _a, _b: False, [[1, 5], [2, 4], [3]])
+    found = grown(range(21), _strip(3), [[1, 5], [2, 4], [3]])
     assert len(set(found.values())) == 3
     with pytest.raises(TooNarrow):
-        grow_trees(range(14), _strip(2).third, lambda _a, _b: False, [[1, 5], [2, 4], [3]])
+        grown(range(14), _strip(2), [[1, 5], [2, 4], [3]])
 
 
 def _strip(rows: int) -> ClosedMesh:
@@ -70,5 +79,5 @@ def test_a_way_across_leaves_the_other_one_room() -> None:
     """Two sub-cells both reach a hole; the first must not shut the second one in."""
     inside = [v for v in range(49) if v not in (16, 17, 18, 23, 24, 25, 30, 31, 32)]
     # 8 and 9 are on the hole's lower left, 0 and 1 on the outer border.
-    found = grow_trees(inside, grid(7).third, lambda _a, _b: False, [[0, 15], [1, 9], [48, 40]])
+    found = grown(inside, grid(7), [[0, 15], [1, 9], [48, 40]])
     assert all(connected(7, found, number) for number in range(3))
