@@ -178,7 +178,8 @@ def _meta(scene: Scene, stages: Stages, seconds: dict[str, float]) -> dict[str, 
     slivers = stages.cleaned.report
     return {
         "scene": scene.model_dump(mode="json"),
-        "setup": scene.setup.model_dump(mode="json"),
+        # How the arm moves later has no part in what a surface is.
+        "setup": scene.setup.model_dump(mode="json", exclude={"motion"}),
         "versions": {"cellcolor": __version__} | versions,
         "seconds": {stage: round(value, 4) for stage, value in seconds.items()},
     } | ({} if slivers is None else {"slivers": asdict(slivers)})

@@ -15,7 +15,16 @@ from pydantic_core import PydanticCustomError
 
 from cellcolor.frontend.tables import FileTable, NotNegative, Positive, Table, Vector
 
-__all__ = ["Constraints", "Continuity", "RobotFiles", "Setup", "Slivers", "Task", "Thresholds"]
+__all__ = [
+    "Constraints",
+    "Continuity",
+    "Motion",
+    "RobotFiles",
+    "Setup",
+    "Slivers",
+    "Task",
+    "Thresholds",
+]
 
 
 class RobotFiles(Table):
@@ -108,8 +117,28 @@ class Slivers(Table):
     uncover_below_share: Share = 0.0
 
 
+class Motion(Table):
+    """How the tool covers a segment, and how the arm moves; only planning a motion asks for it.
+
+    ``tool_radius_m`` is that of the tool's footprint, ``spacing_m`` the distance between
+    neighboring passes. The tool retracts by ``retract_m`` along the normal; between segments the
+    arm keeps ``clearance_m`` from everything. A URDF has velocities, which
+    ``joint_velocities_rad_per_s`` may lower, but no accelerations. Lists of joints go from base to
+    tool; ``home_rad`` is where the arm begins and ends, nowhere in particular without it.
+    """
+
+    tool_radius_m: Positive = 0.015
+    spacing_m: Positive = 0.01
+    speed_m_per_s: Positive = 0.05
+    joint_velocities_rad_per_s: tuple[Positive, ...] | None = None
+    joint_accelerations_rad_per_s2: tuple[Positive, ...]
+    retract_m: Positive = 0.05
+    clearance_m: NotNegative = 0.005
+    home_rad: tuple[FiniteFloat, ...] | None = None
+
+
 class Setup(FileTable):
-    """Robot, task, thresholds, continuity and sliver policy, shared by scenes."""
+    """Robot, task, thresholds, continuity, sliver policy and motion, shared by scenes."""
 
     robot: RobotFiles
     task: Task
@@ -117,3 +146,4 @@ class Setup(FileTable):
     continuity: Continuity
     constraints: Constraints = Constraints()
     slivers: Slivers | None = None
+    motion: Motion | None = None

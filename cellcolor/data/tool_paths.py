@@ -1,0 +1,200 @@
+"""Tool paths: where the tool goes on each segment of a painted surface, without lifting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, TypeAdapter
+
+from cellcolor.data.comparing import same_members
+from cellcolor.data.rows import integers, rows_of_three
+from cellcolor.data.wording import count
+from cellcolor.errors import InputError
+from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.validation import settle
+
+FORMAT = "cellcolor/tool-paths"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolPath:
+    """One path on a labelled surface, from its first point to its last without lifting.
+
+    The step from point i to point i + 1 is straight and lies in the triangle ``faces[i]``.
+
+    Attributes:
+        segment: which segment of the painting it covers; several paths may cover one segment.
+        color: the segment's.
+        points: (k, 3) float64, m.
+        normals: (k, 3) float64, outward unit normals of the surface.
+        faces: (k - 1,) int64, the triangle that each step lies in.
+
+    Raises:
+        InputError: an array has another shape or kind; names the member.
+    """
+
+    segment: int
+    color: int
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    faces: NDArray[np.int64]
+
+    def __post_init__(self) -> None:
+        settle(self, ("points", "normals", "faces"))
+        object.__setattr__(self, "points", rows_of_three(self.points, "points"))
+        object.__setattr__(self, "normals", rows_of_three(self.normals, "normals"))
+        object.__setattr__(self, "faces", integers(self.faces, "faces"))
+        if len(self.points) < 2:
+            raise InputError(None, "points", "a path needs two points or more")
+        if len(self.normals) != len(self.points):
+            message = f"has {len(self.normals)} entries for {len(self.points)} points"
+            raise InputError(None, "normals", message)
+        if len(self.faces) != len(self.points) - 1:
+            message = f"has {len(self.faces)} entries for {len(self.points) - 1} steps"
+            raise InputError(None, "faces", message)
+
+    @property
+    def length(self) -> float:
+        """Of the whole path, m."""
+        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+
+    def __eq__(self, other: object) -> bool:
+        return same_members(self, other) if isinstance(other, ToolPath) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __str__(self) -> str:
+        points = count(len(self.points), "point")
+        return f"tool path on segment {self.segment}: {self.length:.3f} m, {points}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ToolPaths:
+    """The tool paths of one painting.
+
+    Attributes:
+        name: what to call it.
+        pattern: how the paths were laid out, such as ``contour``.
+        spacing_m: wanted distance between neighboring passes, m.
+        tool_radius_m: of the tool's footprint, m.
+        paths: see :class:`ToolPath`.
+        surface_sha256: fingerprint of the labelled surface that they lie on.
+    """
+
+    name: str
+    pattern: str
+    spacing_m: float
+    tool_radius_m: float
+    paths: tuple[ToolPath, ...]
+    surface_sha256: str
+
+    def __eq__(self, other: object) -> bool:
+        return same_members(self, other) if isinstance(other, ToolPaths) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    @property
+    def length(self) -> float:
+        """Of all paths, m."""
+        return sum(path.length for path in self.paths)
+
+    def __str__(self) -> str:
+        paths = count(len(self.paths), "tool path")
+        return f"{self.name}: {paths}, {self.pattern}, {self.length:.2f} m"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+    def to_json(self) -> str:
+        """The file's text."""
+        paths = [
+            {
+                "segment": path.segment,
+                "color": path.color,
+                "points": path.points.tolist(),
+                "normals": path.normals.tolist(),
+                "faces": path.faces.tolist(),
+            }
+            for path in self.paths
+        ]
+        document: dict[str, Any] = {
+            "format": FORMAT,
+            "version": 1,
+            "name": self.name,
+            "pattern": self.pattern,
+            "spacing_m": self.spacing_m,
+            "tool_radius_m": self.tool_radius_m,
+            "surface_sha256": self.surface_sha256,
+            "paths": paths,
+        }
+        return dump_lines(document, frozenset({"paths"}))
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> ToolPaths:
+        """Tool paths from a parsed JSON object."""
+        raw = validate(_ADAPTER, take_body(document, FORMAT))
+        paths = []
+        for number, path in enumerate(raw.paths):
+            try:
+                members = (path.segment, path.color, path.points, path.normals, path.faces)
+                paths.append(ToolPath(*members))  # type: ignore[arg-type]
+            except InputError as error:
+                raise InputError(None, f"paths[{number}].{error.field}", error.message) from error
+        return cls(
+            raw.name,
+            raw.pattern,
+            raw.spacing_m,
+            raw.tool_radius_m,
+            tuple(paths),
+            raw.surface_sha256,
+        )
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> ToolPaths:
+        """Tool paths from a file.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        document = read_document(path)
+        try:
+            return cls.from_document(document)
+        except InputError as error:
+            raise error.in_file(str(path)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class _PathInFile:
+    """A path's members, before they become arrays."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+    segment: int
+    color: int
+    points: list[tuple[float, float, float]]
+    normals: list[tuple[float, float, float]]
+    faces: list[int] = field(default_factory=list)
+
+
+@dataclass(frozen=True, slots=True)
+class _ToolPathsFile:
+    """The file's members, before they become arrays."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+    name: str
+    pattern: str
+    spacing_m: float
+    tool_radius_m: float
+    paths: list[_PathInFile]
+    surface_sha256: str
+
+
+_ADAPTER = TypeAdapter(_ToolPathsFile)

@@ -1,0 +1,229 @@
+"""Trajectories: joint angles over time, in contact and between, of this planner or another."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from os import PathLike
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import ConfigDict, TypeAdapter
+
+from cellcolor.data.comparing import same_members
+from cellcolor.data.rows import integers, numbers, rows_of, rows_of_three, truths
+from cellcolor.data.wording import count
+from cellcolor.errors import InputError
+from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.validation import json_content, settle
+
+FORMAT = "cellcolor/trajectory"
+_ARRAYS = ("times", "joints", "points", "normals", "contact", "segment")
+
+
+@dataclass(frozen=True, slots=True)
+class ExtraLiftOff:
+    """A lift-off beyond the proven minimum, and why it is there.
+
+    Attributes:
+        sample: the last sample in contact before it.
+        segment: the segment that is left and taken up again.
+        reason: ``winding`` where a joint would run out of its limits, ``trimmed`` where a place
+            that no sample may touch parts the segment.
+        text: the reason in a sentence, with joint or test.
+        place: where, m.
+    """
+
+    sample: int
+    segment: int
+    reason: str
+    text: str
+    place: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A part of a segment that the tool does not go to, and why.
+
+    Attributes:
+        segment: the segment.
+        area_m2: how large it is.
+        reason: the first test that fails there, or another short cause.
+        place: a point of it, m.
+    """
+
+    segment: int
+    area_m2: float
+    reason: str
+    place: tuple[float, float, float]
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Trajectory:
+    """Joint angles over time.
+
+    Between two samples every joint moves in proportion to time. A stretch of samples in contact
+    without one that is not is a **stroke**; between two strokes the tool is lifted off.
+
+    Attributes:
+        name: what to call it.
+        joint_names: the arm's joints, base first.
+        times: (k,) float64, s.
+        joints: (k, joints) float64, rad, unwound: no jumps by full circles.
+        points: (k, 3) float64, where the tool's tip is, in the world, m.
+        normals: (k, 3) float64, unit vectors out of the surface; against the tool's axis.
+        contact: (k,) whether the tool is on the surface.
+        segment: (k,) int64, the segment of the painting that is worked on, -1 between them.
+        unplanned: samples, ascending, after which the move to the next one was not planned: the
+            arm is not known to get there.
+        extra_lift_offs: see :class:`ExtraLiftOff`.
+        left_out: see :class:`LeftOut`.
+        meta: free, JSON-able.
+
+    Raises:
+        InputError: an array has another shape or kind; names the member. Whether times ascend and
+            joints keep their limits is left to the judge of trajectories.
+    """
+
+    name: str
+    joint_names: tuple[str, ...]
+    times: NDArray[np.float64]
+    joints: NDArray[np.float64]
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    contact: NDArray[np.bool_]
+    segment: NDArray[np.int64]
+    unplanned: tuple[int, ...] = ()
+    extra_lift_offs: tuple[ExtraLiftOff, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    meta: dict[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        settle(self, _ARRAYS)
+        for name, content in (
+            ("times", numbers(self.times, "times")),
+            ("joints", rows_of(self.joints, len(self.joint_names), "joints")),
+            ("points", rows_of_three(self.points, "points")),
+            ("normals", rows_of_three(self.normals, "normals")),
+            ("contact", truths(self.contact, "contact")),
+            ("segment", integers(self.segment, "segment")),
+            ("meta", json_content(self.meta, "meta")),
+        ):
+            object.__setattr__(self, name, content)
+        for name in _ARRAYS[1:]:
+            if len(getattr(self, name)) != len(self.times):
+                message = f"has {len(getattr(self, name))} entries for {len(self.times)} times"
+                raise InputError(None, name, message)
+
+    @property
+    def strokes(self) -> tuple[tuple[int, int], ...]:
+        """First sample of each stroke, and the one after its last."""
+        steps = np.diff(np.concatenate([[0], self.contact.astype(np.int8), [0]]))
+        return tuple(
+            zip(np.flatnonzero(steps > 0).tolist(), np.flatnonzero(steps < 0).tolist(), strict=True)
+        )
+
+    @property
+    def lift_offs(self) -> int:
+        """How often the tool is lifted off between two strokes."""
+        return max(0, len(self.strokes) - 1)
+
+    @property
+    def seconds(self) -> float:
+        """From the first sample to the last, s."""
+        return float(self.times[-1] - self.times[0]) if len(self.times) else 0.0
+
+    def __eq__(self, other: object) -> bool:
+        return same_members(self, other) if isinstance(other, Trajectory) else NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __str__(self) -> str:
+        strokes = count(len(self.strokes), "stroke")
+        lift_offs = count(self.lift_offs, "lift-off")
+        samples = count(len(self.times), "sample")
+        return f"{self.name}: {strokes}, {lift_offs}, {self.seconds:.1f} s, {samples}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+    def to_json(self) -> str:
+        """The file's text."""
+        document: dict[str, Any] = {
+            "format": FORMAT,
+            "version": 1,
+            "name": self.name,
+            "joint_names": self.joint_names,
+        }
+        document |= {name: getattr(self, name).tolist() for name in _ARRAYS}
+        document["unplanned"] = self.unplanned
+        document["extra_lift_offs"] = [
+            {
+                "sample": extra.sample,
+                "segment": extra.segment,
+                "reason": extra.reason,
+                "text": extra.text,
+                "place": extra.place,
+            }
+            for extra in self.extra_lift_offs
+        ]
+        document["left_out"] = [
+            {
+                "segment": part.segment,
+                "area_m2": part.area_m2,
+                "reason": part.reason,
+                "place": part.place,
+            }
+            for part in self.left_out
+        ]
+        if self.meta:
+            document["meta"] = self.meta
+        return dump_lines(document, frozenset({"extra_lift_offs", "left_out"}))
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> Trajectory:
+        """A trajectory from a parsed JSON object."""
+        raw = validate(_ADAPTER, take_body(document, FORMAT))
+        return cls(**{name: getattr(raw, name) for name in _TrajectoryFile.__dataclass_fields__})
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> Trajectory:
+        """A trajectory from a file.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        document = read_document(path)
+        try:
+            return cls.from_document(document)
+        except InputError as error:
+            raise error.in_file(str(path)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class _TrajectoryFile:
+    """The file's members, before they become arrays."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+    name: str
+    joint_names: tuple[str, ...]
+    times: list[float]
+    joints: list[list[float]]
+    points: list[tuple[float, float, float]]
+    normals: list[tuple[float, float, float]]
+    contact: list[bool]
+    segment: list[int]
+    unplanned: tuple[int, ...] = ()
+    extra_lift_offs: tuple[ExtraLiftOff, ...] = ()
+    left_out: tuple[LeftOut, ...] = ()
+    meta: dict[str, Any] = field(default_factory=dict)
+
+
+_ADAPTER = TypeAdapter(_TrajectoryFile)

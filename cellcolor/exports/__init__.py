@@ -1,0 +1,1 @@
+"""What other programs read: joints as CSV, tool paths as YAML, painted meshes."""

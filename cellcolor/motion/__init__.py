@@ -1,0 +1,1 @@
+"""From tool paths to a trajectory: joints over time, lift-offs planned, with a scene."""

@@ -1,0 +1,1 @@
+"""From a painting to tool paths: each segment covered without lifting, by named patterns."""

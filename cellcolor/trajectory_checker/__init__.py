@@ -1,0 +1,1 @@
+"""Whether a trajectory does what it claims, independent of whatever made it."""
