@@ -8,7 +8,7 @@ from heapq import heapify, heappop, heappush
 
 import numpy as np
 
-from cellcolor.arrays import Index
+from cellcolor.arrays import Array, Index
 from cellcolor.checker.cutting_paths import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.comparing import same_members
@@ -23,7 +23,7 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders, ClosedMesh
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
-from cellcolor.painting.refined import Refined, unrefined
+from cellcolor.painting.refined import Refined, interpolated, unrefined
 from cellcolor.painting.trees import TooNarrow, grow_trees
 from cellcolor.union_find import UnionFind
 
@@ -41,6 +41,8 @@ class Painted:
         segments: how many the plan has, counted by the checker on the mesh.
         segment_of: (n,) the solution's segment that each vertex is in, -1 where it has no color.
         stands_for: (n,) the vertex of the given surface whose colors each vertex has.
+        between: (n, 2) the two earlier vertices in whose middle each new vertex lies; a vertex of
+            the given surface lies between itself and itself.
         merged: segments of the solution that have one color and touch, so that they are one when
             painted; only where the solution has more than are needed.
     """
@@ -50,7 +52,23 @@ class Painted:
     segments: int
     segment_of: Index
     stands_for: Index
+    between: Index
     merged: tuple[tuple[int, ...], ...]
+
+    def interpolated(self, values: Array) -> Array:
+        """Values (m, ...) at the given surface's vertices, carried over to all (n, ...).
+
+        A new vertex gets the mean of the two that it lies between. Unit normals are no longer of
+        length 1 then.
+
+        Raises:
+            InputError: there is not one row for each vertex of the given surface.
+        """
+        given = int((self.between[:, 0] == self.between[:, 1]).sum())
+        if len(values) != given:
+            message = f"has {len(values)} rows for {count(given, 'vertex', 'vertices')}"
+            raise InputError(None, "values", message)
+        return interpolated(self.between, values)
 
     def __str__(self) -> str:
         lift_offs = count(max(0, self.segments - 1), "lift-off")
@@ -193,7 +211,16 @@ def _painted(
         raise RefusedResult(
             f"a painting has {report.segments} segments, its solution {solution.segments}"
         )
-    return Painted(mesh.surface, plan, report.segments, segment_of, mesh.refined.stands_for, merged)
+    refined = mesh.refined
+    return Painted(
+        mesh.surface,
+        plan,
+        report.segments,
+        segment_of,
+        refined.stands_for,
+        refined.between,
+        merged,
+    )
 
 
 def _spread(mesh: _Mesh, trees: dict[int, int]) -> dict[int, int]:

@@ -17,7 +17,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.errors import TooLarge
 
-__all__ = ["MOST_VERTICES", "Refined", "unrefined"]
+__all__ = ["MOST_VERTICES", "Refined", "interpolated", "unrefined"]
 
 MOST_VERTICES = 250_000
 """No surface is refined beyond that, so that painting it stays within the memory that is promised
@@ -33,12 +33,15 @@ class Refined:
         vertices: (n, 3) m; those of the old surface come first, in their order.
         faces: (m, 3).
         stands_for: (n,) the old vertex that each vertex stands for; itself for an old one.
+        between: (n, 2) the two earlier vertices in whose middle each new vertex lies; an old one
+            lies between itself and itself.
     """
 
     old: LabelledSurface
     vertices: Array
     faces: Index
     stands_for: Index
+    between: Index
 
     def surface(self) -> LabelledSurface:
         """The refined surface, to be decomposed, saved and planned on like any other."""
@@ -90,12 +93,33 @@ class Refined:
             np.concatenate([self.vertices, places]),
             np.array(faces, dtype=np.int64),
             np.concatenate([self.stands_for, self.stands_for[copied]]),
+            np.concatenate([self.between, parted]),
         )
 
 
 def unrefined(surface: LabelledSurface) -> Refined:
     """The surface as it is."""
-    return Refined(surface, surface.vertices, surface.faces, np.arange(len(surface.vertices)))
+    same = np.arange(len(surface.vertices))
+    return Refined(surface, surface.vertices, surface.faces, same, np.stack([same, same], axis=1))
+
+
+def interpolated(between: Index, values: Array) -> Array:
+    """Values (m, ...) of the old vertices carried over to all (n, ...), halfway to new vertices.
+
+    Args:
+        between: (n, 2) of a refinement of m vertices, see :attr:`Refined.between`.
+        values: one row for each old vertex.
+    """
+    found = np.empty((len(between), *values.shape[1:]))
+    first = len(values)
+    found[:first] = values
+    while first < len(between):
+        # The next ones that lie between vertices that have their values by now.
+        later = (between[first:] >= first).any(axis=1)
+        last = first + int(later.argmax()) if later.any() else len(between)
+        found[first:last] = found[between[first:last]].mean(axis=1)
+        first = last
+    return found
 
 
 def _edges(faces: Index) -> Index:

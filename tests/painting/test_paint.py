@@ -8,6 +8,7 @@ import random
 from dataclasses import replace
 
 import networkx as nx
+import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -75,6 +76,7 @@ def assert_whole(surface: LabelledSurface, painted: object, solution: Solution) 
     """
     fine = painted.surface
     assert fine.vertex_colors[: len(surface.vertices)] == surface.vertex_colors
+    assert np.allclose(painted.interpolated(surface.vertices), fine.vertices)
     color = {sub.segment: sub.color for cell in solution.cells for sub in cell.subcells}
     cracks = {(crack.i, crack.j): crack.colors for crack in fine.cracks}
     members: dict[int, nx.Graph] = {}
@@ -104,6 +106,13 @@ def test_a_solution_without_a_division_is_refused() -> None:
     decomposition = decomposition_of(surface)
     with pytest.raises(InputError, match="cells: holds no division to paint"):
         paint(surface, decomposition, solve(decomposition.instance, Options()))
+
+
+def test_values_are_interpolated_for_the_vertices_of_the_given_surface_only() -> None:
+    surface = LabelledSurface.read(PAPER / "parallel-corridors.surface.json")
+    painted = cellcolor.paint(surface, cellcolor.solve(surface, search_space="surface"))
+    with pytest.raises(InputError, match="values: has 1 rows for"):
+        painted.interpolated(surface.vertices[:1])
 
 
 def test_a_painting_is_a_value() -> None:

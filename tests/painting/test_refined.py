@@ -10,7 +10,7 @@ from isomorphism import isomorphic
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families.voronoi import voronoi
-from cellcolor.painting.refined import unrefined
+from cellcolor.painting.refined import interpolated, unrefined
 
 SHAPES = st.sampled_from(["disc", "annulus", "sphere", "torus"])
 
@@ -28,6 +28,9 @@ def test_the_graph_stays_what_it_was(
         refined = refined.halved(rng.random(len(refined.vertices)) < share)
     finer = refined.surface()
     count = len(surface.vertices)
+    # Places are values like any other: what is interpolated from the old ones is where it is.
+    assert np.allclose(interpolated(refined.between, surface.vertices), finer.vertices)
+    assert (refined.between[count:] < np.arange(count, len(finer.vertices))[:, None]).all()
     assert np.array_equal(finer.vertices[:count], surface.vertices)
     assert finer.vertex_colors[:count] == surface.vertex_colors
     assert isomorphic(decompose(finer), decompose(surface))
@@ -62,3 +65,16 @@ def test_unreachable_and_given_up_vertices_are_copied_as_such() -> None:
 def test_without_marks_it_is_the_surface_itself() -> None:
     surface = voronoi(1, "disc", size=8, regions=5, colors=2)
     assert unrefined(surface).surface() is surface
+
+
+def test_values_of_vertices_reach_the_new_ones() -> None:
+    """By hand, two rounds: numbers, and rows of any shape."""
+    triangle = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+    surface = LabelledSurface("triangle", ("a",), triangle, [[0, 1, 2]], ((0,),) * 3)
+    once = unrefined(surface).halved(np.array([True, False, False]))
+    twice = once.halved(np.array([False, False, False, True, False]))
+    # 3 is between 0 and 1, 4 between 0 and 2; then 5 to 8 between 3 and its neighbors.
+    assert twice.between[3:].tolist() == [[0, 1], [0, 2], [0, 3], [1, 3], [2, 3], [3, 4]]
+    found = interpolated(twice.between, np.array([0.0, 8.0, 16.0]))
+    assert found.tolist() == [0, 8, 16, 4, 8, 2, 6, 10, 6]
+    assert interpolated(twice.between, np.eye(3))[8].tolist() == [0.5, 0.25, 0.25]
