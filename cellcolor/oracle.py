@@ -29,7 +29,8 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
-from cellcolor.errors import BeatenBound
+from cellcolor.errors import BeatenBound, InputError
+from cellcolor.files.validation import settle
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options
 
@@ -43,10 +44,19 @@ class ProvenRange:
     Attributes:
         lower: no division of the surface has fewer segments.
         upper: a division with that many segments exists, and the checker has passed it.
+
+    Raises:
+        InputError: the two are no range of whole numbers from 0 on.
     """
 
     lower: int
     upper: int
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if not 0 <= self.lower <= self.upper:
+            message = f"must be 0 or more and at most upper, {self.upper}; is {self.lower}"
+            raise InputError(None, "lower", message)
 
     @property
     def exact(self) -> bool:

@@ -6,6 +6,7 @@ import json
 import time
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 from documents import Document
@@ -25,7 +26,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import BeatenBound
+from cellcolor.errors import BeatenBound, InputError
 from cellcolor.oracle import ProvenRange, Verdict, judge, proven_range
 from cellcolor.solvers.interface import Options
 
@@ -276,3 +277,9 @@ class TestCommand:
         assert "vertex_colors[3]: null" in out
         assert self.check(CORRIDORS, Plan(tuple(colors)), tmp_path, "--json") == 1
         assert json.loads(capsys.readouterr().out)["valid"] is False
+
+
+@pytest.mark.parametrize("ends", [(7, 5), (-1, 2), (1.0, 2), (True, 2)])
+def test_a_range_is_one(ends: tuple[Any, Any]) -> None:
+    with pytest.raises(InputError):
+        ProvenRange(*ends)

@@ -39,8 +39,8 @@ def check_files(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -
             print_json({"file": str(claim), "error": message})
         return Exit.STOPPED
     if is_plan:
-        if opened.given_surface is None:
-            message = f"is a plan, which goes with a labelled surface or a scene; {subject} is none"
+        if not opened.names_surface:
+            message = f"is a plan, which goes with a labelled surface; {subject} names none"
             raise InputError(str(claim), "format", message)
         verdict = _check_plan(opened, claim, deadline)
     else:

@@ -18,6 +18,7 @@ from pydantic import (
     model_validator,
 )
 
+from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
 from cellcolor.frontend.parts.arrays import ArraysObject
@@ -91,6 +92,21 @@ class Scene(FileTable):
             return whole(setup)
         within = setup.file.is_relative_to(self.folder)
         return (setup.file.relative_to(self.folder) if within else setup.file).as_posix()
+
+    def __str__(self) -> str:
+        place = ", ".join(f"{number:g}" for number in self.placement.position_m)
+        kind = getattr(self.object, "kind", type(self.object).__name__)
+        parts = [f"{kind} at ({place}) m"]
+        if self.ground is not None:
+            parts.append(f"ground at {self.ground.height_m:g} m")
+        if self.obstacle:
+            parts.append(count(len(self.obstacle), "obstacle"))
+        if self.validity_test:
+            parts.append(count(len(self.validity_test), "more validity test"))
+        return f"{self.name}: {', '.join(parts)}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
 
     def moved(self, **placement: Any) -> Self:
         """The same scene with the object standing elsewhere.

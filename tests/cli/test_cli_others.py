@@ -199,14 +199,28 @@ class TestBench:
         assert len(err.splitlines()) == 1
 
 
-def test_a_plan_is_not_checked_against_a_graph(tmp_path: Path, capsys: Capture) -> None:
-    plan = tmp_path / "plan.json"
+def test_a_plan_is_not_checked_against_a_graph_alone(tmp_path: Path, capsys: Capture) -> None:
+    plan, graph = tmp_path / "plan.json", RING.with_name("crossing-zeros.json")
     plan.write_text('{"format": "cellcolor/plan", "version": 1, "vertex_colors": [0]}')
-    assert run("check", RING, plan) == 2
+    assert run("check", graph, plan) == 2
     assert capsys.readouterr().err == (
-        f"cellcolor: {plan}: format: is a plan, which goes with a labelled surface or a scene; "
-        f"{RING} is none\n"
+        f"cellcolor: {plan}: format: is a plan, which goes with a labelled surface; "
+        f"{graph} names none\n"
     )
+
+
+def test_a_plan_is_checked_on_the_surface_that_an_instance_names(
+    tmp_path: Path, capsys: Capture
+) -> None:
+    graph, surface = (INSTANCES / "scenes" / f"wok{end}" for end in (".json", ".surface.json"))
+    colors = LabelledSurface.read(surface).vertex_colors
+    plan = tmp_path / "plan.json"
+    plan.write_text(Plan(tuple(min(own, default=None) for own in colors)).to_json())
+    verdicts = []
+    for subject in (graph, surface):
+        assert run("check", subject, plan) == 0
+        verdicts.append(capsys.readouterr().out)
+    assert verdicts[0] == verdicts[1]
 
 
 def test_an_instance_is_not_written_where_it_would_be_a_scene(

@@ -212,3 +212,11 @@ def test_names_of_files_are_relative_to_the_folder(tmp_path: Path) -> None:
     with pytest.raises(InputError, match="No such file") as caught:
         Scene(**content | {"folder": tmp_path})
     assert str(caught.value.file).startswith(str(tmp_path))
+
+
+def test_a_scene_prints_what_it_is_in_one_line() -> None:
+    scene = Scene.read(WOK.with_name("wok_obstacle.toml"))
+    text = str(scene)
+    assert text.startswith("wok-obstacle: spherical-cap at (") and "\n" not in text
+    assert text.endswith(", ground at 0 m, 1 obstacle")
+    assert repr(scene) == f"<Scene {text}>"
