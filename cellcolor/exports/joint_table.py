@@ -1,0 +1,43 @@
+"""The trajectory as a table: one line a sample, comma-separated, with a header."""
+
+from __future__ import annotations
+
+import csv
+import io
+import re
+
+import numpy as np
+
+from cellcolor.exports.interface import PlannedMotion
+from cellcolor.files.writing import FileKind
+
+__all__ = ["KIND", "joints_csv"]
+
+_COLUMNS = ("time_s", "segment", "contact", "x", "y", "z", "nx", "ny", "nz")
+
+KIND = FileKind(
+    "a table of joints written by cellcolor", re.compile(re.escape(",".join(_COLUMNS)).encode())
+)
+
+
+def joints_csv(planned: PlannedMotion) -> bytes:
+    """Times (s), segment (-1 between), contact (0 or 1), tip (m), normal, joints (rad)."""
+    trajectory = planned.trajectory
+    text = io.StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    joints = len(trajectory.joint_names)
+    writer.writerow([*_COLUMNS, *(f"q{number + 1}" for number in range(joints))])
+    numbers = np.column_stack([trajectory.points, trajectory.normals, trajectory.joints])
+    rows = zip(
+        trajectory.times.tolist(),
+        trajectory.segment.tolist(),
+        trajectory.contact.astype(int).tolist(),
+        numbers.tolist(),
+        strict=True,
+    )
+    # Nine digits behind the point are a nanosecond, a nanometer and a nanoradian.
+    writer.writerows(
+        [f"{time:.9f}", segment, contact, *(f"{number:.9f}" for number in row)]
+        for time, segment, contact, row in rows
+    )
+    return text.getvalue().encode()

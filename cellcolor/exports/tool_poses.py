@@ -1,0 +1,91 @@
+"""Tool paths as YAML in the layout of Noether, ROS-Industrial's planner of tool paths.
+
+Three lists in each other: Noether's "tool paths" are here the segments of the painting, a "tool
+path" is what is driven on one segment, and a "tool path segment" is one path without a lift-off, a
+list of poses ``x y z qx qy qz qw`` (m, unit quaternion). A pose's z axis is the surface's outward
+normal, and its x axis the direction of travel.
+"""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.data.tool_paths import ToolPath
+from cellcolor.exports.interface import PlannedMotion
+from cellcolor.files.writing import FileKind
+
+__all__ = ["KIND", "tool_paths_yaml"]
+
+_MARK = "# cellcolor: tool paths, a list of paths for each segment, poses in m\n"
+
+KIND = FileKind("a file of tool paths written by cellcolor", re.compile(re.escape(_MARK).encode()))
+
+
+def tool_paths_yaml(planned: PlannedMotion) -> bytes:
+    """The poses of all paths, segment by segment."""
+    lines = [_MARK]
+    for segment in range(len(planned.fills)):
+        paths = [path for path in planned.paths.paths if path.segment == segment]
+        if not paths:
+            lines.append("- []\n")
+        for number, path in enumerate(paths):
+            poses = np.concatenate([path.points, _orientations(path)], axis=1)
+            for row, pose in enumerate(poses.tolist()):
+                outer = "- " if number == row == 0 else "  "
+                middle = "- " if row == 0 else "  "
+                keys = zip(("x", "y", "z", "qx", "qy", "qz", "qw"), pose, strict=True)
+                members = ", ".join(f"{key}: {value:.9f}" for key, value in keys)
+                lines.append(f"{outer}{middle}- {{{members}}}\n")
+    return "".join(lines if len(lines) > 1 else [_MARK, "[]\n"]).encode()
+
+
+def _orientations(path: ToolPath) -> Array:
+    """(k, 4) unit quaternions x, y, z, w of the poses along a path."""
+    z = path.normals / np.linalg.norm(path.normals, axis=1, keepdims=True)
+    return _quaternions(_travel(path.points, z), z)
+
+
+def _travel(points: Array, z: Array) -> Array:
+    """(k, 3) unit vectors across the normals: the way to the next point, at the end from the last.
+
+    Where there is none, because points coincide or follow each other along the normal, the
+    direction before is kept.
+    """
+    steps = np.diff(points, axis=0)
+    ahead = np.concatenate([steps, steps[-1:]])
+    ahead -= np.sum(ahead * z, axis=1, keepdims=True) * z
+    lengths = np.linalg.norm(ahead, axis=1)
+    known = np.flatnonzero(lengths > 1e-12)
+    if not len(known):  # no step leads anywhere: any direction across the normals will do
+        ahead, known = np.cross(z, np.eye(3)[np.argmin(np.abs(z), axis=1)]), np.arange(len(z))
+        lengths = np.linalg.norm(ahead, axis=1)
+    nearest = known[np.maximum(np.searchsorted(known, np.arange(len(z)), side="right") - 1, 0)]
+    kept = ahead[nearest] / lengths[nearest, None]
+    across = kept - np.sum(kept * z, axis=1, keepdims=True) * z
+    unit: Array = across / np.linalg.norm(across, axis=1, keepdims=True)
+    return unit
+
+
+def _quaternions(x: Array, z: Array) -> Array:
+    """Of the rotations (k) whose columns are x, z cross x, and z (k, 3); w is not negative."""
+    matrix = np.stack([x, np.cross(z, x), z], axis=2)
+    # Each row of this symmetric matrix is the quaternion times four of its own members (Shepperd,
+    # 1978); the row of the largest member is the one to divide by.
+    xx, yy, zz = matrix[:, 0, 0], matrix[:, 1, 1], matrix[:, 2, 2]
+    products = np.empty((len(x), 4, 4))
+    products[:, 0, 0] = 1 + xx - yy - zz
+    products[:, 1, 1] = 1 - xx + yy - zz
+    products[:, 2, 2] = 1 - xx - yy + zz
+    products[:, 3, 3] = 1 + xx + yy + zz
+    for a, b in ((0, 1), (0, 2), (1, 2)):
+        products[:, a, b] = products[:, b, a] = matrix[:, a, b] + matrix[:, b, a]
+    for a, (row, column) in enumerate(((2, 1), (0, 2), (1, 0))):
+        products[:, a, 3] = products[:, 3, a] = matrix[:, row, column] - matrix[:, column, row]
+    largest = np.argmax(np.diagonal(products, axis1=1, axis2=2), axis=1)
+    rows = products[np.arange(len(x)), largest]
+    unit = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+    quaternions: Array = np.where(unit[:, 3:] < 0, -unit, unit)
+    return quaternions
