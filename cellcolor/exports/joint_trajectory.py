@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,9 +23,7 @@ __all__ = ["KIND", "joint_trajectory_yaml"]
 _MARK = "# cellcolor: trajectory_msgs/msg/JointTrajectory, rad, rad/s, s\n"
 _NANO = 1_000_000_000
 
-KIND = FileKind(
-    "a joint trajectory written by cellcolor", re.compile(re.escape(_MARK).encode())
-)
+KIND = FileKind("a joint trajectory written by cellcolor", re.compile(re.escape(_MARK).encode()))
 
 
 def joint_trajectory_yaml(planned: PlannedMotion) -> bytes:
@@ -40,9 +39,7 @@ def joint_trajectory_yaml(planned: PlannedMotion) -> bytes:
     cuts = [0, *(sample + 1 for sample in trajectory.unplanned), len(trajectory.times)]
     names = json.dumps(list(trajectory.joint_names))  # in YAML as well
     messages = [
-        _message(trajectory, names, first, last)
-        for first, last in zip(cuts, cuts[1:], strict=False)
-        if last > first
+        _message(trajectory, names, first, last) for first, last in pairwise(cuts) if last > first
     ]
     return (_MARK + "---\n".join(messages)).encode()
 

@@ -51,21 +51,24 @@ def _orientations(path: ToolPath) -> Array:
 def _travel(points: Array, z: Array) -> Array:
     """(k, 3) unit vectors across the normals: the way to the next point, at the end from the last.
 
-    Where there is none, because points coincide or follow each other along the normal, the
-    direction before is kept.
+    Where there is none, because points coincide or follow each other along the normal, it is the
+    way at the last point that has one, or else any.
     """
     steps = np.diff(points, axis=0)
-    ahead = np.concatenate([steps, steps[-1:]])
-    ahead -= np.sum(ahead * z, axis=1, keepdims=True) * z
-    lengths = np.linalg.norm(ahead, axis=1)
-    known = np.flatnonzero(lengths > 1e-12)
-    if not len(known):  # no step leads anywhere: any direction across the normals will do
-        ahead, known = np.cross(z, np.eye(3)[np.argmin(np.abs(z), axis=1)]), np.arange(len(z))
-        lengths = np.linalg.norm(ahead, axis=1)
-    nearest = known[np.maximum(np.searchsorted(known, np.arange(len(z)), side="right") - 1, 0)]
-    kept = ahead[nearest] / lengths[nearest, None]
-    across = kept - np.sum(kept * z, axis=1, keepdims=True) * z
-    unit: Array = across / np.linalg.norm(across, axis=1, keepdims=True)
+    ahead = _across(np.concatenate([steps, steps[-1:]]), z)
+    rows = np.arange(len(z))
+    last = np.maximum.accumulate(np.where(ahead.any(axis=1), rows, 0))
+    for other in (ahead[last], np.eye(3)[np.argmin(np.abs(z), axis=1)]):
+        ahead = np.where(ahead.any(axis=1, keepdims=True), ahead, _across(other, z))
+    return ahead
+
+
+def _across(vectors: Array, z: Array) -> Array:
+    """(k, 3) the part of each vector across z as a unit vector, zero where there is none."""
+    part = vectors - np.sum(vectors * z, axis=1, keepdims=True) * z
+    lengths = np.linalg.norm(part, axis=1, keepdims=True)
+    clear = lengths > 1e-9
+    unit: Array = np.where(clear, part / np.where(clear, lengths, 1), 0)
     return unit
 
 
