@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import isclose
 
+from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.whole_cells import segments_of_whole_cells
 from cellcolor.data.bound import greatest
@@ -38,16 +40,24 @@ def number_problems(instance: Instance, solution: Solution, segments: int | None
     return problems
 
 
-def claims(instance: Instance, solution: Solution) -> dict[str, object]:
-    """The members of a solution that no checker can verify yet, with what they say.
+def claims(
+    instance: Instance, solution: Solution, verdicts: Sequence[BoundVerdict] = ()
+) -> dict[str, object]:
+    """The members of a solution that were not verified, with what they say.
 
     That there is one segment where there is a cell needs no proof.
+
+    Args:
+        instance: the topological graph.
+        solution: a valid solution of it.
+        verdicts: on its bounds.
     """
-    trivial = min(1, len(instance.cells))
+    verified = [verdict.bound.value for verdict in verdicts if verdict.outcome == "verified"]
+    proved = max([min(1, len(instance.cells)), *verified])
     found: dict[str, object] = {}
     for name in ("lower_bound", "surface_lower_bound"):
         value = getattr(solution, name)
-        if value > trivial:
+        if value > proved:
             found[name] = value
     # What is proved hangs on the bound that it meets.
     if solution.status == "optimal" and found:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from cellcolor.checker.certificates import BUDGET, BoundVerdict, verify_bound
 from cellcolor.checker.claimed_numbers import number_problems
+from cellcolor.checker.color_regions import ColorRegion, regions_of_cells
 from cellcolor.checker.dart_lists import BadSeams, TooManyDarts, live_lists
 from cellcolor.checker.drawable import can_be_drawn
 from cellcolor.checker.groups import Groups
@@ -33,11 +35,13 @@ class Report:
         problems: what is wrong, each naming its element; none when it is valid.
         not_canonical: why a legal division is not a scheme (semantics, rules 2 and 4).
         segments: the number of segments counted, None when the division is not legal.
+        bounds: what came of verifying each of a solution's bounds by its certificate.
     """
 
     problems: tuple[str, ...]
     not_canonical: tuple[str, ...]
     segments: int | None
+    bounds: tuple[BoundVerdict, ...] = ()
 
     @property
     def valid(self) -> bool:
@@ -146,12 +150,24 @@ def check_scheme(instance: Instance, division: Division) -> Report:
     return Report(tuple(problems + labels), tuple(_not_canonical_on_loops(cells)), segments)
 
 
-def check_solution(instance: Instance, solution: Solution) -> Report:
+def check_solution(
+    instance: Instance,
+    solution: Solution,
+    regions: Sequence[frozenset[ColorRegion]] | None = None,
+    budget: int = BUDGET,
+) -> Report:
     """Hold a solution against its instance: its division, and every number in it.
 
-    The lower bounds themselves are taken on trust
-    (:func:`~cellcolor.checker.claimed_numbers.claims` names what is); that they contradict nothing
-    is not.
+    Lower bounds are verified by their certificates; those without one are taken on trust
+    (:func:`~cellcolor.checker.claimed_numbers.claims` names what is), as far as they contradict
+    nothing.
+
+    Args:
+        instance: the topological graph.
+        solution: a solution of it.
+        regions: the color regions that each cell lies in, if they are not to be read off the
+            graph; for certificates.
+        budget: steps for each certificate.
     """
     problems: list[str] = []
     reference = solution.instance
@@ -160,16 +176,23 @@ def check_solution(instance: Instance, solution: Solution) -> Report:
         problems.append(f"instance.sha256: the solution is not for {instance.name!r} as it is here")
     if solution.search_space == "paper" and solution.strands != 1:
         problems.append("strands: must be 1 in search space 'paper'")
+    regions = regions_of_cells(instance) if regions is None else regions
+    verdicts = tuple(verify_bound(bound, regions, budget) for bound in solution.bounds or ())
+    refused = [
+        f"bounds[{number}].certificate: {verdict.reason}"
+        for number, verdict in enumerate(verdicts)
+        if verdict.outcome == "refused"
+    ]
     if solution.cells is None:
         if solution.seams:
             problems.append("seams: there are none without a division")
         problems += number_problems(instance, solution, None)
-        return Report(tuple(problems), (), None)
+        return Report(tuple(problems + refused), (), None, verdicts)
     report = check_division(instance, solution.cells, solution.seams, solution.strands)
     problems += report.problems
     if report.segments is not None:
         problems += number_problems(instance, solution, report.segments)
-    return Report(tuple(problems), report.not_canonical, report.segments)
+    return replace(report, problems=tuple(problems + refused), bounds=verdicts)
 
 
 def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Strand]) -> list[str]:

@@ -89,7 +89,11 @@ def _check_solution(subject: Subject, claim: Path) -> dict[str, Any]:
         "segments": report.segments,
         "lift_offs": None if report.segments is None else max(0, report.segments - 1),
         "status": solution.status,
-        "claimed": claims(instance, solution) if report.valid else {},
+        "bounds": [
+            {"kind": v.bound.kind, "value": v.bound.value, "outcome": v.outcome, "tried": v.tried}
+            for v in report.bounds
+        ],
+        "claimed": claims(instance, solution, report.bounds) if report.valid else {},
     }
     return verdict | ({"schemes": schemes} if schemes else {})
 
@@ -121,6 +125,9 @@ def _print(claim: Path, verdict: dict[str, Any]) -> None:
         say(f"  status {verdict['status']}")
     if "schemes" in verdict:
         say(f"  {count(verdict['schemes'], 'scheme')}")
+    for bound in verdict.get("bounds", ()):
+        if bound["outcome"] != "no certificate":
+            say(f"  at least {bound['value']} by {bound['kind']}: {bound['outcome']}")
     if verdict.get("claimed"):
         claimed = (f"{name} {json.dumps(value)}" for name, value in verdict["claimed"].items())
         say(f"  claimed, not verified: {', '.join(claimed)}")

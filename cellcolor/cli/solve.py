@@ -114,8 +114,7 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
         else:
             from cellcolor.solvers.bounds.witness import witness
 
-            cells = () if INTERRUPTS.seen else witness(instance, solution, deadline)
-            print_solution(instance, solution, cells)
+            print_solution(instance, solution, witness(solution))
         for problem in wrong:
             complain(f"{file}: contradiction: {problem}")
         if instance.nothing_to_cover:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor import oracle
+from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import Report, check_solution
 from cellcolor.checker.known_results import contradictions
 from cellcolor.data.plan import Plan
@@ -30,7 +31,8 @@ def check(instance: Solvable, solution: Solution | Result | str | PathLike[str])
     """An independent checker's opinion of a solution: its division, and every number in it.
 
     What the instance itself says is known (``known``) must not be contradicted either. Lower
-    bounds are taken on trust as far as nothing contradicts them (docs/semantics.md).
+    bounds are verified by their certificates; those without one are taken on trust as far as
+    nothing contradicts them (docs/semantics.md).
 
     Args:
         instance: what was solved: an instance, a labelled surface or a scene; its file, its
@@ -38,17 +40,23 @@ def check(instance: Solvable, solution: Solution | Result | str | PathLike[str])
         solution: the solution or its file.
 
     Returns:
-        What is wrong, ``problems``, each naming its element; and the segments counted.
+        What is wrong, ``problems``, each naming its element; the segments counted; and for each
+        of the solution's bounds whether it was verified.
 
     Raises:
         InputError: one of the two cannot be used.
     """
-    graph = open_subject(instance).graph()
+    subject = open_subject(instance)
+    graph = subject.graph()
     if isinstance(solution, Result):
         solution = solution.solution
     if not isinstance(solution, Solution):
         solution = Solution.read(solution)
-    report = check_solution(graph, solution)
+    regions = None
+    if subject.given_surface is not None:
+        cells = subject.decomposition.vertex_cell
+        regions = regions_on_surface(subject.given_surface, cells)
+    report = check_solution(graph, solution, regions)
     if not report.valid:
         return report
     return replace(report, problems=tuple(contradictions(graph, solution)))

@@ -122,7 +122,7 @@ def solve(
         fewest_cuts=fewest_cuts,
     )
     solution = checked.solve(instance, options, solver, progress)
-    return Result(solution, subject, witness(instance, solution, deadline))
+    return Result(solution, subject, witness(solution))
 
 
 def start_from(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 
 from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.dart_lists import MOST_DARTS
@@ -11,7 +12,9 @@ from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.data.bound import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
+from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
+from cellcolor.solvers.bounds.cover import hard_cells
 from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver
 from cellcolor.solvers.registry import DEFAULT, make_solver
 
@@ -21,6 +24,9 @@ __all__ = [
     "enumerate_schemes",
     "solve",
 ]
+
+FEW_STEPS = 2_000
+"""Steps for each certificate of a result; hardly any needs more, and `check` takes more."""
 
 
 def check_able(name: str, options: Options, *, start: bool = False, schemes: bool = False) -> None:
@@ -102,7 +108,7 @@ def solve(
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
     solution = _solution(instance, options, solver, answer, time.monotonic() - start)
-    _insist(check_solution(instance, solution), solver)
+    _insist(check_solution(instance, solution, budget=FEW_STEPS), solver)
     return solution
 
 
@@ -110,7 +116,7 @@ def _solution(
     instance: Instance, options: Options, solver: str, answer: Answer, seconds: float
 ) -> Solution:
     """What follows from an answer: its segments are counted, its status is what it has proved."""
-    bounds = _needed(answer.bounds)
+    bounds = tuple(_certified(instance, b, options.deadline) for b in _needed(answer.bounds))
     surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")
     segments = None if answer.division is None else count_segments(answer.division)
     proved_for_surface = segments == surface_bound
@@ -198,6 +204,14 @@ def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
             if bound.holds_for == extent and bound.value > max((b.value for b in kept), default=0):
                 kept.append(bound)
     return tuple(kept)
+
+
+def _certified(instance: Instance, bound: Bound, deadline: Deadline) -> Bound:
+    """The bound with what a checker without a solver can verify, where that is known in time."""
+    if bound.kind not in ("cover", "strangers") or bound.holds_for != "surface":
+        return bound
+    cells = hard_cells(instance, bound.value, deadline)
+    return bound if cells is None else replace(bound, certificate={"cells": cells})
 
 
 def _cuts(instance: Instance, answer: Answer) -> int | None:

@@ -71,8 +71,13 @@ class TestWhatWasSolved:
         assert "0 entries" in capsys.readouterr().out
 
     def test_claims_are_called_claims(self, tmp_path: Path, capsys: Capture) -> None:
+        """A bound without a certificate is a claim, and so is all that hangs on it."""
         solution = tmp_path / "solution.json"
         assert run("solve", RING, "-o", solution) == 0
+        bare = json.loads(solution.read_text())
+        for bound in bare["bounds"]:
+            del bound["certificate"]
+        solution.write_text(json.dumps(bare))
         capsys.readouterr()
         assert run("check", RING, solution) == 0
         (line,) = [x for x in capsys.readouterr().out.splitlines() if "not verified" in x]
@@ -88,6 +93,31 @@ class TestWhatWasSolved:
             "status": "optimal",
             "proved_for_surface": True,
         }
+
+    def test_what_is_verified_is_said(self, tmp_path: Path, capsys: Capture) -> None:
+        solution = tmp_path / "solution.json"
+        assert run("solve", RING, "-o", solution) == 0
+        capsys.readouterr()
+        assert run("check", RING, solution) == 0
+        out = capsys.readouterr().out
+        assert "at least 2 by cover: verified" in out and "claimed" not in out
+        assert run("check", RING, solution, "--json") == 0
+        (document,) = json_lines(capsys.readouterr().out)
+        assert document["claimed"] == {}
+        (bound,) = document["bounds"]
+        assert (bound["kind"], bound["value"], bound["outcome"]) == ("cover", 2, "verified")
+
+    def test_a_forged_certificate_makes_a_solution_invalid(
+        self, tmp_path: Path, capsys: Capture
+    ) -> None:
+        solution = tmp_path / "solution.json"
+        assert run("solve", RING, "-o", solution) == 0
+        forged = json.loads(solution.read_text())
+        forged["bounds"][0]["certificate"]["cells"] = [0, 0]
+        solution.write_text(json.dumps(forged))
+        capsys.readouterr()
+        assert run("check", RING, solution) == 1
+        assert "bounds[0].certificate: fewer than 2 color regions" in capsys.readouterr().out
 
 
 class TestKnown:

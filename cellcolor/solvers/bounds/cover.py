@@ -7,7 +7,7 @@ lie in a common region, strangers to each other, are in different segments.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from math import ceil
 from typing import TYPE_CHECKING
@@ -18,13 +18,16 @@ from cellcolor.deadline import NEVER, Deadline
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
 
-__all__ = ["Cover", "Region", "color_regions", "greedy_strangers", "set_cover", "strangers"]
+__all__ = ["Cover", "Region", "color_regions", "greedy_strangers", "hard_cells", "set_cover"]
 
 Region = tuple[int, frozenset[int]]
 """A color region: the color, and its cells."""
 
 EFFORT = 5.0
-"""Deterministic seconds for a cover or for strangers; nearly all take a thousandth of that."""
+"""Deterministic seconds for a cover; nearly all take a thousandth of that."""
+
+CERTIFICATE_EFFORT = 0.5
+"""Deterministic seconds for each model on the way to a certificate, which is never waited for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,34 +100,50 @@ def set_cover(
     Raises:
         KeyboardInterrupt: Ctrl-C.
     """
-    from ortools.sat.python import cp_model  # slow to import, so only where it is used
-
     regions = color_regions(instance, colors)
-    touching: list[set[int]] = [set() for _ in instance.cells]
-    for number, (_, cells) in enumerate(regions):
-        for cell in cells:
-            touching[cell].add(number)
+    touching = _touching(regions, len(instance.cells))
     greedy = _greedy(regions, touching)
-    # Cells that the same regions touch are one demand.
-    demands = {frozenset(numbers) for numbers in touching}
-    model = cp_model.CpModel()
-    chosen = [model.new_bool_var("") for _ in regions]
-    for demand in sorted(map(sorted, demands)):
-        model.add_bool_or(chosen[number] for number in demand)
-    for number, literal in enumerate(chosen):
-        model.add_hint(literal, number in greedy)
-    model.minimize(sum(chosen))
-    found = _solve(model, chosen, deadline)
+    found = _smallest(regions, touching, EFFORT, deadline, greedy)
     numbers = greedy if found.chosen is None else found.chosen
     return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
 
 
-def strangers(instance: Instance, deadline: Deadline = NEVER) -> list[int]:
-    """Many cells of which no two lie in one color region, the most if there is time to prove it.
+def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> list[int] | None:
+    """A few cells that fewer than ``value`` color regions do not touch: why a cover is not smaller.
 
-    No two of them can be in one segment, so there are at least as many segments: a bound that can
-    be checked by eye. It is at most that of the set cover, and often equal to it.
+    With as many cells as ``value`` no two of them lie in one color region: they are strangers,
+    which can be seen by eye. Where there are no such cells, cells are added that a smallest cover
+    of those before leaves out.
+
+    Args:
+        instance: the topological graph.
+        value: how many color regions are needed, or fewer.
+        deadline: when to give up.
+
+    Returns:
+        The cells, ascending; None if none were found in time.
     """
+    cells = greedy_strangers(instance)
+    if len(cells) < value and not deadline.over:
+        cells = max(cells, _strangers(instance, deadline), key=len)
+    if len(cells) >= value:
+        return sorted(cells)[:value]
+    regions = color_regions(instance)
+    touching = _touching(regions, len(instance.cells))
+    hardest_first = sorted(range(len(touching)), key=lambda cell: len(touching[cell]))
+    while not deadline.over:
+        found = _smallest(regions, (touching[cell] for cell in cells), CERTIFICATE_EFFORT, deadline)
+        if found.bound >= value:
+            return sorted(cells)
+        missed = (c for c in hardest_first if touching[c].isdisjoint(found.chosen or ()))
+        if found.chosen is None or (cell := next(missed, None)) is None:
+            return None
+        cells.append(cell)
+    return None
+
+
+def _strangers(instance: Instance, deadline: Deadline) -> list[int]:
+    """Many cells of which no two lie in one color region, the most if there is time to prove it."""
     from ortools.sat.python import cp_model
 
     model = cp_model.CpModel()
@@ -133,15 +152,12 @@ def strangers(instance: Instance, deadline: Deadline = NEVER) -> list[int]:
         if len(cells) > 1:
             model.add_at_most_one(chosen[cell] for cell in sorted(cells))
     model.maximize(sum(chosen))
-    return sorted(_solve(model, chosen, deadline).chosen or ())
+    return sorted(_solve(model, chosen, CERTIFICATE_EFFORT, deadline).chosen or ())
 
 
 def greedy_strangers(instance: Instance) -> list[int]:
     """Cells of which no two lie in one color region, found at once but not the most there are."""
-    touching: list[list[int]] = [[] for _ in instance.cells]
-    for number, (_, cells) in enumerate(color_regions(instance)):
-        for cell in cells:
-            touching[cell].append(number)
+    touching = _touching(color_regions(instance), len(instance.cells))
     used: set[int] = set()
     found = []
     for cell in sorted(range(len(touching)), key=lambda cell: len(touching[cell])):
@@ -149,6 +165,37 @@ def greedy_strangers(instance: Instance) -> list[int]:
             found.append(cell)
             used.update(touching[cell])
     return found
+
+
+def _touching(regions: Sequence[Region], cells: int) -> list[set[int]]:
+    """The numbers of the regions that each cell lies in."""
+    touching: list[set[int]] = [set() for _ in range(cells)]
+    for number, (_, own) in enumerate(regions):
+        for cell in own:
+            touching[cell].add(number)
+    return touching
+
+
+def _smallest(
+    regions: Sequence[Region],
+    demands: Iterable[set[int]],
+    effort: float,
+    deadline: Deadline,
+    hint: Collection[int] = (),
+) -> _Found:
+    """The fewest regions that meet all demands, sets of which one region at least is needed."""
+    from ortools.sat.python import cp_model  # slow to import, so only where it is used
+
+    model = cp_model.CpModel()
+    chosen = [model.new_bool_var("") for _ in regions]
+    # Cells that the same regions touch are one demand.
+    for demand in sorted({tuple(sorted(numbers)) for numbers in demands}):
+        model.add_bool_or(chosen[number] for number in demand)
+    if hint:
+        for number, literal in enumerate(chosen):
+            model.add_hint(literal, number in hint)
+    model.minimize(sum(chosen))
+    return _solve(model, chosen, effort, deadline)
 
 
 def _greedy(regions: Sequence[Region], touching: Sequence[set[int]]) -> set[int]:
@@ -172,7 +219,10 @@ class _Found:
 
 
 def _solve(
-    model: cp_model.CpModel, chosen: Sequence[cp_model.IntVar], deadline: Deadline
+    model: cp_model.CpModel,
+    chosen: Sequence[cp_model.IntVar],
+    effort: float,
+    deadline: Deadline,
 ) -> _Found:
     """Solve a small model as far as there is time and effort for it.
 
@@ -183,7 +233,7 @@ def _solve(
 
     from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
-    solver = make_cp_solver(deadline, 1, 0, EFFORT)
+    solver = make_cp_solver(deadline, 1, 0, effort)
     # A cover of many regions is bounded by its linear relaxation or hardly at all.
     solver.parameters.linearization_level = 2
     status, interrupt = solve_interruptibly(solver, model)

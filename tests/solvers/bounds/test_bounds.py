@@ -14,7 +14,7 @@ from library import PAPER
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
-from cellcolor.solvers.bounds.cover import color_regions, set_cover, strangers
+from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.bounds.domination import drop_dominated
 from cellcolor.solvers.bounds.merged_cells import merge_cells
@@ -66,18 +66,27 @@ def with_colors(instance: Instance, colors: tuple[frozenset[int], ...]) -> Insta
 
 @settings(max_examples=40, deadline=None)
 @given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
-def test_strangers_share_no_region(seed: int, cells: int, colors: int) -> None:
-    """Against trying all sets of cells."""
+def test_hard_cells_need_as_many_regions_as_all(seed: int, cells: int, colors: int) -> None:
+    """Against trying all sets of regions; strangers wherever there are as many of them."""
     instance = planar_graph(seed, cells, cells + 3, colors)
     regions = [touched for _, touched in color_regions(instance)]
+    value = set_cover(instance).bound
+    found = hard_cells(instance, value)
+    assert found is not None
+    for chosen in itertools.combinations(regions, min(value - 1, len(regions))):
+        assert not set(found) <= set().union(*chosen)
 
-    def apart(chosen: tuple[int, ...]) -> bool:
-        return all(len(touched.intersection(chosen)) < 2 for touched in regions)
+    def apart(cells: tuple[int, ...]) -> bool:
+        return all(len(touched.intersection(cells)) < 2 for touched in regions)
 
-    found = strangers(instance)
-    assert apart(tuple(found)) and len(found) <= set_cover(instance).bound
-    more = itertools.combinations(range(len(instance.cells)), len(found) + 1)
-    assert not any(map(apart, more))
+    sets_of_strangers = filter(apart, itertools.combinations(range(len(instance.cells)), value))
+    assert (len(found) == value) == any(True for _ in sets_of_strangers)
+
+
+def test_more_than_a_cover_needs_has_no_hard_cells() -> None:
+    apart = Instance("apart", ("red",), (Cell(0, (RED,), ()), Cell(1, (RED,), ())), ())
+    assert hard_cells(apart, 2) == [0, 1]
+    assert hard_cells(apart, 3) is None
 
 
 def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:

@@ -47,8 +47,8 @@ def test_there_is_none_without_a_proof() -> None:
     """Nor for more cells than somebody would look at, nor for a single segment."""
     instance = Instance.read(PAPER / "ring.json")
     solution = cellcolor.solve(instance).solution
-    assert len(witness(instance, solution)) == 2
-    assert witness(instance, replace(solution, proved_for_surface=False)) == ()
+    assert len(witness(solution)) == 2
+    assert witness(replace(solution, proved_for_surface=False)) == ()
     assert cellcolor.solve(drawn("AA AA", {"A": [0]})).witness == ()
     many = drawn("AABBCCAABBCCAABBCCAABBCCAABBCC " * 2, {"A": [0], "B": [1], "C": [2]})
     found = cellcolor.solve(many)
