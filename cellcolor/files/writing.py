@@ -67,7 +67,8 @@ def _kind(name: str, pattern: bytes) -> FileKind:
 
 HTML = _kind(
     "a page",
-    rb'(?:<!doctype html>)?\s*<html>\s*<head><meta name="generator" content="cellcolor/picture"',
+    rb'(?:<!doctype html>)?\s*<html(?: lang="en")?>\s*'
+    rb'<head><meta name="generator" content="cellcolor/picture"',
 )
 PNG = _kind("a picture", rb"\x89PNG\r\n.*tEXtCreator\0cellcolor/picture")
 SVG = _kind("a picture", rb"<\?xml.*<dc:title>cellcolor/picture</dc:title>")

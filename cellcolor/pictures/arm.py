@@ -20,7 +20,7 @@ from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
-__all__ = ["ArmPicture", "arm_at"]
+__all__ = ["ArmPicture", "arm_at", "body_mesh", "obstacle_mesh"]
 
 _AROUND = 20
 _ALONG = 10
@@ -83,7 +83,7 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     target = result.surface.vertices[vertex]
     layers.append(_layer(f"vertex {vertex}", WARNING, (points + target, triangles)))
     if scene.obstacle:
-        meshes = [_obstacle(obstacle, scene.folder) for obstacle in scene.obstacle]
+        meshes = [obstacle_mesh(obstacle, scene.folder) for obstacle in scene.obstacle]
         obstacles = _joined(meshes)
         layers.append(_layer("obstacles", "#882255", obstacles))
     ground: tuple[SpaceLines, ...] = ()
@@ -110,9 +110,13 @@ def _layer(name: str, color: str, mesh: _Mesh) -> Layer:
     return Layer(name, color, *mesh, solid=True)
 
 
+def body_mesh(body: Body) -> _Mesh:
+    """Points (k, 3) in m and triangles (t, 3) of a body, in the frame of its joint."""
+    return (_cylinder if body.flat else _capsule)(body.start, body.end, body.radius)
+
+
 def _placed(body: Body, poses: Poses) -> _Mesh:
-    mesh = _cylinder if body.flat else _capsule
-    points, triangles = mesh(body.start, body.end, body.radius)
+    points, triangles = body_mesh(body)
     turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
     return turned, triangles
 
@@ -167,7 +171,8 @@ def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]])
     return points, triangles[np.linalg.norm(doubled, axis=1) > 1e-15]
 
 
-def _obstacle(obstacle: Obstacle, folder: Path) -> _Mesh:
+def obstacle_mesh(obstacle: Obstacle, folder: Path) -> _Mesh:
+    """Points (k, 3) in m and triangles (t, 3) of an obstacle, in the world."""
     points, triangles = obstacle.shell(folder)
     return obstacle.placed(points), triangles
 

@@ -1,0 +1,166 @@
+"""The page's sections on the proof, the segments, what is out of reach, and what is not covered."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+
+from cellcolor.data.bound import Bound
+from cellcolor.data.proof_wording import reason_of, witness_in_words
+from cellcolor.data.wording import count, listed
+from cellcolor.pictures.report_page.content import Card, MotionReport
+
+__all__ = ["cards_of"]
+
+_KINDS = {
+    "strangers": "Cells of which no two lie in one region of a color: each needs its own segment.",
+    "cover": "A segment lies in one region of a color, and every cell has to be in some segment: "
+    "fewer regions do not reach all cells.",
+    "conflicts": "With fewer segments, two of them would have to cross each other.",
+    "crossings": "The full model of divisions has no better one, and letting segments cross a "
+    "border between two cells more often would not help.",
+}
+"""Why a bound holds, by its kind (docs/bounds.md)."""
+
+
+def cards_of(report: MotionReport) -> tuple[Card, ...]:
+    """All of them, those with nothing to tell left out."""
+    cards = (_proof(report), _segments(report), _reach(report), _extra(report), _left_out(report))
+    return tuple(card for card in cards if card is not None)
+
+
+def _proof(report: MotionReport) -> Card:
+    """Why there cannot be fewer lift-offs; or that this is open."""
+    solution = report.solution
+    segments = solution.segments or 0
+    bounds = [b for b in solution.bounds or () if b.value == solution.surface_lower_bound]
+    surface_bounds = [bound for bound in bounds if bound.holds_for == "surface"]
+    if not solution.proved_for_surface:
+        text = (
+            f"It is not proved that fewer are impossible: {count(segments, 'segment')} were found, "
+            f"any division has at least {solution.surface_lower_bound}."
+        )
+        return Card("Can there be fewer lift-offs?", (text,), _bound_rows(surface_bounds), False)
+    if segments < 2:
+        text = "The tool never has to lift off: nothing can be less."
+        return Card("Why not fewer lift-offs", (text,), (), True)
+    witness = witness_in_words(report.decomposition.instance, report.witness)
+    because = witness or reason_of(solution)
+    paragraphs = [
+        f"However the surface is divided, {count(segments, 'segment')} are needed"
+        + (f": {because}." if because else "."),
+    ]
+    if witness is not None:
+        shown = "The button “Cells of the proof” shows them on the part."
+        paragraphs.append(f"Each needs a segment of its own. {shown}")
+    paragraphs.append(
+        "This holds for the surface with the colors (classes of postures) found at its vertices; "
+        "between two vertices nothing is known that was not tested."
+    )
+    return Card("Why not fewer lift-offs", tuple(paragraphs), _bound_rows(surface_bounds), True)
+
+
+def _bound_rows(bounds: list[Bound]) -> tuple[tuple[str, ...], ...]:
+    if not bounds:
+        return ()
+    rows = [(str(bound.value), bound.kind, _KINDS.get(bound.kind, "")) for bound in bounds]
+    return (("at least", "bound", "why"), *rows)
+
+
+def _segments(report: MotionReport) -> Card:
+    """Each segment with its color, its path and its time."""
+    trajectory, painted = report.trajectory, report.painted
+    steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
+    spent = np.diff(trajectory.times)
+    touching = trajectory.contact[1:] & trajectory.contact[:-1]
+    rows = []
+    areas = painted.surface.vertex_areas
+    for segment in range(int(painted.segment_of.max(initial=-1)) + 1):
+        own = touching & (trajectory.segment[1:] == segment)
+        vertices = np.flatnonzero(painted.segment_of == segment)
+        color = painted.plan.vertex_colors[int(vertices[0])] if len(vertices) else None
+        rows.append(
+            (
+                str(segment),
+                "–" if color is None else painted.surface.colors[color],
+                f"{1e4 * float(areas[vertices].sum()):.0f} cm²",
+                f"{float(steps[own].sum()):.2f} m",
+                f"{float(spent[own].sum()):.1f} s",
+            )
+        )
+    between = float(spent[~touching].sum())
+    text = f"Moves between strokes, approaches and retracts take {between:.1f} s."
+    return Card("Segments", (text,), (("", "color", "area", "path", "in contact"), *rows))
+
+
+def _reach(report: MotionReport) -> Card:
+    """Why points are out of reach, and what kept the other branches of the arm away."""
+    found = report.built.report
+    share = 100 * found.reachable_area_m2 / found.area_m2
+    text = (
+        f"{share:.1f} % of the area can be reached: {found.reachable} of {found.vertices} vertices "
+        "have a valid configuration."
+    )
+    unreachable = {name: number for name, number in found.unreachable.items() if number}
+    if not unreachable:
+        return Card("Out of reach", (text, "No vertex is out of reach."))
+    explained = (
+        "A vertex has the first test that fails in the branch of the arm that comes farthest "
+        "through the tests. The button “Out of reach” shows where."
+    )
+    rows = [(name, str(number)) for name, number in unreachable.items()]
+    return Card("Out of reach", (text, explained), (("test that fails", "vertices"), *rows))
+
+
+def _extra(report: MotionReport) -> Card | None:
+    """Lift-offs beyond the proven minimum, and moves that were not planned."""
+    trajectory = report.trajectory
+    if not trajectory.extra_lift_offs and not trajectory.unplanned:
+        return None
+    texts, rows = [], []
+    if trajectory.unplanned:
+        moments = listed([f"{trajectory.times[sample]:.1f} s" for sample in trajectory.unplanned])
+        moves = count(len(trajectory.unplanned), "move")
+        texts.append(f"{moves} could not be planned, and the arm must not drive it: at {moments}.")
+    if trajectory.extra_lift_offs:
+        texts.append(f"{count(len(trajectory.extra_lift_offs), 'lift-off')} beyond the minimum:")
+        rows = [("at", "segment", "reason", "place [m]")]
+        rows += [
+            (
+                f"{trajectory.times[min(extra.sample, len(trajectory.times) - 1)]:.1f} s",
+                str(extra.segment),
+                extra.text,
+                _place(extra.place),
+            )
+            for extra in trajectory.extra_lift_offs
+        ]
+    return Card("Beyond the minimum", tuple(texts), tuple(rows), False)
+
+
+def _left_out(report: MotionReport) -> Card | None:
+    """What the tool does not go to, by cause."""
+    areas: dict[tuple[int, str], list[float]] = defaultdict(list)
+    largest: dict[tuple[int, str], tuple[float, tuple[float, float, float]]] = {}
+    for part in report.trajectory.left_out:
+        key = (part.segment, part.reason)
+        areas[key].append(part.area_m2)
+        largest[key] = max(largest.get(key, (0.0, part.place)), (part.area_m2, part.place))
+    if not areas:
+        return None
+    rows = [
+        (str(segment), reason, str(len(own)), f"{1e4 * sum(own):.2f} cm²", _place(largest[key][1]))
+        for key, own in sorted(areas.items())
+        for segment, reason in [key]
+    ]
+    whole = 1e4 * sum(map(sum, areas.values()))
+    text = (
+        f"Parts of segments that the tool does not go to, {whole:.2f} cm² in all; rings with a red "
+        "rim mark the largest."
+    )
+    head = ("segment", "cause", "parts", "area", "largest at [m]")
+    return Card("Left out", (text,), (head, *rows))
+
+
+def _place(place: tuple[float, float, float]) -> str:
+    return ", ".join(f"{value:.3f}" for value in place)

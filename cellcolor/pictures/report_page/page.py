@@ -1,0 +1,99 @@
+"""The page, put together: texts, styles, scripts and data in one file that loads nothing."""
+
+from __future__ import annotations
+
+import html
+import json
+from collections.abc import Mapping
+from importlib.resources import files
+
+from cellcolor.data.proof_wording import in_words, witness_in_words
+from cellcolor.data.wording import count
+from cellcolor.files.writing import MARKER
+from cellcolor.pictures.report_page.cards import cards_of
+from cellcolor.pictures.report_page.content import Card, MotionReport
+from cellcolor.pictures.report_page.viewer_data import MOST_FRAMES, viewer_data
+from cellcolor.version import __version__
+
+__all__ = ["render_page"]
+
+_SHORT = 14  # characters
+_SCRIPTS = ("viewer.js", "camera.js", "space.js", "charts.js", "player.js")
+
+
+def render_page(report: MotionReport) -> bytes:
+    """``report.html``; the same report gives the same bytes."""
+    trajectory, instance = report.trajectory, report.decomposition.instance
+    witness = witness_in_words(instance, report.witness)
+    title = (
+        f"{trajectory.name}: {count(len(trajectory.strokes), 'stroke')}, "
+        f"{count(trajectory.lift_offs, 'lift-off')}, {trajectory.seconds:.0f} s"
+    )
+    samples = len(trajectory.times)
+    note = (
+        "Red, dashed: limits. Orange: moves between strokes. A click goes to that moment. "
+        "Of the measures of conditioning the least value up to the next frame is drawn."
+    )
+    if samples > MOST_FRAMES:
+        note += f" Shown are about {MOST_FRAMES} of {samples} samples."
+    cards = (*report.cards, *cards_of(report))
+    data = json.dumps(viewer_data(report), allow_nan=False, separators=(",", ":"))
+    return _filled(
+        {
+            "MARKER": MARKER,
+            "TITLE": html.escape(title),
+            "PROOF": html.escape(_sentence(in_words(report.solution, witness))),
+            "BADGES": "".join(map(_badge, report.badges)),
+            "CHART_NOTE": html.escape(note),
+            "CARDS": "\n".join(map(_card, cards)),
+            "FOOTER": html.escape(f"Made by cellcolor {__version__}; this file loads nothing."),
+            "STYLE": _own_text("page.css"),
+            "DATA": data.replace("<", "\\u003c"),  # nothing in it ends the script
+            "SCRIPT": "\n".join(map(_own_text, _SCRIPTS)),
+        }
+    ).encode()
+
+
+def _filled(parts: Mapping[str, str]) -> str:
+    """The template with its places filled; what is filled in is not looked at again."""
+    first, *pieces = _own_text("page.html").split("{{")
+    text = [first]
+    for piece in pieces:
+        name, _, rest = piece.partition("}}")
+        text += [parts[name], rest]
+    return "".join(text)
+
+
+def _own_text(name: str) -> str:
+    return (files(__package__) / name).read_text(encoding="utf-8")
+
+
+def _sentence(text: str) -> str:
+    return text[:1].upper() + text[1:] + "."
+
+
+def _badge(badge: tuple[str, bool | None]) -> str:
+    text, good = badge
+    return f"<li{_verdict_class(good)}>{html.escape(text)}</li>"
+
+
+def _verdict_class(good: bool | None, first: str = "") -> str:
+    names = [name for name in (first, "" if good is None else "good" if good else "bad") if name]
+    return f' class="{" ".join(names)}"' if names else ""
+
+
+def _card(card: Card) -> str:
+    parts = [f"<h2>{html.escape(card.title)}</h2>"]
+    parts += [f"<p>{html.escape(text)}</p>" for text in card.paragraphs]
+    if card.rows:
+        head, *rows = card.rows
+        lines = [f"<tr>{''.join(f'<th>{html.escape(cell)}</th>' for cell in head)}</tr>"]
+        lines += [f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows]
+        parts.append(f"<table>{''.join(lines)}</table>")
+    return f"<section{_verdict_class(card.good, 'card')}>{''.join(parts)}</section>"
+
+
+def _cell(text: str) -> str:
+    """A table's cell; what is short is not broken into lines."""
+    short = ' class="short"' if len(text) <= _SHORT else ""
+    return f"<td{short}>{html.escape(text)}</td>"

@@ -1,0 +1,216 @@
+"""The arrays that the page's scripts draw from."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array, Index
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.frontend.arm.kinematics import (
+    forward,
+    manipulability,
+    task_determinant,
+    tip_jacobian,
+)
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.pictures.arm import body_mesh, obstacle_mesh
+from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface, vertex_normals
+from cellcolor.pictures.report_page.content import MotionReport
+from cellcolor.pictures.report_page.surface_modes import (
+    SurfaceMode,
+    proof_mode,
+    reach_mode,
+    segment_mode,
+)
+from cellcolor.pictures.report_page.thinning import frames_of, least_until_next, straightened
+
+__all__ = ["MOST_FRAMES", "viewer_data"]
+
+MOST_FRAMES = 1500
+_MOST_DOTS = 40  # for parts that are left out
+_MOST_POINTS = 12_000  # of the path that is drawn
+_FINEST = 2e-4  # m; a path is drawn no truer than that
+_LINKS = ("#AEB6C2", "#7F8A9B")  # of the arm, in turn
+_TOOL = "#4A5361"
+_OBSTACLE, _BODY = "#882255", "#C8C4B0"
+
+
+def viewer_data(report: MotionReport) -> dict[str, Any]:
+    """What ``viewer.js`` and ``charts.js`` draw, JSON-able; arrays as base64 (:func:`_packed`)."""
+    prepared, painted, trajectory = report.prepared, report.painted, report.trajectory
+    modes = [segment_mode(painted), reach_mode(report.built, painted)]
+    surface = report.built.surface
+    proof = proof_mode(surface, report.decomposition, report.witness, painted)
+    modes += [proof] if proof is not None else []
+    frames = frames_of(trajectory, MOST_FRAMES)
+    vertices, faces = painted.surface.vertices, painted.surface.faces
+    return {
+        "mesh": {"vertices": _packed(vertices, "f4"), "faces": _packed(faces, "u4")},
+        "modes": [_mode(painted.surface, mode) for mode in modes],
+        "arm": _arm(prepared.robot),
+        "solids": _solids(prepared),
+        "ground": prepared.workplace.ground,
+        "trace": _trace(trajectory, 0.05 * _edge(vertices, faces)),
+        "frames": _frames(prepared, trajectory, frames),
+        "limits": _limits(prepared),
+        "joint_names": list(trajectory.joint_names),
+        "places": _places(trajectory),
+        "eye": _eye(vertices, faces).tolist(),
+    }
+
+
+def _packed(values: Any, kind: str) -> dict[str, str]:
+    """An array in little-endian bytes: ``f4``, ``u4``, ``i2`` or ``u1``."""
+    content = np.ascontiguousarray(values, dtype=f"<{kind}")
+    return {"kind": kind, "base64": base64.b64encode(content.tobytes()).decode()}
+
+
+def _mode(surface: LabelledSurface, mode: SurfaceMode) -> dict[str, Any]:
+    used = set(np.unique(mode.labels).tolist())
+    drawn = draw_surface(surface, SurfaceView(mode.name, mode.labels, mode.classes))
+    return {
+        "name": mode.name,
+        "texts": [
+            {"text": text.text, "at": text.at.tolist(), "outward": text.outward.tolist()}
+            for text in drawn.texts
+        ],
+        "classes": [
+            {"name": own.name, "rgb": own.rgb, "used": label in used}
+            for label, own in enumerate(mode.classes)
+        ],
+        "labels": _packed(mode.labels, "i2"),
+    }
+
+
+def _arm(robot: Robot) -> dict[str, Any]:
+    """Joint frames and the bodies on them: the collision shapes, which are what is tested."""
+    links = list(dict.fromkeys(body.link for body in robot.bodies))
+    last = max(body.joint for body in robot.bodies)
+    bodies = []
+    for body in robot.bodies:
+        points, triangles = body_mesh(body)
+        fill = _TOOL if body.joint == last else _LINKS[links.index(body.link) % len(_LINKS)]
+        bodies.append(
+            {
+                "joint": body.joint,
+                "rgb": fill,
+                "points": _packed(points, "f4"),
+                "triangles": _packed(triangles, "u4"),
+            }
+        )
+    return {
+        "placement": robot.placement.reshape(-1, 16).tolist(),  # row by row
+        "axis": robot.axis.tolist(),
+        "tip": robot.tip.ravel().tolist(),
+        "bodies": bodies,
+    }
+
+
+def _solids(prepared: PreparedScene) -> list[dict[str, Any]]:
+    """What stands around, in the world."""
+    scene = prepared.scene
+    meshes = [(_OBSTACLE, *obstacle_mesh(each, scene.folder)) for each in scene.obstacle]
+    if scene.collision_object is not None:
+        body = scene.collision_object.surface(scene.folder).placed(scene.placement)
+        meshes.append((_BODY, body.vertices, body.faces))
+    return [
+        {"rgb": fill, "points": _packed(points, "f4"), "triangles": _packed(triangles, "u4")}
+        for fill, points, triangles in meshes
+    ]
+
+
+def _trace(trajectory: Trajectory, lift: float) -> dict[str, Any]:
+    """Where the tip goes, as a polyline that is lifted off the surface to be seen, with times."""
+    points = trajectory.points + lift * trajectory.normals
+    contact = trajectory.contact
+    # Where contact begins or ends the drawn line changes its color: these points stay.
+    turns = np.flatnonzero(contact[1:] != contact[:-1])
+    jumps = np.array(trajectory.unplanned, dtype=np.int64)
+    stays = np.concatenate([turns, turns + 1, jumps, jumps + 1])
+    tolerance, kept = _FINEST, straightened(points, stays, _FINEST)
+    while len(kept) > _MOST_POINTS:
+        tolerance *= 2
+        kept = straightened(points, stays, tolerance)
+    touching = contact[kept] & contact[np.append(kept[1:], kept[-1])]
+    return {
+        "points": _packed(points[kept], "f4"),
+        "times": _packed(trajectory.times[kept], "f4"),
+        # Of the piece that begins at each point: 0 between strokes, 1 in contact, 2 not planned.
+        "state": _packed(np.where(np.isin(kept, jumps), 2, touching), "u1"),
+    }
+
+
+def _frames(prepared: PreparedScene, trajectory: Trajectory, frames: Index) -> dict[str, Any]:
+    measures = _conditioning(prepared.robot, trajectory.joints)
+    return {
+        "samples": len(trajectory.times),
+        "times": _packed(trajectory.times[frames], "f4"),
+        "joints": _packed(trajectory.joints[frames], "f4"),
+        "contact": _packed(trajectory.contact[frames], "u1"),
+        "segment": _packed(trajectory.segment[frames], "i2"),
+        "unplanned": _packed(np.isin(frames, trajectory.unplanned), "u1"),
+    } | {name: _packed(least_until_next(own, frames), "f4") for name, own in measures.items()}
+
+
+def _conditioning(robot: Robot, configurations: Array) -> dict[str, Array]:
+    """Both measures (k,) in m^3 of configurations (k, joints)."""
+    poses = forward(robot, configurations)
+    linear, angular = tip_jacobian(poses)
+    return {
+        "determinant": task_determinant(linear, angular, poses.tool_axis),
+        "manipulability": manipulability(linear),
+    }
+
+
+def _limits(prepared: PreparedScene) -> dict[str, Any]:
+    least, robot = prepared.workplace.conditioning, prepared.robot
+    tested = prepared.setup.constraints.conditioning
+    return {
+        "lower": robot.lower.tolist(),
+        "upper": robot.upper.tolist(),
+        "determinant": least.min_task_determinant if tested else None,
+        "manipulability": least.min_manipulability if tested else None,
+    }
+
+
+def _places(trajectory: Trajectory) -> list[dict[str, Any]]:
+    """What is marked on the part: extra lift-offs and what is left out."""
+    marks: list[dict[str, Any]] = [
+        {
+            "place": extra.place,
+            "kind": "mark",
+            "text": f"extra lift-off: {extra.reason}",
+        }
+        for extra in trajectory.extra_lift_offs
+    ]
+    largest = sorted(trajectory.left_out, key=lambda part: -part.area_m2)[:_MOST_DOTS]
+    return marks + [{"place": part.place, "kind": "dot", "text": ""} for part in largest]
+
+
+def _edge(vertices: Array, faces: NDArray[np.int64]) -> float:
+    """The mean length of the first edges of the faces, m."""
+    return float(np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1).mean())
+
+
+def _eye(vertices: Array, faces: NDArray[np.int64]) -> Array:
+    """A unit vector from the scene to the eye: much of the part's outside, and the arm beside it.
+
+    Of 24 directions around the vertical, at two heights, the one that sees most of the outside;
+    from where the arm stands before the part, or behind it, only if much more is seen from there.
+    """
+    normals, middle = vertex_normals(vertices, faces), vertices.mean(axis=0)
+    away = middle[:2] / max(float(np.linalg.norm(middle[:2])), 1e-9)
+    around = np.tile(np.radians(np.arange(0, 360, 15)), 2)
+    rises = np.repeat(np.radians([28, 40]), 24)
+    flat = np.stack([np.cos(around), np.sin(around)], axis=1)
+    eyes = np.column_stack([np.cos(rises)[:, None] * flat, np.sin(rises)])
+    seen = np.maximum(eyes @ normals.T, 0).mean(axis=1)
+    score = seen - 0.15 * np.abs(flat @ away) + 0.05 * (flat @ away)
+    best: Array = eyes[np.argmax(score)]
+    return best

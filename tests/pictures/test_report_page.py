@@ -1,0 +1,227 @@
+"""The page on a planned motion, in a real browser and as text."""
+
+from __future__ import annotations
+
+import base64
+import json
+import re
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+pytest.importorskip("pinocchio")
+
+from browser import DESKTOP, PHONE, opened
+from documents import Document
+from stand_in import stand_in
+
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.files.writing import HTML
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.pictures.report_page.content import Card, MotionReport
+from cellcolor.pictures.report_page.page import render_page
+from cellcolor.pictures.report_page.thinning import frames_of, least_until_next, straightened
+
+HOSTILE = "</script><b>&\"'{{DATA}}"
+
+
+def report(**changes: object) -> MotionReport:
+    made = stand_in()
+    whole = MotionReport(
+        made.prepared,
+        made.built,
+        made.result.subject.decomposition,
+        made.solution,
+        made.result.witness,
+        made.painted,
+        made.trajectory,
+        (("judged valid", True), (HOSTILE, False)),
+        (Card("Verdict", ("One.", HOSTILE), (("a", "b"), ("1", HOSTILE)), True),),
+    )
+    return replace(whole, **changes)
+
+
+@pytest.fixture(scope="module")
+def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("page") / "report.html"
+    file.write_bytes(render_page(report()))
+    return file
+
+
+def data_of(page: str) -> Document:
+    (text,) = re.findall(r'<script type="application/json" id="data">(.*?)</script>', page)
+    return json.loads(text)
+
+
+def unpacked(packed: Document) -> np.ndarray:
+    return np.frombuffer(base64.b64decode(packed["base64"]), "<" + packed["kind"])
+
+
+def test_the_page_is_known_again_and_the_same_each_time(page_file: Path) -> None:
+    page = page_file.read_bytes()
+    assert HTML.pattern.match(page[:4096])
+    assert render_page(report()) == page
+    assert not re.search(rb"""(?:src|href)\s*=|url\(|https?:|@import""", page)
+
+
+def test_texts_stay_texts(page_file: Path) -> None:
+    page = page_file.read_text(encoding="utf-8")
+    assert "<b>" not in page
+    assert page.count("&lt;/script&gt;&lt;b&gt;&amp;&quot;&#x27;{{DATA}}") == 3
+    odd = replace(stand_in().trajectory, name=HOSTILE)
+    data = data_of(render_page(report(trajectory=odd)).decode())
+    assert data["frames"]["samples"] == len(odd.times)
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) -> None:
+    """What the page's own kinematics says of the tip is where the trajectory has it."""
+    trajectory = stand_in().trajectory
+    assert trajectory.times[0] == 0
+    stroke = trajectory.strokes[0]
+    samples = [0, stroke[0], (stroke[0] + stroke[1]) // 2, stroke[1], len(trajectory.times) - 1]
+    with opened(page_file, size) as (page, faults):
+        assert page.evaluate("document.documentElement.scrollWidth") <= size[0]
+        for sample in samples:
+            move = "([id, at]) => { const s = document.getElementById(id); s.value = at;"
+            move += " s.dispatchEvent(new Event('input')); return Number(s.value); }"
+            shown = page.evaluate(move, ["time", float(trajectory.times[sample])])
+            assert shown == pytest.approx(trajectory.times[sample], abs=1e-3)
+            tip = re.findall(r"-?\d+\.\d+", page.inner_text("#tip"))
+            own = forward(stand_in().prepared.robot, trajectory.joints[sample : sample + 1]).tip[0]
+            assert np.allclose(np.array(tip, dtype=float), own, atol=2e-4)
+            state = page.inner_text("#state")
+            between = sample + 1 < len(trajectory.times) and not trajectory.contact[sample + 1]
+            if sample in trajectory.unplanned:
+                assert state == "this move was not planned"
+            elif trajectory.contact[sample] and not between:
+                assert state == f"in contact, segment {trajectory.segment[sample]}"
+            else:
+                assert state == "between strokes"
+        # At the end, play begins again.
+        page.click("#play")
+        page.wait_for_function("Number(document.getElementById('time').value) > 1")
+        page.click("#play")
+        page.wait_for_selector("#play[aria-label=Play]")
+        stopped = page.input_value("#time")
+        page.wait_for_timeout(100)
+        assert page.input_value("#time") == stopped
+        assert float(stopped) < trajectory.times[-1]
+        for name in ("part", "fit", "show-arm", "show-path", "show-moves", "show-around"):
+            page.click(f"#{name}")
+        legends = set()
+        for number in range(page.locator("#modes button").count()):
+            page.locator("#modes button").nth(number).click()
+            legends.add(page.inner_text("#legend"))
+        assert len(legends) == 3
+        assert faults == []
+
+
+def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
+    """Pictures of two moments differ, and one without the arm differs from both."""
+    with opened(page_file, DESKTOP) as (page, faults):
+        view, seen = page.locator("#view"), []
+        seen.append(view.screenshot())
+        page.evaluate(
+            "() => { const s = document.getElementById('time'); s.value = 0.5 * s.max;"
+            " s.dispatchEvent(new Event('input')); }"
+        )
+        page.wait_for_timeout(300)
+        seen.append(view.screenshot())
+        page.click("#show-arm")
+        page.wait_for_timeout(300)
+        seen.append(view.screenshot())
+        assert len(set(seen)) == 3
+        assert faults == []
+
+
+def test_without_webgl_the_rest_works(page_file: Path, tmp_path: Path) -> None:
+    page = page_file.read_text(encoding="utf-8").replace('getContext("webgl2"', 'getContext("none"')
+    (tmp_path / "plain.html").write_text(page, encoding="utf-8")
+    with opened(tmp_path / "plain.html", DESKTOP) as (browser_page, faults):
+        assert "cannot draw in 3D" in browser_page.inner_text("#overlay")
+        browser_page.click("#play")
+        browser_page.wait_for_function("Number(document.getElementById('time').value) > 0")
+        assert faults == []
+
+
+def test_the_arrays_are_those_of_the_motion(page_file: Path) -> None:
+    made, data = stand_in(), data_of(page_file.read_text(encoding="utf-8"))
+    surface, trajectory = made.painted.surface, made.trajectory
+    vertices = unpacked(data["mesh"]["vertices"]).reshape(-1, 3)
+    assert np.allclose(vertices, surface.vertices, atol=1e-6)
+    assert np.array_equal(unpacked(data["mesh"]["faces"]).reshape(-1, 3), surface.faces)
+    labels = unpacked(data["modes"][0]["labels"])
+    assert np.array_equal(labels[made.painted.segment_of >= 0],
+                          made.painted.segment_of[made.painted.segment_of >= 0])  # fmt: skip
+    frames = data["frames"]
+    assert np.allclose(unpacked(frames["joints"]).reshape(-1, 6), trajectory.joints, atol=1e-5)
+    assert np.array_equal(unpacked(frames["contact"]).astype(bool), trajectory.contact)
+    states = unpacked(data["trace"]["state"])
+    assert (states == 2).sum() == len(trajectory.unplanned)
+    # Pieces in contact are as long as the tool path: nothing of it is left undrawn.
+    places = unpacked(data["trace"]["points"]).reshape(-1, 3)
+    lengths = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert lengths[states[:-1] == 1].sum() == pytest.approx(made.paths.length, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("solution", "expected"),
+    [
+        ({}, "However the surface is divided, 2 segments are needed: cells"),
+        (
+            {"surface_lower_bound": 1, "proved_for_surface": False},
+            "It is not proved that fewer are impossible",
+        ),
+    ],
+)
+def test_the_page_claims_what_is_proved(solution: dict[str, object], expected: str) -> None:
+    changed = replace(stand_in().solution, **solution)
+    page = render_page(report(solution=changed)).decode()
+    assert expected in page
+    assert page.count("optimal: proved for any division") == (0 if solution else 1)
+
+
+@given(st.integers(1, 60), st.integers(2, 50), st.randoms(use_true_random=False))
+def test_frames_keep_the_ends_of_strokes(count: int, most: int, rng: object) -> None:
+    contact = [rng.random() < 0.7 for _ in range(count)]  # type: ignore[attr-defined]
+    joints = np.array([[rng.random(), 0.0] for _ in range(count)])  # type: ignore[attr-defined]
+    unplanned = (count - 2,) if count > 1 else ()
+    rows = np.zeros((count, 3))
+    trajectory = Trajectory(
+        "any", ("a", "b"), np.arange(count), joints, rows, rows, contact, [0] * count, unplanned
+    )
+    frames = frames_of(trajectory, most)
+    assert (np.diff(frames) > 0).all()
+    wanted = {0, count - 1, *unplanned, *(sample + 1 for sample in unplanned)}
+    wanted |= {end for first, after in trajectory.strokes for end in (first, after - 1)}
+    assert wanted <= set(frames.tolist())
+    assert len(frames) <= max(most, 0) + len(wanted)
+    values = joints[:, 0]
+    least = least_until_next(values, frames)
+    for number, frame in enumerate(frames):
+        after = frames[number + 1] if number + 1 < len(frames) else count
+        assert least[number] == values[frame:after].min()
+
+
+@given(
+    arrays(np.float64, (30, 3), elements=st.floats(-1, 1, width=16)),
+    st.sets(st.integers(0, 29), max_size=4),
+    st.floats(0.01, 1),
+)
+def test_a_straightened_line_passes_all_points(
+    points: np.ndarray, stays: set[int], tolerance: float
+) -> None:
+    kept = straightened(points, np.array(sorted(stays), dtype=np.int64), tolerance)
+    assert {0, 29} | stays <= set(kept.tolist())
+    for first, last in pairwise(kept):
+        # Held against points thickly on the chord.
+        chord = points[first] + np.linspace(0, 1, 400)[:, None] * (points[last] - points[first])
+        for between in points[first + 1 : last]:
+            assert np.linalg.norm(chord - between, axis=1).min() <= tolerance + 5e-3
