@@ -1,0 +1,65 @@
+"""The pattern ``contour``: lines at equal distances from the border, joined into one path."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import Deadline
+from cellcolor.tool_paths.distances import distance_along
+from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.joined_loops import join_loops
+from cellcolor.tool_paths.level_lines import Sliced, level_lines, slice_along
+from cellcolor.tool_paths.triangles import Triangles
+
+__all__ = ["lay_contours"]
+
+_FINEST = 0.5  # longest edge, in spacings
+_CORE = 0.7  # where a core reaches so far, in spacings, inside the last loop, there is one more
+
+
+def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
+    """Loops at half a spacing from the border, one and a half, and so on, joined.
+
+    On a closed mesh the distance is from a vertex, and the first loop goes round it.
+
+    Args:
+        mesh: a connected part of a segment.
+        spacing: between neighboring loops, m.
+        deadline: when to give up.
+    """
+    mesh = mesh.refined(_FINEST * spacing)
+    deadline.check()
+    border = np.flatnonzero(mesh.border)
+    distances = distance_along(mesh, border if len(border) else np.array([0]))
+    deadline.check()
+    levels = spacing * (0.5 + np.arange(int(distances.max() / spacing) + 1))
+    levels = levels[levels < distances.max()]
+    sliced = slice_along(mesh, distances, levels)
+    deadline.check()
+    rows = [line.vertices for line in level_lines(sliced) if len(line.vertices) > 2]
+    if not rows:
+        return Laid(mesh, [])
+    heights = _heights_of_cores(sliced, levels)
+    cores = slice_along(sliced.mesh, heights, np.array([_CORE * spacing]))
+    rows += [line.vertices for line in level_lines(cores) if len(line.vertices) > 2]
+    deadline.check()
+    return Laid(cores.mesh, join_loops(cores.mesh, rows, spacing))
+
+
+def _heights_of_cores(sliced: Sliced, levels: Array) -> Array:
+    """How far each vertex inside an innermost loop is from it; 0 for all other vertices."""
+    between = sliced.level < 0
+    ends = sliced.mesh.edges
+    own = ends[between[ends].all(axis=1)]
+    count = len(between)
+    graph = coo_matrix((np.ones(len(own), dtype=np.int8), tuple(own.T)), (count, count))
+    part = connected_components(graph, directed=False)[1]
+    number = np.searchsorted(levels, sliced.values) - 1  # the level below a vertex
+    inner = ends[(between[ends[:, 0]] != between[ends[:, 1]])]
+    inner = np.where(between[inner[:, :1]], inner, inner[:, ::-1])  # from between onto a line
+    onward = inner[sliced.level[inner[:, 1]] > number[inner[:, 0]], 0]
+    core = between & (number >= 0) & ~np.isin(part, part[onward])
+    return np.where(core, sliced.values - levels[np.maximum(number, 0)], 0.0)

@@ -1,0 +1,143 @@
+"""Every segment of a painted surface covered by tool paths."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPath, ToolPaths
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
+from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
+from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
+from cellcolor.tool_paths.spurs import with_spurs
+
+__all__ = ["Covered", "cover"]
+
+_LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class Covered:
+    """Tool paths, and what they are worth.
+
+    Attributes:
+        paths: one path for every connected part of a segment that is large enough.
+        measures: of each path, in the same order.
+        in_all: of all together.
+        uncovered: what no path comes near to, and why, the largest first.
+    """
+
+    paths: ToolPaths
+    measures: tuple[PathMeasures, ...]
+    in_all: PathMeasures
+    uncovered: tuple[Uncovered, ...]
+
+    def __str__(self) -> str:
+        return f"{self.paths}; {self.in_all}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+
+def cover(
+    surface: LabelledSurface,
+    segment_of: Index,
+    colors: Sequence[int],
+    normals: Array,
+    *,
+    pattern: str = DEFAULT_PATTERN,
+    spacing_m: float,
+    tool_radius_m: float,
+    walls: Collection[tuple[int, int]] = (),
+    left_out: Index | Sequence[int] = (),
+    deadline: Deadline = NEVER,
+    progress: Callable[[str], None] | None = None,
+) -> Covered:
+    """Lay a path on every connected part of every segment (docs/tool-paths.md).
+
+    Args:
+        surface: the painted surface.
+        segment_of: (n,) the segment of each vertex, -1 where it has none.
+        colors: of each segment.
+        normals: (n, 3) outward unit normals at the vertices.
+        pattern: the name of a registered pattern.
+        spacing_m: wanted distance between neighboring passes, m.
+        tool_radius_m: of the tool's footprint, m.
+        walls: mesh edges that no path may cross, like cracks of whatever segment is there.
+        left_out: numbers of small triangles (``region.py``) that no path may enter.
+        deadline: when to give up.
+        progress: told in a few words what is being done.
+
+    Raises:
+        InputError: there is no such pattern.
+        OutOfTime: the deadline came first.
+    """
+    lay = find_pattern(pattern)
+    paths, measures, uncovered = [], [], []
+    regions = regions_of(surface, segment_of, colors, normals, walls, left_out)
+    for number, region in enumerate(regions):
+        deadline.check()
+        if progress is not None:
+            progress(f"covering part {number + 1} of {len(regions)}")
+        area = float(region.mesh.areas.sum())
+        if area < _LEAST_AREA * spacing_m**2:
+            place = _point(region.mesh.points[region.mesh.corners[0]].mean(axis=0))
+            cause = "a part smaller than a quarter of the spacing squared"
+            uncovered.append(Uncovered(region.segment, area, place, cause))
+            continue
+        laid = with_spurs(lay(region.mesh, spacing_m, deadline), spacing_m, deadline)
+        own, left = measure(laid, region.segment, spacing_m)
+        paths.append(_path(region, laid))
+        measures.append(own)
+        uncovered += left
+    uncovered += _left_out(surface, segment_of, left_out)
+    uncovered.sort(key=lambda place: (-place.area_m2, place.place))
+    return Covered(
+        ToolPaths(surface.name, pattern, spacing_m, tool_radius_m, tuple(paths), surface.sha256),
+        tuple(measures),
+        in_all(measures, spacing_m),
+        tuple(uncovered),
+    )
+
+
+def _path(region: Region, laid: Laid) -> ToolPath:
+    """The path in the world."""
+    walk = np.array(laid.walk, dtype=np.int64)
+    mesh = laid.mesh
+    return ToolPath(
+        region.segment,
+        region.color,
+        mesh.points[walk],
+        mesh.normals[walk],
+        mesh.faces_of_walk(walk),
+    )
+
+
+def _left_out(
+    surface: LabelledSurface, segment_of: Index, left_out: Index | Sequence[int]
+) -> list[Uncovered]:
+    """What must not be entered, by segment."""
+    numbers = np.unique(np.asarray(left_out, dtype=np.int64))
+    if not len(numbers):
+        return []
+    corners = surface.faces[numbers // 6, numbers % 6 // 2]
+    areas = small_triangle_areas(surface)[numbers]
+    found = []
+    for segment in np.unique(segment_of[corners]).tolist():
+        own = segment_of[corners] == segment
+        if segment < 0:
+            continue
+        place = _point(surface.vertices[corners[own][areas[own].argmax()]])
+        found.append(Uncovered(segment, float(areas[own].sum()), place, "left out as asked for"))
+    return found
+
+
+def _point(row: Array) -> tuple[float, float, float]:
+    x, y, z = row.tolist()
+    return x, y, z

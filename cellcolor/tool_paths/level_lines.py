@@ -1,0 +1,118 @@
+"""A mesh sliced along level lines of a field, so that every line is a row of edges."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.tool_paths.triangles import Triangles, split_at
+
+__all__ = ["LevelLine", "Sliced", "level_lines", "slice_along"]
+
+_NEAR = 0.02  # of the distance between levels: vertices so near to a level are moved off it
+
+
+@dataclass(frozen=True, eq=False)
+class Sliced:
+    """A mesh with the level lines of a field among its edges.
+
+    Attributes:
+        mesh: the finer mesh.
+        values: (n,) the field at its vertices.
+        level: (n,) the number of the level that a vertex was put on, -1 for all other vertices.
+    """
+
+    mesh: Triangles
+    values: Array
+    level: Index
+
+
+@dataclass(frozen=True, eq=False)
+class LevelLine:
+    """One connected level line.
+
+    Attributes:
+        level: its level's number.
+        vertices: in order; the first is not repeated at the end of a closed line.
+        closed: whether it closes; otherwise it ends at the mesh's border.
+    """
+
+    level: int
+    vertices: Index
+    closed: bool
+
+
+def slice_along(mesh: Triangles, values: Array, levels: Array) -> Sliced:
+    """Cut triangles along the level lines of a field that is linear in each.
+
+    Args:
+        mesh: what to slice.
+        values: (n,) the field.
+        levels: ascending. A value on a level or just beside it is moved off, so that lines
+            run through no vertex and never touch each other.
+    """
+    if not len(levels):
+        return Sliced(mesh, values, np.full(len(mesh.points), -1, dtype=np.int64))
+    values = _off(values, levels)
+    while True:
+        at = np.sort(np.searchsorted(levels, values[mesh.edges]), axis=1)
+        crossed = at[:, 1] - at[:, 0]
+        several = crossed > 1
+        if not several.any():
+            break
+        mesh, edges_cut = _halved(mesh, several)
+        values = _off(np.concatenate([values, values[edges_cut].mean(axis=1)]), levels)
+    ends = values[mesh.edges]
+    split = crossed == 1
+    number = np.minimum(at[:, 0], len(levels) - 1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shares = (levels[number] - ends[:, 0]) / (ends[:, 1] - ends[:, 0])
+    finer, on = split_at(mesh, split, shares)
+    level = np.concatenate([np.full(len(mesh.points), -1, dtype=np.int64), number[on]])
+    return Sliced(finer, np.concatenate([values, levels[number[on]]]), level)
+
+
+def level_lines(sliced: Sliced) -> list[LevelLine]:
+    """All level lines, by their lowest vertex."""
+    edges = sliced.mesh.edges
+    own = edges[(sliced.level[edges] >= 0).all(axis=1)]
+    beside: dict[int, list[int]] = {}
+    for a, b in own.tolist():
+        beside.setdefault(a, []).append(b)
+        beside.setdefault(b, []).append(a)
+    done: set[int] = set()
+    lines = []
+    # Lines with ends first, each from an end; what is left is closed.
+    for start in sorted(beside, key=lambda vertex: (len(beside[vertex]), vertex)):
+        if start in done:
+            continue
+        row = [start]
+        done.add(start)
+        while True:
+            onward = [other for other in beside[row[-1]] if other not in done]
+            if not onward:
+                break
+            row.append(onward[0])
+            done.add(onward[0])
+        closed = len(beside[start]) == 2
+        lines.append(LevelLine(int(sliced.level[start]), np.array(row, dtype=np.int64), closed))
+    return lines
+
+
+def _halved(mesh: Triangles, edges: Mask) -> tuple[Triangles, Index]:
+    finer, on = split_at(mesh, edges, np.full(len(mesh.edges), 0.5))
+    return finer, mesh.edges[on]
+
+
+def _off(values: Array, levels: Array) -> Array:
+    """The values, those on a level moved a little above it."""
+    apart = float(np.diff(levels).min()) if len(levels) > 1 else float(np.ptp(values)) or 1.0
+    nearest = levels[np.abs(values[:, None] - levels).argmin(axis=1)] if len(levels) < 2 else None
+    if nearest is None:
+        at = np.clip(np.searchsorted(levels, values), 1, len(levels) - 1)
+        below, above = levels[at - 1], levels[at]
+        nearest = np.where(values - below < above - values, below, above)
+    near = np.abs(values - nearest) < _NEAR * apart
+    return np.where(near, nearest + _NEAR * apart, values)

@@ -1,0 +1,176 @@
+"""What a tool path covers, and how often it passes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array, Index
+from cellcolor.tool_paths.distances import distance_along
+from cellcolor.tool_paths.interface import Laid
+
+__all__ = ["PathMeasures", "Uncovered", "measure"]
+
+_SAMPLES = 4000  # at which visits are counted, for one path
+_FINE = 8  # samples of the path on each spacing
+_SHARP = np.cos(np.radians(60.0))
+
+
+@dataclass(frozen=True, slots=True)
+class Uncovered:
+    """A place that the tool does not come near enough to.
+
+    Attributes:
+        segment: of the painting.
+        area_m2: how large it is.
+        place: a point of it, m.
+        cause: a sentence without its full stop.
+    """
+
+    segment: int
+    area_m2: float
+    place: tuple[float, float, float]
+    cause: str
+
+
+@dataclass(frozen=True, slots=True)
+class PathMeasures:
+    """One path, or all of them.
+
+    Attributes:
+        area_m2: of what is to be covered.
+        length_m: of the path.
+        covered_wide: share of the area within 1.5 spacings of the path, along the surface.
+        covered: share of the area within 0.75 spacings of it.
+        mean_visits: passes within half a spacing of a point, in the mean over the area. A pass
+            is a stretch of path that long as it stays so near.
+        most_visits: the greatest number of these passes.
+        density: length x spacing / area; 1 where nothing is covered twice.
+        sharp_turns: share of the path's inner points at which it turns by over 60 degrees.
+        longest_step_m: between two points of the path.
+        border_m: length of the covered part's border.
+    """
+
+    area_m2: float
+    length_m: float
+    covered_wide: float
+    covered: float
+    mean_visits: float
+    most_visits: int
+    density: float
+    sharp_turns: float
+    longest_step_m: float
+    border_m: float
+
+
+def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
+    """Measure a path, and find what it leaves uncovered."""
+    mesh = laid.mesh
+    walk = np.array(laid.walk, dtype=np.int64)
+    points = mesh.points[walk]
+    steps = np.diff(points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1)
+    distances = distance_along(mesh, np.unique(walk))
+    areas = mesh.vertex_areas
+    area = float(areas.sum())
+    visits = visits_of(laid, spacing)
+    alone = np.bincount(mesh.edge_of_side.ravel(), minlength=len(mesh.edges)) == 1
+    measures = PathMeasures(
+        area,
+        float(lengths.sum()),
+        float(areas[distances <= 1.5 * spacing].sum() / area),
+        float(areas[distances <= 0.75 * spacing].sum() / area),
+        float(visits.mean()),
+        int(visits.max()),
+        float(lengths.sum() * spacing / area),
+        sharp_turns(steps),
+        float(lengths.max()),
+        float(mesh.lengths[alone].sum()),
+    )
+    far = distances > 0.75 * spacing
+    place = connected_components(
+        mesh.graph(edges=np.asarray(far[mesh.edges].all(axis=1))), directed=False
+    )[1]
+    left = []
+    for number in np.unique(place[far]):
+        members = np.flatnonzero(far & (place == number))
+        farthest = members[distances[members].argmax()]
+        left.append(
+            Uncovered(
+                segment,
+                float(areas[members].sum()),
+                tuple(mesh.points[farthest].tolist()),
+                "a tip or core that the pattern does not go into",
+            )
+        )
+    return measures, left
+
+
+def sharp_turns(steps: Array) -> float:
+    """Share of the inner points of a path at which it turns by over 60 degrees."""
+    lengths = np.linalg.norm(steps, axis=1)
+    steps = steps[lengths > 0] / lengths[lengths > 0][:, None]
+    if len(steps) < 2:
+        return 0.0
+    return float(((steps[:-1] * steps[1:]).sum(axis=1) < _SHARP).mean())
+
+
+def visits_of(laid: Laid, spacing: float) -> Index:
+    """How many passes come within half a spacing of each of several places, even by area."""
+    mesh = laid.mesh
+    rng = np.random.default_rng(0)
+    chosen = rng.choice(len(mesh.corners), _SAMPLES, p=mesh.areas / mesh.areas.sum())
+    shares = rng.dirichlet((1.0, 1.0, 1.0), _SAMPLES)[:, :, None]
+    places = (mesh.points[mesh.corners[chosen]] * shares).sum(axis=1)
+    outward = (mesh.normals[mesh.corners[chosen]] * shares).sum(axis=1)
+    walk = np.array(laid.walk, dtype=np.int64)
+    points, normals = _sampled(mesh.points[walk], mesh.normals[walk], spacing / _FINE)
+    near = cKDTree(points).query_ball_point(places, spacing / 2, return_sorted=True)
+    counts = np.zeros(len(places), dtype=np.int64)
+    for number, found in enumerate(near):
+        own = np.array(found, dtype=np.int64)
+        own = own[normals[own] @ outward[number] > 0]  # the back of a sheet faces away
+        if len(own):
+            counts[number] = 1 + int((np.diff(own) > 1).sum())
+    return counts
+
+
+def _sampled(points: Array, normals: Array, longest: float) -> tuple[Array, Array]:
+    """A path with more points, none farther from the next than asked for."""
+    pieces = np.ceil(np.linalg.norm(np.diff(points, axis=0), axis=1) / longest).astype(np.int64)
+    pieces = np.maximum(pieces, 1)
+    start = np.repeat(np.arange(len(pieces)), pieces)
+    share = (np.arange(len(start)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[start]
+    between = share[:, None]
+    return tuple(  # type: ignore[return-value]
+        np.vstack([(1 - between) * rows[start] + between * rows[start + 1], rows[-1:]])
+        for rows in (points, normals)
+    )
+
+
+def in_all(measures: list[PathMeasures], spacing: float) -> PathMeasures:
+    """The measures of several paths together; shares and means are weighed by area."""
+    if not measures:
+        return PathMeasures(0.0, 0.0, 1.0, 1.0, 0.0, 0, 0.0, 0.0, 0.0, 0.0)
+    area = sum(one.area_m2 for one in measures)
+    length = sum(one.length_m for one in measures)
+
+    def mean(values: list[float], weights: list[float]) -> float:
+        return float(np.average(values, weights=weights))
+
+    areas = [one.area_m2 for one in measures]
+    return PathMeasures(
+        area,
+        length,
+        mean([one.covered_wide for one in measures], areas),
+        mean([one.covered for one in measures], areas),
+        mean([one.mean_visits for one in measures], areas),
+        max(one.most_visits for one in measures),
+        length * spacing / area,
+        mean([one.sharp_turns for one in measures], [one.length_m for one in measures]),
+        max(one.longest_step_m for one in measures),
+        sum(one.border_m for one in measures),
+    )

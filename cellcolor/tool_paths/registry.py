@@ -1,0 +1,35 @@
+"""Every pattern by name. Other distributions register theirs as ``cellcolor.patterns``."""
+
+from __future__ import annotations
+
+from cellcolor.errors import InputError
+from cellcolor.registered import find, known_names, load
+from cellcolor.tool_paths.interface import Pattern
+
+__all__ = ["DEFAULT_PATTERN", "PATTERNS", "find_pattern", "pattern_names"]
+
+_GROUP = "cellcolor.patterns"
+DEFAULT_PATTERN = "contour"
+"""The pattern that is used where none is named."""
+PATTERNS = {
+    "contour": "cellcolor.tool_paths.contour:lay_contours",
+}
+"""This package's own, as ``module:function``."""
+
+
+def pattern_names() -> tuple[str, ...]:
+    """All names, this package's own first; nothing is imported for that."""
+    return known_names(PATTERNS, _GROUP)
+
+
+def find_pattern(name: str) -> Pattern:
+    """The pattern of that name.
+
+    Raises:
+        InputError: no pattern has this name, or two have it; or it cannot be imported.
+    """
+    loaded = load(find(name, PATTERNS, _GROUP, "pattern"), "pattern")
+    if not callable(loaded):
+        raise InputError(None, "pattern", f"{name!r} is no function")
+    pattern: Pattern = loaded
+    return pattern

@@ -1,0 +1,86 @@
+"""What a pattern has left uncovered, reached by spurs: short ways there and back."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import Deadline
+from cellcolor.tool_paths.distances import distance_along, off_border, ways_from
+from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.triangles import Triangles
+
+__all__ = ["with_spurs"]
+
+_FAR = 0.75  # spacings: what is farther from the path is reached by a spur
+_STOP = 0.5  # spacings: a spur ends so far before what it reaches
+_SMALL = 0.1  # spacings squared: smaller places are left as they are, unless they are far away
+_VERY_FAR = 1.25  # spacings
+_ROUNDS = 12
+
+
+def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
+    """The same path with spurs to all that is too far from it.
+
+    Where the pattern found no room for a path there is one along the part, and spurs from it.
+
+    Args:
+        laid: what a pattern has made.
+        spacing: wanted between passes, m.
+        deadline: when to give up.
+    """
+    mesh = laid.mesh
+    weights = off_border(mesh, spacing / 2)
+    walk = laid.walk if len(laid.walk) > 1 else _along(mesh, weights, spacing)
+    for _ in range(_ROUNDS):
+        deadline.check()
+        targets = _targets(mesh, distance_along(mesh, np.unique(walk)), spacing)
+        if not targets:
+            break
+        ways = ways_from(mesh.graph(weights), np.unique(walk))
+        spurs: dict[int, list[int]] = {}
+        for target, far in targets:
+            way = ways.back_from(target)
+            lengths = np.linalg.norm(np.diff(mesh.points[way], axis=0), axis=1)
+            kept = int(np.searchsorted(np.cumsum(lengths), min(_STOP * spacing, far / 2)))
+            way = way[min(kept, len(way) - 2) :]
+            spurs.setdefault(way[-1], []).extend([*way[-2::-1], *way[1:]])
+        longer: list[int] = []
+        for vertex in walk:
+            longer.append(vertex)
+            longer += spurs.pop(vertex, [])
+        walk = longer
+    return Laid(mesh, walk)
+
+
+def _targets(mesh: Triangles, distances: Array, spacing: float) -> list[tuple[int, float]]:
+    """The farthest vertex of every place that has to be reached, and how far it is."""
+    far = distances > _FAR * spacing
+    if not far.any():
+        return []
+    graph = mesh.graph(edges=np.asarray(far[mesh.edges].all(axis=1)))
+    place = connected_components(graph, directed=False)[1]
+    found = []
+    vertices = np.flatnonzero(far)
+    for number in np.unique(place[vertices]):
+        members = vertices[place[vertices] == number]
+        farthest = int(members[distances[members].argmax()])
+        area = float(mesh.vertex_areas[members].sum())
+        if area > _SMALL * spacing**2 or distances[farthest] > _VERY_FAR * spacing:
+            found.append((farthest, float(distances[farthest])))
+    return found
+
+
+def _along(mesh: Triangles, weights: Array, spacing: float) -> list[int]:
+    """A way from one end of a part to the other, its ends half a spacing short."""
+    graph = mesh.graph(weights)
+    one = int(ways_from(graph, np.array([0])).lengths.argmax())
+    ways = ways_from(graph, np.array([one]))
+    way = ways.back_from(int(ways.lengths.argmax()))
+    lengths = np.concatenate(
+        [[0.0], np.cumsum(np.linalg.norm(np.diff(mesh.points[way], axis=0), axis=1))]
+    )
+    off = min(spacing / 2, lengths[-1] / 4)
+    inner = [v for v, at in zip(way, lengths, strict=True) if off <= at <= lengths[-1] - off]
+    return inner if len(inner) > 1 else way[: max(2, len(way) // 2 + 1)]
