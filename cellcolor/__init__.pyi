@@ -17,6 +17,7 @@ from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.judging import check as check
 from cellcolor.door.judging import judge as judge
 from cellcolor.door.judging import proven_range as proven_range
+from cellcolor.door.oracle import Oracle as Oracle
 from cellcolor.door.painting import paint as paint
 from cellcolor.door.reading import read as read
 from cellcolor.door.result import Result as Result

@@ -16,10 +16,13 @@ class PlanReport:
     Attributes:
         problems: what is wrong, each naming its vertex; none when the plan is valid.
         segments: the number of segments counted, None when the plan is not valid.
+        segment_of: the segment of each vertex, -1 where it has no color; numbered in the order of
+            their first vertices. Empty when the plan is not valid.
     """
 
     problems: tuple[str, ...]
     segments: int | None
+    segment_of: tuple[int, ...] = ()
 
     @property
     def valid(self) -> bool:
@@ -59,4 +62,9 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
             continue
         if color not in surface.cracked(a, b):
             segments.join(a, b)
-    return PlanReport((), len(segments.sets()))
+    segment_of = [-1] * count
+    found = segments.sets()  # in the order of their first vertices
+    for number, vertices in enumerate(found):
+        for vertex in vertices:
+            segment_of[vertex] = number
+    return PlanReport((), len(found), tuple(segment_of))

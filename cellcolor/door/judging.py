@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
-from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from cellcolor import oracle
 from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import Report, check_solution
 from cellcolor.checker.known_results import contradictions
-from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import Deadline
+from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.result import Result
 from cellcolor.door.solving import deadline_after
 from cellcolor.door.subject import Solvable, Subject, open_subject
-from cellcolor.errors import InputError
 from cellcolor.oracle import ProvenRange, Verdict
 
 __all__ = ["check", "judge", "judge_by", "proven_range"]
@@ -86,30 +78,26 @@ def proven_range(
     """
     deadline = deadline_after(time_limit)
     subject = open_subject(surface, deadline)
-    with _named(subject):
-        return oracle.proven_range(
-            subject.surface,
-            strands=strands,
-            time_limit=deadline.left,
-            workers=workers,
-            seed=seed,
-        )
+    return Oracle(subject, strands=strands, workers=workers, seed=seed).prove(deadline).bounds
 
 
 def judge(
     surface: Solvable,
-    plan: Plan | Sequence[int | None] | NDArray[Any] | str | PathLike[str],
+    plan: AnyPlan,
     *,
     bounds: ProvenRange | None = None,
     time_limit: float | None = 60.0,
 ) -> Verdict:
     """The verdict on a plan: is it valid, how many segments has it, can it be beaten?
 
+    For several plans on one surface keep a :class:`cellcolor.Oracle`.
+
     Args:
-        surface: the labelled surface that was planned on, or a scene; its file, its shipped name,
-            the value.
-        plan: one color per vertex, None exactly where the vertex has none; in an array of integers,
-            which cannot hold None, -1. Or a file with a plan.
+        surface: a labelled surface, a scene, or an instance that names its surface; its file, its
+            shipped name, the value.
+        plan: one color per vertex, its number or its name, None exactly where the vertex has none;
+            in an array of integers, which cannot hold None, -1. Or a plan, a solution, or the file
+            of one.
         bounds: this surface's ``cellcolor.proven_range``, if known already.
         time_limit: seconds for all of it, above all for finding the range otherwise; None for as
             long as it takes.
@@ -124,36 +112,7 @@ def judge(
 
 
 def judge_by(
-    subject: Subject,
-    plan: Plan | Sequence[int | None] | NDArray[Any] | str | PathLike[str],
-    deadline: Deadline,
-    bounds: ProvenRange | None = None,
+    subject: Subject, plan: AnyPlan, deadline: Deadline, bounds: ProvenRange | None = None
 ) -> Verdict:
     """The verdict on a plan by a moment that may have passed already: :func:`judge`."""
-    if bounds is not None and not isinstance(bounds, ProvenRange):
-        message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
-        raise InputError(None, "bounds", message)
-    if isinstance(plan, (str, PathLike)):
-        plan = Plan.read(plan)
-    elif not isinstance(plan, Plan):
-        plan = Plan(_colors(plan))
-    with _named(subject):
-        return oracle.judge(subject.surface, plan, bounds=bounds, time_limit=deadline.left)
-
-
-@contextmanager
-def _named(subject: Subject) -> Iterator[None]:
-    """Name the subject's file in errors that name none."""
-    try:
-        yield
-    except InputError as error:
-        if error.file or subject.path is None:
-            raise
-        raise error.in_file(str(subject.path)) from error
-
-
-def _colors(plan: Sequence[int | None] | NDArray[Any]) -> Any:
-    """The same with None for -1 in an array; whether these are colors the plan says itself."""
-    if isinstance(plan, np.ndarray) and plan.dtype.kind == "i" and plan.ndim == 1:
-        return [None if color == -1 else color for color in plan.tolist()]
-    return plan
+    return Oracle(subject, bounds=bounds).judge(plan, deadline=deadline)

@@ -27,6 +27,7 @@ PUBLIC = [
     "InputError",
     "Instance",
     "LabelledSurface",
+    "Oracle",
     "OutOfTime",
     "Painted",
     "Plan",

@@ -293,7 +293,7 @@ def test_plans_are_judged_by_name_and_file(tmp_path: Path) -> None:
         cellcolor.judge(RING, plan)
 
 
-@pytest.mark.parametrize("plan", [[1.5], ["red"], [True], 3, np.zeros((2, 2)), np.zeros(3), None])
+@pytest.mark.parametrize("plan", [[1.5], ["mauve"], [True], 3, np.zeros((2, 2)), np.zeros(3), None])
 def test_what_is_no_plan_is_refused(plan: Any) -> None:
     with pytest.raises(InputError, match="vertex_colors"):
         cellcolor.judge(HALVES, plan)

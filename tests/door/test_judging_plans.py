@@ -17,8 +17,10 @@ from meshes import drawn, surfaces
 
 import cellcolor.checker.vertex_plan
 import cellcolor.decomposition
-import cellcolor.oracle
+import cellcolor.door.oracle
+import cellcolor.oracle.ranges
 import cellcolor.solvers.checked
+from cellcolor import judge, proven_range
 from cellcolor.checker.vertex_plan import PlanReport
 from cellcolor.cli import main
 from cellcolor.data.instance import Instance
@@ -26,8 +28,9 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.decomposition import Decomposition
 from cellcolor.errors import BeatenBound, InputError
-from cellcolor.oracle import ProvenRange, Verdict, judge, proven_range
+from cellcolor.oracle import Proof, ProvenRange, Verdict
 from cellcolor.solvers.interface import Options
 
 CORRIDORS = PAPER / "parallel-corridors.surface.json"
@@ -158,9 +161,9 @@ def test_no_second_search_for_which_there_is_no_time(
     clock, searches = _Clock(), list[str]()
     monkeypatch.setattr(time, "monotonic", clock)
 
-    def decompose(surface: LabelledSurface, deadline: Deadline) -> Instance:
+    def decomposition_of(surface: LabelledSurface, _: None, deadline: Deadline) -> Decomposition:
         clock.now += 2
-        return cellcolor.decomposition.decompose(surface, deadline=deadline)
+        return cellcolor.decomposition.decomposition_of(surface, None, deadline)
 
     def solve(instance: Instance, options: Options) -> Solution:
         searches.append(options.search_space)
@@ -168,27 +171,27 @@ def test_no_second_search_for_which_there_is_no_time(
         clock.now = after_search
         return replace(found, surface_lower_bound=1)
 
-    monkeypatch.setattr(cellcolor.oracle, "decompose", decompose)
-    monkeypatch.setattr(cellcolor.oracle, "solve", solve)
+    monkeypatch.setattr(cellcolor.oracle.ranges, "decomposition_of", decomposition_of)
+    monkeypatch.setattr(cellcolor.oracle.ranges, "solve", solve)
     proven_range(LabelledSurface.read(CORRIDORS), time_limit=60.0)
     assert searches == expected
 
 
 def test_checking_the_plan_counts(monkeypatch: pytest.MonkeyPatch) -> None:
     """The plan is checked in 2 s of 60."""
-    clock, limits = _Clock(), list[float | None]()
+    clock, limits = _Clock(), list[float]()
     monkeypatch.setattr(time, "monotonic", clock)
 
     def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
         clock.now += 2
         return cellcolor.checker.vertex_plan.check_plan(surface, plan)
 
-    def proven_range(_: LabelledSurface, time_limit: float | None) -> ProvenRange:
-        limits.append(time_limit)
-        return ProvenRange(1, 8)
+    def prove(_: LabelledSurface, deadline: Deadline, **_options: object) -> Proof:
+        limits.append(deadline.left)
+        return Proof(ProvenRange(1, 8))
 
-    monkeypatch.setattr(cellcolor.oracle, "check_plan", check_plan)
-    monkeypatch.setattr(cellcolor.oracle, "proven_range", proven_range)
+    monkeypatch.setattr(cellcolor.door.oracle, "check_plan", check_plan)
+    monkeypatch.setattr(cellcolor.door.oracle, "prove", prove)
     judge(drawn("AA AA", {"A": [RED]}), Plan((RED,) * 4), time_limit=60.0)
     assert limits == [58.0]
 

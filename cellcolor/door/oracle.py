@@ -1,0 +1,216 @@
+"""What is proved of one surface, and what that says of plans: ``cellcolor.Oracle``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import cached_property
+from os import PathLike
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.checker.division import check_solution
+from cellcolor.checker.vertex_plan import check_plan
+from cellcolor.data import plan as plan_file
+from cellcolor.data.plan import Plan
+from cellcolor.data.proof_wording import reason_of, witness_in_words
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
+from cellcolor.door.result import Result
+from cellcolor.door.solving import deadline_after
+from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.errors import BeatenBound, InputError, TooLarge
+from cellcolor.files.documents import parse_first_object, read_text
+from cellcolor.oracle import BetterPainting, Proof, ProvenRange, Verdict, prove
+from cellcolor.oracle.improvement import better_painting, improvement_of
+from cellcolor.painting.paint import paint
+from cellcolor.solvers.bounds.witness import witness
+
+__all__ = ["AnyPlan", "Oracle"]
+
+AnyPlan: TypeAlias = (
+    Plan | Solution | Result | Sequence[int | str | None] | NDArray[Any] | str | PathLike[str]
+)
+"""A plan, a solution, one color per vertex, or the file of a plan or a solution."""
+
+
+class Oracle:
+    """Whether plans on one surface are valid, and whether fewer lift-offs are possible.
+
+    What is proved of the surface is proved once, when it is first asked for, and serves all plans.
+    A planner's test suite keeps one for each surface::
+
+        oracle = cellcolor.Oracle("part.surface.json")
+        verdict = oracle.judge(colors)  # one color per vertex, None where it has none
+        assert verdict.optimal, verdict
+
+    Attributes:
+        surface: the labelled surface.
+    """
+
+    def __init__(
+        self,
+        source: Solvable,
+        *,
+        time_limit: float | None = 60.0,
+        strands: int | None = None,
+        workers: int | None = None,
+        seed: int = 0,
+        bounds: ProvenRange | None = None,
+    ) -> None:
+        """Open the surface; nothing is proved yet.
+
+        Args:
+            source: a labelled surface, a scene, or an instance that names its surface: its file,
+                its shipped name, the value.
+            time_limit: seconds for the proof, and for building a scene before; None for as long
+                as it takes.
+            strands: corridors that may cross one topological edge, None for the usual number.
+            workers: CP-SAT's search workers, None for its portfolio.
+            seed: of everything random.
+            bounds: this surface's proven range, if it is known already: then nothing is proved,
+                and no better plan is looked for.
+
+        Raises:
+            InputError: the source cannot be used, or has no surface.
+            OutOfTime: the time limit came before there was a surface.
+        """
+        if bounds is not None and not isinstance(bounds, ProvenRange):
+            message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
+            raise InputError(None, "bounds", message)
+        self._time_limit = time_limit
+        self._subject = open_subject(source, deadline_after(time_limit))
+        self._options: dict[str, Any] = {"strands": strands, "workers": workers, "seed": seed}
+        self._known = bounds
+        self.surface: LabelledSurface = self._subject.surface
+
+    @property
+    def bounds(self) -> ProvenRange:
+        """Between what the fewest segments lie; proved when it is first asked for.
+
+        Raises:
+            InputError: a cell of the surface is not planar, or an option is out of its range.
+        """
+        return self.prove(deadline_after(self._time_limit)).bounds
+
+    def prove(self, deadline: Deadline) -> Proof:
+        """What is proved of the surface: now, if it has not been proved yet.
+
+        Args:
+            deadline: when to be content with what is proved.
+
+        Raises:
+            InputError: a cell of the surface is not planar, or an option is out of its range.
+        """
+        if "_proof" not in self.__dict__:
+            if self._known is not None:
+                self.__dict__["_proof"] = Proof(self._known)
+            else:
+                with _named(self._subject):
+                    self.__dict__["_proof"] = prove(self.surface, deadline, **self._options)
+        proof: Proof = self.__dict__["_proof"]
+        return proof
+
+    @cached_property
+    def best(self) -> BetterPainting | None:
+        """A painting with the fewest segments found; None without time or memory for one."""
+        proof = self.prove(deadline_after(self._time_limit))
+        if proof.decomposition is None or proof.solution is None:
+            return None
+        try:
+            painted = paint(self.surface, proof.decomposition, proof.solution)
+        except TooLarge:
+            return None
+        return better_painting(self.surface, painted)
+
+    def judge(self, plan: AnyPlan, *, deadline: Deadline | None = None) -> Verdict:
+        """The verdict on a plan: is it valid, how many segments has it, can it be beaten and where?
+
+        Args:
+            plan: one color per vertex, its number or its name, None exactly where the vertex has
+                none; in an array of integers, which cannot hold None, -1. Or a plan, a solution of
+                the surface, or the file of one.
+            deadline: for the proof, if nothing has been proved yet; None for the time limit.
+
+        Raises:
+            BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.
+            InputError: the plan or the surface cannot be used.
+        """
+        if isinstance(plan, (str, PathLike)):
+            plan = _read(plan)
+        if isinstance(plan, Result):
+            plan = plan.solution
+        if isinstance(plan, Solution):
+            report = check_solution(self._subject.graph(), plan)
+            problems, segments = report.problems, None if report.problems else report.segments
+            segment_of: tuple[int, ...] = ()
+        else:
+            given = plan if isinstance(plan, Plan) else Plan(self._colors(plan))
+            found = check_plan(self.surface, given)
+            problems, segments, segment_of = found.problems, found.segments, found.segment_of
+        if segments is None:
+            return Verdict(problems, None, self._known)
+        bounds = self.prove(deadline or deadline_after(self._time_limit)).bounds
+        if segments < bounds.lower:
+            raise BeatenBound(self.surface.name, segments, bounds.lower)
+        if segments == bounds.lower:
+            return Verdict((), segments, bounds, why=self._why)
+        improvement = None
+        if segment_of and self.best is not None:
+            improvement = improvement_of(self.surface, segment_of, self.best)
+        return Verdict((), segments, bounds, improvement)
+
+    def __repr__(self) -> str:
+        proved = f", {self.__dict__['_proof'].bounds}" if "_proof" in self.__dict__ else ""
+        return f"<{type(self).__name__} of {self.surface.name!r}{proved}>"
+
+    @cached_property
+    def _why(self) -> str | None:
+        """Why there cannot be fewer segments than the minimum, a clause."""
+        proof = self.prove(deadline_after(self._time_limit))
+        if proof.solution is None or proof.decomposition is None:
+            return None
+        cells = witness_in_words(proof.decomposition.instance, witness(proof.solution))
+        return cells or reason_of(proof.solution)
+
+    def _colors(self, plan: Any) -> Any:
+        """Numbers for names, None for -1 in an array of integers; the rest is left to the plan."""
+        if isinstance(plan, np.ndarray) and plan.ndim == 1 and plan.dtype.kind == "i":
+            return [None if color == -1 else color for color in plan.tolist()]
+        if isinstance(plan, np.ndarray):
+            plan = plan.tolist()
+        if not isinstance(plan, Sequence):
+            return plan
+        number = {name: color for color, name in enumerate(self.surface.colors)}
+        colors = []
+        for vertex, color in enumerate(plan):
+            if isinstance(color, str):
+                if color not in number:
+                    message = f"the surface has no color {color!r}"
+                    raise InputError(None, f"vertex_colors[{vertex}]", message)
+                color = number[color]
+            colors.append(color)
+        return colors
+
+
+@contextmanager
+def _named(subject: Subject) -> Iterator[None]:
+    """Name the subject's file in errors that name none."""
+    try:
+        yield
+    except InputError as error:
+        if error.file or subject.path is None:
+            raise
+        raise error.in_file(str(subject.path)) from error
+
+
+def _read(path: str | PathLike[str]) -> Plan | Solution:
+    """A plan, or a solution, whichever the file says it is."""
+    try:
+        format_name = parse_first_object(read_text(path)).get("format")
+    except InputError as error:
+        raise error if error.file else error.in_file(str(path)) from error
+    return Plan.read(path) if format_name == plan_file.FORMAT else Solution.read(path)

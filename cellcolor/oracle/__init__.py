@@ -1,0 +1,22 @@
+"""An oracle for the test suites of other coverage planners.
+
+A planner that paints every vertex of a labelled surface in one of its colors cannot have fewer
+segments than the surface allows. :func:`prove` says how few that is. The front
+door has an object that holds plans against it (:class:`cellcolor.Oracle`), and functions::
+
+    import cellcolor
+
+    surface = cellcolor.read("part.surface.json")
+    verdict = cellcolor.judge(surface, my_planner(surface))
+    assert verdict.valid, verdict.problems
+    assert verdict.beatable_by == 0  # proved: no division of the surface has fewer segments
+
+Where a test cannot wait for a proof, ``assert not verdict.beatable_by`` is enough to catch plans
+that are proved to have too many; it passes as well if nothing is known.
+"""
+
+from cellcolor.oracle.improvement import BetterPainting, Improvement
+from cellcolor.oracle.ranges import Proof, ProvenRange, prove
+from cellcolor.oracle.verdict import Verdict
+
+__all__ = ["BetterPainting", "Improvement", "Proof", "ProvenRange", "Verdict", "prove"]

@@ -1,0 +1,123 @@
+"""The range that the fewest segments of a surface are proved to lie in.
+
+Everything here is in the search space ``surface`` (any division of the physical surface,
+docs/semantics.md, section 4): a bound of the search space ``paper`` may be beaten by a plan.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import count
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.decomposition import Decomposition, decomposition_of
+from cellcolor.errors import InputError
+from cellcolor.files.validation import settle
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import STRANDS, Options
+
+__all__ = ["Proof", "ProvenRange", "prove"]
+
+
+@dataclass(frozen=True, slots=True)
+class ProvenRange:
+    """Between what the fewest segments of a surface lie, both ends included.
+
+    Attributes:
+        lower: no division of the surface has fewer segments.
+        upper: a division with that many segments exists, and the checker has passed it.
+
+    Raises:
+        InputError: the two are no range of whole numbers from 0 on.
+    """
+
+    lower: int
+    upper: int
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if not 0 <= self.lower <= self.upper:
+            message = f"must be 0 or more and at most upper, {self.upper}; is {self.lower}"
+            raise InputError(None, "lower", message)
+
+    @property
+    def exact(self) -> bool:
+        """The minimum is known."""
+        return self.lower == self.upper
+
+    def __str__(self) -> str:
+        if self.exact:
+            return f"exactly {count(self.lower, 'segment')}"
+        return f"between {self.lower} and {count(self.upper, 'segment')}"
+
+
+@dataclass(frozen=True)
+class Proof:
+    """What is proved of the fewest segments of a surface, and what proves it.
+
+    Attributes:
+        bounds: the range that they lie in.
+        decomposition: the topological graph on the surface; None if there was no time for it.
+        solution: of the divisions found the one with the fewest segments; None if there was no
+            time to look for one.
+    """
+
+    bounds: ProvenRange
+    decomposition: Decomposition | None = None
+    solution: Solution | None = None
+
+
+def prove(
+    surface: LabelledSurface,
+    deadline: Deadline,
+    *,
+    strands: int | None = None,
+    workers: int | None = None,
+    seed: int = 0,
+) -> Proof:
+    """Find the range that the fewest segments of a labelled surface lie in, and the proof of it.
+
+    Args:
+        surface: the labelled surface.
+        deadline: when to be content with what is proved; both ends hold however early it comes.
+        strands: corridors that may cross one topological edge, None for the usual number; more
+            may lower ``upper``.
+        workers: CP-SAT's search workers, None for its portfolio.
+        seed: of everything random.
+
+    Raises:
+        InputError: a cell of the surface is not planar, or an option is out of its range.
+    """
+    started = time.monotonic()
+    corridors = STRANDS["surface"] if strands is None else strands
+    # The paper's search space is the smaller one: where its optimum meets a bound for any
+    # division, there is nothing left to search.
+    searches = (
+        Options("paper", deadline=deadline, workers=workers, seed=seed),
+        Options("surface", corridors, deadline, workers, seed),
+    )
+    try:
+        decomposition = decomposition_of(surface, None, deadline)
+    except OutOfTime:
+        # A segment for each vertex is a division too, and without any nothing is covered.
+        reached = sum(map(bool, surface.vertex_colors))
+        return Proof(ProvenRange(min(reached, 1), reached))
+    instance = decomposition.instance
+    # One sub-cell a cell is a division of its own, whatever the solver finds.
+    upper = len(instance.cells)
+    lower = min(upper, 1)
+    best: Solution | None = None
+    # A further search takes about as long as that for its first division alone.
+    enough = deadline.earlier(time.monotonic() - started)
+    for number, options in enumerate(searches if instance.cells else ()):
+        if (enough if number else deadline).over or (number and lower == upper):
+            break
+        solution = solve(instance, options)
+        lower = max(lower, solution.surface_lower_bound)
+        if solution.segments is not None and (best is None or solution.segments < upper):
+            best = solution
+            upper = min(upper, solution.segments)
+    return Proof(ProvenRange(lower, upper), decomposition, best)

@@ -1,0 +1,96 @@
+"""What is said of a plan: is it valid, how many segments has it, can it be beaten?"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from cellcolor.data.wording import count
+from cellcolor.oracle.improvement import Improvement
+from cellcolor.oracle.ranges import ProvenRange
+
+__all__ = ["Verdict"]
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """What is to be said about a plan.
+
+    Attributes:
+        problems: why the plan is not valid, each naming its vertex; none when it is.
+        segments: of the plan; None when it is not valid.
+        bounds: the proven range for any division of the surface; None when the plan is not valid
+            and nothing was proved.
+        improvement: a plan with fewer segments, and what it joins; None where none is known.
+        why: of an optimal plan why there cannot be fewer segments, a clause; None where nothing
+            needs a reason or none is known.
+    """
+
+    problems: tuple[str, ...]
+    segments: int | None
+    bounds: ProvenRange | None
+    improvement: Improvement | None = field(default=None, compare=False)
+    why: str | None = field(default=None, compare=False)
+
+    @property
+    def valid(self) -> bool:
+        """Every reachable vertex has one of its colors, and no other vertex has one."""
+        return not self.problems
+
+    @property
+    def lift_offs(self) -> int | None:
+        """``max(0, segments - 1)``; None when the plan is not valid."""
+        return None if self.segments is None else max(0, self.segments - 1)
+
+    @property
+    def optimal(self) -> bool | None:
+        """True: proved to be. False: proved not to be. None: neither, or the plan is not valid."""
+        if self.segments is None or self.bounds is None:
+            return None
+        if self.segments == self.bounds.lower:
+            return True
+        return False if self.segments > self.bounds.upper else None
+
+    @property
+    def beatable_by(self) -> int | None:
+        """How many segments fewer are proved to be enough.
+
+        0 only if it is proved that no division of the surface has fewer, so that running out of
+        time passes for nothing; None where neither is proved, or when the plan is not valid.
+
+        The division that proves it cuts the surface itself. A mesh may be too coarse to paint it
+        in vertices: :attr:`on_mesh` has the range for plans on the mesh as it is.
+        """
+        if self.segments is None or self.bounds is None:
+            return None
+        if self.segments > self.bounds.upper:
+            return self.segments - self.bounds.upper
+        return 0 if self.segments == self.bounds.lower else None
+
+    @property
+    def on_mesh(self) -> ProvenRange | None:
+        """Between what the fewest segments of plans on this mesh lie, as far as is known.
+
+        None when the plan is not valid or nothing was proved.
+        """
+        if self.segments is None or self.bounds is None:
+            return None
+        best = self.segments
+        if self.improvement is not None:
+            best = min(best, self.improvement.segments_on_mesh)
+        return ProvenRange(self.bounds.lower, best)
+
+    def __str__(self) -> str:
+        if self.segments is None or self.lift_offs is None:
+            more = len(self.problems) - 1
+            rest = f" (and {count(more, 'other problem')})" if more > 0 else ""
+            return f"not valid: {self.problems[0]}{rest}"
+        found = f"{count(self.segments, 'segment')}, {count(self.lift_offs, 'lift-off')}"
+        if self.bounds is None:
+            return found
+        if self.optimal:
+            because = "" if self.why is None else f", because {self.why}"
+            return f"{found}, optimal: no division of the surface has fewer{because}"
+        if self.beatable_by:
+            where = "" if self.improvement is None else f"; {self.improvement}"
+            return f"{found}, {self.beatable_by} fewer are proved to be enough{where}"
+        return f"{found}, not known to be optimal; the fewest are {self.bounds}"
