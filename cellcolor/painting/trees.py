@@ -15,7 +15,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from heapq import heappop, heappush
-from itertools import pairwise
 
 from cellcolor.decomposition.borders import Step
 from cellcolor.union_find import UnionFind
@@ -128,16 +127,6 @@ class _Trees:
             return w, x
         return x, f  # the free end of a crack: back along its other side
 
-    def _vertices(self, steps: list[Step]) -> list[int]:
-        """The free vertices that a part of a walk passes, each connected to the next."""
-        passed: dict[int, None] = {}
-        for step, following in pairwise([*steps, steps[-1]]):
-            passed[step[0]] = None
-            if following == step[::-1]:
-                # Round the free end of a crack: only what lies ahead of it connects both sides.
-                passed[self.third[step]] = None
-        return list(passed)
-
     def _is_wall(self, f: int, x: int) -> bool:
         """Whether no tree can grow from a free vertex to what is beside it."""
         return x not in self.free or self.cracked(f, x)
@@ -163,7 +152,9 @@ class _Trees:
                 if block != other or self.piece[walk[here][1]] == self.piece[walk[there][1]]:
                     continue
                 steps = walk[here : there + 1] if here < there else walk[here:] + walk[: there + 1]
-                way = self._vertices(steps)
+                # Round the free end of a crack two of these are no neighbors. They are the next
+                # pieces to be connected then, by the one vertex that lies ahead of the end.
+                way = list(dict.fromkeys(f for f, _ in steps))
                 if (best is None or len(way) < len(best[1])) and self._leaves_room(block, way):
                     best = block, way
         return best

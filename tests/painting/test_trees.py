@@ -75,6 +75,57 @@ def test_one_vertex_for_two_is_refused() -> None:
         trees(7, [[1, 5], [5, 6]])
 
 
+def without(size: int, low: int, high: int) -> list[int]:
+    """The vertices of a square grid with a square hole, both ends of its rows included."""
+    hole = {(x, y) for x in range(low, high + 1) for y in range(low, high + 1)}
+    return [y * size + x for y in range(size) for x in range(size) if (x, y) not in hole]
+
+
+@pytest.mark.parametrize(
+    ("size", "hole", "terminals"),
+    [
+        # Shortest ways would shut the others in: long detours round their pieces are needed.
+        (7, (2, 3), [[6, 31], [45, 10], [13, 22]]),
+        (9, (3, 5), [[44, 58], [80, 24], [4, 33]]),
+        (8, (2, 5), [[0, 38], [2, 14], [61, 30]]),
+        # The way of one sub-cell would shut another one in whatever it costs: its turn is later.
+        (7, (2, 3), [[6, 32], [42, 18], [13, 29]]),
+        (8, (3, 4), [[8, 21], [39, 18], [31, 42]]),
+        (7, (3, 4), [[0, 39], [27, 30], [35, 18], [42, 16]]),
+    ],
+)
+def test_ways_to_a_hole_leave_each_other_room(
+    size: int, hole: tuple[int, int], terminals: list[list[int]]
+) -> None:
+    """Each sub-cell from the outer border to the hole; drawn by random search."""
+    found = grown(without(size, *hole), grid(size), terminals)
+    for number, own in enumerate(terminals):
+        assert {found[v] for v in own} == {number}
+        assert connected(size, found, number)
+
+
+def test_a_tree_goes_round_the_free_end_of_a_crack() -> None:
+    # A crack from the lower border between the columns 2 and 3 of a 7 by 7 grid, up to row 4.
+    mesh = grid(7)
+    around: dict[int, list[int]] = {}
+    for a, b in mesh.third:
+        around.setdefault(a, []).append(b)
+
+    def cracked(a: int, b: int) -> bool:
+        sides = {a % 7, b % 7} == {2, 3}
+        return max(a, b) < 49 and sides and max(a // 7, b // 7) <= 4
+
+    found = grow_trees(range(49), around, mesh.third, cracked, [[2, 3], [1, 5], [0]])
+    assert {found[v] for v in (2, 3)} == {0} and {found[v] for v in (1, 5)} == {1}
+    for number in (0, 1):
+        own = {vertex for vertex, tree in found.items() if tree == number}
+        reached = {min(own)}
+        pairs = {(a, b) for a, b in mesh.third if {a, b} <= own and not cracked(a, b)}
+        while more := {b for a, b in pairs if a in reached} - reached:
+            reached |= more
+        assert reached == own
+
+
 def test_a_way_across_leaves_the_other_one_room() -> None:
     """Two sub-cells both reach a hole; the first must not shut the second one in."""
     inside = [v for v in range(49) if v not in (16, 17, 18, 23, 24, 25, 30, 31, 32)]
