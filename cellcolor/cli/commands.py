@@ -235,23 +235,34 @@ def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
     help="The painted surface; the plan on it is written beside, as OUT.plan.json.",
 )
 @click.option(
+    "--tool-radius",
+    metavar="M",
+    type=float,
+    help="Of the tool's footprint, m: corridors are made as wide as that where possible.  "
+    "[default: the scene's, or one mean mesh edge]",
+)
+@click.option(
     "--time-limit",
     metavar="S",
     type=_SECONDS,
     help="Seconds, reading included.  [default: as long as it takes]",
 )
-def paint(source: Path, claim: Path, output: Path, time_limit: float | None) -> int:
+def paint(
+    source: Path, claim: Path, output: Path, tool_radius: float | None, time_limit: float | None
+) -> int:
     """Paint every vertex of a surface in the colors of a solution.
 
     FILE is a labelled surface, a scene, or an instance that names its surface. Where a cell is
-    divided and its mesh is too coarse for that, the surface is refined.
+    divided and its mesh is too coarse for that, the surface is refined. Borders between segments
+    are then moved, so that corridors are wide and borders short.
     """
     begun = time.monotonic()
 
     from cellcolor.cli.paint import paint_files
     from cellcolor.deadline import Deadline
 
-    return paint_files(source, claim, output, Deadline.after(time_limit, begun))
+    deadline = Deadline.after(time_limit, begun)
+    return paint_files(source, claim, output, tool_radius, deadline)
 
 
 @cellcolor.command()

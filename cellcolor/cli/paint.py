@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_subject
@@ -15,18 +18,24 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
 
+if TYPE_CHECKING:
+    from cellcolor.painting.border_report import BorderReport
+
 _SURFACE = kind_of_format(surface_file.FORMAT)
 _PLAN = kind_of_format(plan_file.FORMAT)
 _ENDING = ".surface.json"
 
 
-def paint_files(source: Path, claim: Path, output: Path, deadline: Deadline) -> Exit:
+def paint_files(
+    source: Path, claim: Path, output: Path, tool_radius: float | None, deadline: Deadline
+) -> Exit:
     """Write a painted surface, and its plan beside it.
 
     Args:
         source: a labelled surface, a scene, or an instance that names its surface.
         claim: a solution of it.
         output: the surface's file, with the ending ``.surface.json``.
+        tool_radius: of the tool's footprint, m; None for what ``cellcolor.paint`` takes.
         deadline: when to give up.
     """
     if not output.name.endswith(_ENDING) or is_stream(output):
@@ -36,6 +45,8 @@ def paint_files(source: Path, claim: Path, output: Path, deadline: Deadline) -> 
     check_output(output, _SURFACE, inputs)
     check_output(plan_path, _PLAN, inputs)
     solution = Solution.read(claim)
+    if tool_radius is not None and not 0 < tool_radius < math.inf:
+        raise InputError(None, "--tool-radius", "must be a positive number of meters")
 
     from cellcolor.door.painting import paint_by
 
@@ -44,7 +55,7 @@ def paint_files(source: Path, claim: Path, output: Path, deadline: Deadline) -> 
         if subject.surface_path is not None:  # of an instance: what it names is read as well
             inputs.append(subject.surface_path)
         check_output(output, _SURFACE, inputs)
-        painted = paint_by(subject, solution, deadline)
+        painted = paint_by(subject, solution, tool_radius, deadline)
     except OutOfTime:
         complain(f"{source}: not painted: the time limit came first; nothing is written")
         return Exit.STOPPED
@@ -62,6 +73,28 @@ def paint_files(source: Path, claim: Path, output: Path, deadline: Deadline) -> 
     lift_offs = count(max(0, painted.segments - 1), "lift-off")
     say(f"wrote {output}: {count(painted.segments, 'segment')}, {lift_offs}{refined}")
     say(f"wrote {plan_path}")
+    if painted.borders is not None:
+        for line in _lines(painted.borders, painted.segments > 1):
+            say(f"  {line}")
     for group in painted.merged:
         say(f"  segments {listed(group)} of the solution touch in one color: painted they are one")
     return Exit.DONE
+
+
+def _lines(report: BorderReport, several: bool) -> Iterator[str]:
+    """What is said of the borders of a painting, if it has any."""
+    before, after = report.before, report.after
+    if not several:
+        return
+    yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as they were first drawn"
+    if after.narrowest is not None:
+        x, y, z = after.narrowest.place
+        width, number = after.narrowest.width_m, after.narrowest.segment
+        place = f"({x:.4g}, {y:.4g}, {z:.4g})"
+        yield f"narrowest corridor: {width:.4g} m at {place}, of segment {number}"
+    tool = f"a footprint of radius {report.tool_radius_m:.4g} m"
+    if report.stays_inside:
+        yield f"{tool} stays inside its segments"
+    else:
+        places = f", {count(after.narrow, 'corridor')} too narrow" if after.narrow else ""
+        yield f"{tool} passes over {after.repeated_m2:.3g} m² of other segments{places}"

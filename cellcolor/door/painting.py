@@ -11,6 +11,7 @@ from cellcolor.door.result import Result
 from cellcolor.door.solving import deadline_after
 from cellcolor.door.subject import Solvable, Subject, open_subject
 from cellcolor.errors import InputError
+from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted
 from cellcolor.painting.paint import paint as paint_solution
 
@@ -21,6 +22,7 @@ def paint(
     source: Solvable,
     solution: Solution | Result | str | PathLike[str],
     *,
+    tool_radius_m: float | None = None,
     time_limit: float | None = None,
 ) -> Painted:
     """Paint every vertex of a surface in the colors of a solution (docs/painting.md).
@@ -29,14 +31,18 @@ def paint(
         source: what was solved: a labelled surface, a scene, or an instance that names its
             surface; its file, its shipped name, the value.
         solution: its solution, or the file of one.
+        tool_radius_m: of the tool's footprint, which borders between segments leave room for; None
+            for that of the scene's setup, or else for one mean mesh edge.
         time_limit: seconds, None for as long as it takes.
 
     Returns:
         A plan that the checker finds valid, on the surface refined where it had to be. It has
-        exactly as many segments as the solution if these are proved to be the fewest.
+        exactly as many segments as the solution if these are proved to be the fewest. ``borders``
+        says what moving its borders has changed.
 
     Raises:
-        InputError: one of the two cannot be used, or they do not belong together.
+        InputError: one of the two cannot be used, they do not belong together, or the radius is not
+            positive.
         OutOfTime: the time limit came first.
         TooLarge: the refined mesh would not fit into memory.
     """
@@ -45,13 +51,19 @@ def paint(
         solution = solution.solution
     elif not isinstance(solution, Solution):
         solution = Solution.read(solution)
-    return paint_by(open_subject(source, deadline), solution, deadline)
+    return paint_by(open_subject(source, deadline), solution, tool_radius_m, deadline)
 
 
-def paint_by(subject: Subject, solution: Solution, deadline: Deadline) -> Painted:
+def paint_by(
+    subject: Subject, solution: Solution, tool_radius_m: float | None, deadline: Deadline
+) -> Painted:
     """The painting by a moment that may have passed already: :func:`paint`."""
     surface, decomposition = subject.surface, subject.decomposition
     problems = check_solution(decomposition.instance, solution).problems
     if problems:
         raise InputError(None, None, f"the solution is not valid: {problems[0]}")
-    return paint_solution(surface, decomposition, solution, deadline)
+    if tool_radius_m is None and subject.built is not None:
+        motion = subject.built.scene.setup.motion
+        tool_radius_m = None if motion is None else motion.tool_radius_m
+    drawn = paint_solution(surface, decomposition, solution, deadline)
+    return move_borders(drawn, tool_radius_m, deadline=deadline)

@@ -22,6 +22,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders, ClosedMesh
 from cellcolor.errors import InputError, RefusedResult
+from cellcolor.painting.border_report import BorderReport
 from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_surface
 from cellcolor.painting.refined import Refined, interpolated, unrefined
 from cellcolor.painting.trees import TooNarrow, grow_trees
@@ -45,6 +46,7 @@ class Painted:
             the given surface lies between itself and itself.
         merged: segments of the solution that have one color and touch, so that they are one when
             painted; only where the solution has more than are needed.
+        borders: what moving them has changed; None if they are where the drawing has put them.
     """
 
     surface: LabelledSurface
@@ -54,6 +56,7 @@ class Painted:
     stands_for: Index
     between: Index
     merged: tuple[tuple[int, ...], ...]
+    borders: BorderReport | None = None
 
     def interpolated(self, values: Array) -> Array:
         """Values (m, ...) at the given surface's vertices, carried over to all (n, ...).

@@ -1,0 +1,196 @@
+"""How much room a tool has inside its segments: corridors, and what it would pass over twice.
+
+The **clearance** of a vertex is its distance along the surface from the nearest point of another
+segment; what no color reaches, and the rim of the surface, do not count. A footprint of radius r
+stays inside its segment where its center has a clearance of r or more. A **corridor** is a place
+where two parts of a segment hang together and have more clearance than the way between them; its
+width is twice the best clearance on that way.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from heapq import heapify, heappop, heappush
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.painting.border_report import Corridor
+from cellcolor.painting.nearby import Nearby
+
+__all__ = ["Room", "within"]
+
+_FAR = 3
+"""In tool radii: how far clearances are followed."""
+
+
+def within(nearby: Nearby, starts: Iterable[tuple[float, int]], reach: float) -> dict[int, float]:
+    """The vertices within a distance of some, along the surface, and their distances in m.
+
+    Args:
+        nearby: the mesh.
+        starts: distances to begin with, and vertices.
+        reach: the largest distance, m.
+    """
+    queue = list(starts)
+    heapify(queue)
+    found: dict[int, float] = {}
+    while queue:
+        far, vertex = heappop(queue)
+        if vertex in found:
+            continue
+        found[vertex] = far
+        for other, length, _ in nearby.near(vertex):
+            if other not in found and far + length <= reach:
+                heappush(queue, (far + length, other))
+    return found
+
+
+class Room:
+    """The room that segments leave to a tool.
+
+    Attributes:
+        radius: of the tool's footprint, m.
+        clearance: (n,) of each vertex, m; as far as it was followed if it is larger, and of a
+            vertex without color 0.
+    """
+
+    def __init__(
+        self,
+        nearby: Nearby,
+        segment: list[int],
+        joined: Callable[[int, int], bool],
+        radius: float,
+    ) -> None:
+        """``joined``: whether a mesh edge leads on in the segment that both ends are in."""
+        self._nearby = nearby
+        self._segment = segment
+        self._joined = joined
+        self.radius = radius
+        self.clearance = self._clearances()
+
+    def _clearances(self) -> Array:
+        """By following the two nearest segments from every border."""
+        segment, nearby = self._segment, self._nearby
+        places = nearby.surface.vertices
+        queue: list[tuple[float, int, int]] = []
+        for a, b in nearby.edges.tolist():
+            if segment[a] == segment[b]:
+                continue
+            half = float(np.linalg.norm(places[a] - places[b])) / 2
+            for here, there in ((a, b), (b, a)):
+                if segment[there] >= 0:
+                    queue.append((half, here, segment[there]))
+        heapify(queue)
+        reach = _FAR * self.radius
+        found: dict[int, dict[int, float]] = {}
+        while queue:
+            far, vertex, number = heappop(queue)
+            known = found.setdefault(vertex, {})
+            if number in known or len(known) == 2:
+                continue
+            known[number] = far
+            for other, length, _ in nearby.near(vertex):
+                # Inside the segment itself its own distance is no clearance.
+                if far + length <= reach and segment[other] != number:
+                    heappush(queue, (far + length, other, number))
+        clearance = np.full(len(segment), reach)
+        for vertex, known in found.items():
+            clearance[vertex] = min(known.values())
+        clearance[np.array(segment) < 0] = 0.0
+        return clearance
+
+    def corridors(self) -> list[Corridor]:
+        """Those that are at most half as wide as both their ends, or too narrow for a tool that
+        fits into both; narrowest first."""
+        peak: dict[int, float] = {}
+        above: dict[int, int] = {}
+
+        def top(vertex: int) -> int:
+            while above[vertex] != vertex:
+                above[vertex] = above[above[vertex]]
+                vertex = above[vertex]
+            return vertex
+
+        clearance = self.clearance.tolist()
+        tree: dict[int, list[int]] = {}
+        found = []
+        # Parts of segments grow down from the vertices with most clearance, until they meet.
+        for vertex in np.argsort(-self.clearance, kind="stable").tolist():
+            if self._segment[vertex] < 0:
+                continue
+            above[vertex], peak[vertex], tree[vertex] = vertex, clearance[vertex], []
+            best = None
+            for other in sorted(self._onward(vertex), key=lambda w: -clearance[w]):
+                if other not in above or top(vertex) == top(other):
+                    continue
+                first, second = top(vertex), top(other)
+                lower = min(peak[first], peak[second])
+                if best is None:
+                    best = other  # the side of the vertex itself from now on
+                elif lower >= 2 * clearance[vertex] or clearance[vertex] < self.radius <= lower:
+                    way = (vertex, *self._roomward(tree, best), *self._roomward(tree, other))
+                    found.append(self._corridor(way))
+                peak[first] = max(peak[first], peak[second])
+                above[second] = first
+                tree[vertex].append(other)
+                tree[other].append(vertex)
+        return sorted(found, key=lambda corridor: corridor.width_m)
+
+    def _onward(self, vertex: int) -> Iterator[int]:
+        """The neighbors of a vertex to which its segment leads on."""
+        for other in self._nearby.around[vertex]:
+            if self._segment[other] == self._segment[vertex] and self._joined(vertex, other):
+                yield other
+
+    def _corridor(self, way: tuple[int, ...]) -> Corridor:
+        x, y, z = self._nearby.surface.vertices[way[0]].tolist()
+        width = 2 * float(self.clearance[way[0]])
+        return Corridor(self._segment[way[0]], width, (x, y, z), way)
+
+    def _roomward(self, tree: dict[int, list[int]], first: int) -> list[int]:
+        """The vertices on the way from one to where the tool has room, that one left out."""
+        before = {first: first}
+        queue = deque([first])
+        while queue:
+            vertex = queue.popleft()
+            if self.clearance[vertex] >= self.radius:
+                way = []
+                while vertex != first:
+                    vertex = before[vertex]
+                    way.append(vertex)
+                return way
+            for other in tree[vertex]:
+                if other not in before:
+                    before[other] = vertex
+                    queue.append(other)
+        return []
+
+    def repeated(self, narrow: Iterable[Corridor]) -> float:
+        """The area in m² of other segments that a tool passes over where it cannot stay inside.
+
+        Its center goes through narrow corridors. Then, as long as there are vertices that it has
+        not reached, to a mesh edge, it is put on the one of these that has most clearance.
+        """
+        segment, clearance = self._segment, self.clearance.tolist()
+        reach = self.radius + self._nearby.mean_edge
+        left = {v for v, own in enumerate(segment) if own >= 0}
+        inside: dict[int, list[tuple[float, int]]] = {}
+        for vertex in left:
+            if clearance[vertex] >= self.radius:
+                inside.setdefault(segment[vertex], []).append((0.0, vertex))
+        for own, starts in inside.items():
+            reached = within(self._nearby, starts, reach)
+            left.difference_update(v for v in reached if segment[v] == own)
+        centers = {vertex for corridor in narrow for vertex in corridor.way}
+        for vertex in sorted(left, key=lambda v: (-clearance[v], v)):
+            if vertex in left:
+                centers.add(vertex)
+                reached = within(self._nearby, [(0.0, vertex)], reach)
+                left.difference_update(v for v in reached if segment[v] == segment[vertex])
+        passed: set[int] = set()
+        for vertex in centers:
+            reached = within(self._nearby, [(0.0, vertex)], self.radius)
+            passed.update(v for v in reached if segment[v] not in (-1, segment[vertex]))
+        return float(self._nearby.areas[sorted(passed)].sum())

@@ -1,0 +1,130 @@
+"""Vertices change from one segment to another, and every segment stays in one piece."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterable, Mapping
+
+from cellcolor.arrays import Array, Index
+from cellcolor.deadline import Deadline
+from cellcolor.painting.nearby import Nearby
+from cellcolor.union_find import UnionFind
+
+__all__ = ["Relabelling"]
+
+_LEAST = 1e-6
+"""What a move has to gain, as a share of the mean mesh edge."""
+
+
+class Relabelling:
+    """A painting whose vertices can change their segments.
+
+    Attributes:
+        segment: of each vertex, -1 where it has no color.
+        color_of: the color of each segment.
+        held: vertices that stay where they are.
+    """
+
+    def __init__(
+        self, nearby: Nearby, segment_of: Index, color_of: Mapping[int, int], toll: Array | None
+    ) -> None:
+        """``toll`` (n, colors): what a vertex of a color costs, in m of border; None: nothing."""
+        self._nearby = nearby
+        self._surface = nearby.surface
+        self._colors = [frozenset(colors) for colors in self._surface.vertex_colors]
+        self._toll = None if toll is None else toll.tolist()
+        self._least = _LEAST * nearby.mean_edge
+        self.segment: list[int] = segment_of.tolist()
+        self.color_of = color_of
+        self.held: set[int] = set()
+
+    def shorten(self, deadline: Deadline) -> None:
+        """Move borders as long as tolls and lengths, added up, get smaller.
+
+        Every move makes the sum smaller by a least amount, so this ends.
+        """
+        around, segment = self._nearby.around, self.segment
+        queue = deque(v for v, own in enumerate(segment) if self._at_border(v, own))
+        queued = set(queue)
+        while queue:
+            deadline.check()
+            vertex = queue.popleft()
+            queued.discard(vertex)
+            if not self._improved(vertex):
+                continue
+            beside = {vertex, *around[vertex]}
+            for other, _, _ in self._nearby.near(vertex):
+                if other in queued or not (other in beside or self._at_border(other)):
+                    continue
+                queue.append(other)
+                queued.add(other)
+
+    def _at_border(self, vertex: int, own: int | None = None) -> bool:
+        segment = self.segment
+        own = segment[vertex] if own is None else own
+        return own >= 0 and any(segment[w] not in (own, -1) for w in self._nearby.around[vertex])
+
+    def _improved(self, vertex: int) -> bool:
+        """Give a vertex to the neighboring segment that gains most by it, if any gains."""
+        segment = self.segment
+        own = segment[vertex]
+        if own < 0 or vertex in self.held:
+            return False
+        beside = {segment[w] for w in self._nearby.around[vertex]} - {own, -1}
+        weight = dict.fromkeys([own, *beside], 0.0)
+        for other, _, share in self._nearby.near(vertex):
+            if segment[other] in weight:
+                weight[segment[other]] += share
+        change = {
+            new: weight[own] - weight[new] + self._change_of_toll(vertex, own, new)
+            for new in beside
+        }
+        for new in sorted(beside, key=lambda number: (change[number], number)):
+            if change[new] > -self._least:
+                return False
+            if self.give(vertex, new):
+                return True
+        return False
+
+    def _change_of_toll(self, vertex: int, own: int, new: int) -> float:
+        color = self.color_of[new]
+        if self._toll is None or color not in self._colors[vertex]:
+            return 0.0
+        toll = self._toll[vertex]
+        return float(toll[color] - toll[self.color_of[own]])
+
+    def give(self, vertex: int, new: int) -> bool:
+        """Give a vertex to another segment if that is legal; says whether it was."""
+        legal = self.color_of[new] in self._colors[vertex] and self._keeps_segments(vertex, new)
+        if legal:
+            self.segment[vertex] = new
+        return legal
+
+    def _keeps_segments(self, vertex: int, new: int) -> bool:
+        """Whether no segment falls apart, closes in on itself, or touches one of its color."""
+        own = self.segment[vertex]
+        for other in self._nearby.around[vertex]:
+            number = self.segment[other]
+            if number in (own, new, -1):
+                continue
+            color = self.color_of[number]
+            alike = color in (self.color_of[own], self.color_of[new])
+            if alike and color not in self._surface.cracked(vertex, other):
+                return False
+        return self._pieces_beside(vertex, own) == 1 == self._pieces_beside(vertex, new)
+
+    def _pieces_beside(self, vertex: int, number: int) -> int:
+        """In how many pieces a segment meets a vertex, joined with each other around it."""
+        color, segment, cracked = self.color_of[number], self.segment, self._surface.cracked
+        linked: UnionFind[int] = UnionFind()
+        for a, b in self._nearby.link[vertex]:
+            if segment[a] == number == segment[b] and color not in cracked(a, b):
+                linked.union(a, b)
+        met = self._met(vertex, number, color)
+        return len({linked[w] for w in met})
+
+    def _met(self, vertex: int, number: int, color: int) -> Iterable[int]:
+        cracked = self._surface.cracked
+        for other in self._nearby.around[vertex]:
+            if self.segment[other] == number and color not in cracked(vertex, other):
+                yield other

@@ -1,0 +1,190 @@
+"""Borders that are moved: segments stay whole, corridors get wide, borders cheap and short."""
+
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from painted import assert_whole, random_solution
+
+import cellcolor
+from cellcolor.data.plan import Plan
+from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.decomposition import decomposition_of
+from cellcolor.errors import InputError
+from cellcolor.lab.families.blobs import blobs
+from cellcolor.lab.families.meshes import grid_faces
+from cellcolor.lab.families.voronoi import voronoi
+from cellcolor.painting.moving import border_length, move_borders
+from cellcolor.painting.paint import Painted, paint
+
+
+def grid(
+    columns: int, rows: int, segment: list[list[int]], cracks: tuple[Crack, ...] = (), **own: object
+) -> Painted:
+    """A painting of a grid of 1 m squares; each segment in a color of its own, which is everywhere.
+
+    Args:
+        segment: of each vertex, row by row.
+        own: ``c3=(0, 1)``, say: the vertices of column 3 have these colors only.
+    """
+    places = [[x, y, 0.0] for y in range(rows) for x in range(columns)]
+    numbers = np.array(segment, dtype=np.int64).ravel()
+    every = tuple(range(int(numbers.max()) + 1))
+    colors = tuple([own.get(f"c{int(x)}", every) for x, _, _ in places])
+    surface = LabelledSurface(
+        "grid", tuple(f"c{k}" for k in every), places, grid_faces(rows, columns), colors, cracks
+    )
+    same = np.arange(len(places))
+    plan = Plan(tuple(numbers.tolist()))
+    return Painted(surface, plan, len(every), numbers, same, np.stack([same, same], axis=1), ())
+
+
+@given(st.integers(0, 10**6), st.sampled_from(["disc", "annulus", "sphere", "torus"]))
+@settings(max_examples=40, deadline=None)
+def test_segments_stay_what_they_are(seed: int, shape: str) -> None:
+    """Random divisions, random costs: held to a flooding of the mesh, and to the report."""
+    rng = random.Random(seed)
+    surface = voronoi(
+        seed, shape, size=rng.randint(8, 12), regions=rng.randint(3, 9), colors=rng.randint(2, 4),
+        coverage=(0.5, 0.9), cracks=rng.choice((0, 6)), holes=rng.choice((0, 2)),
+    )  # fmt: skip
+    decomposition = decomposition_of(surface)
+    solution = random_solution(decomposition.instance, rng.randint(1, 2), rng)
+    drawn = paint(surface, decomposition, solution)
+    shape = (len(drawn.surface.vertices), len(surface.colors))
+    cost = np.random.default_rng(seed).random(shape) if seed % 2 else None
+    moved = move_borders(drawn, cost=cost)
+    assert_whole(surface, moved, solution)
+    assert moved.merged == drawn.merged and moved.segments == drawn.segments
+    assert moved.borders.moved == (moved.segment_of != drawn.segment_of).sum()
+    for painting, said in ((drawn, moved.borders.before), (moved, moved.borders.after)):
+        assert said.length_m == pytest.approx(length_by_hand(painting))
+        if cost is not None:
+            own = painting.segment_of >= 0
+            colors = [color for color in painting.plan.vertex_colors if color is not None]
+            areas = painting.surface.vertex_areas[own]
+            assert said.cost == pytest.approx((cost[own, colors] * areas).sum() / areas.sum())
+
+
+def length_by_hand(painting: Painted) -> float:
+    """Triangle by triangle: what lies between the parts of different segments."""
+    total = 0.0
+    for face in painting.surface.faces.tolist():
+        places = painting.surface.vertices[face]
+        own = painting.segment_of[face]
+        crossed = [
+            (places[k] + places[k - 1]) / 2
+            for k in range(3)
+            if own[k] != own[k - 1] and -1 not in (own[k], own[k - 1])
+        ]
+        if len(crossed) == 2:
+            total += math.dist(*crossed)
+        else:
+            total += sum(math.dist(middle, places.mean(axis=0)) for middle in crossed)
+    return total
+
+
+def test_a_border_becomes_straight() -> None:
+    """Teeth between two ends that only one color reaches: the shortest border is straight."""
+    rows = [[0] * (9 if y % 4 < 2 else 5) + [1] * (6 if y % 4 < 2 else 10) for y in range(12)]
+    drawn = grid(15, 12, rows, c0=(0,), c14=(1,))
+    moved = move_borders(drawn)
+    assert border_length(drawn.surface, drawn.segment_of) > 25
+    assert moved.borders.after.length_m == pytest.approx(11, abs=0.5)
+
+
+def test_a_border_goes_where_colors_cost_the_same() -> None:
+    """Color 0 is good on the left, color 1 on the right; the border begins far from there."""
+    drawn = grid(21, 8, [[0] * 3 + [1] * 18] * 8)
+    way = drawn.surface.vertices[:, 0] / 20
+    moved = move_borders(drawn, cost=np.stack([way, 1 - way], axis=1))
+    assert moved.borders.after.cost < moved.borders.before.cost
+    # The same cost is at x = 10. Length has no part in it: it is 7 m everywhere.
+    border = moved.segment_of.reshape(8, 21).sum(axis=1)
+    assert (abs(border - 10.5) <= 1).all()
+
+
+def test_a_corridor_becomes_as_wide_as_the_tool() -> None:
+    """Two fields of segment 0, joined by one row of vertices through segment 1."""
+    rows = [[0] * 8 + [1] * 12 + [0] * 8 for _ in range(15)]
+    rows[7] = [0] * 28
+    upper = [
+        [2 if y > 7 and number == 1 else number for number in row] for y, row in enumerate(rows)
+    ]
+    drawn = grid(28, 15, upper)
+    for radius, narrow in ((2.0, 0), (3.0, 0)):
+        moved = move_borders(drawn, radius)
+        before, after = moved.borders.before, moved.borders.after
+        assert before.narrow == 1 and before.narrowest.width_m == pytest.approx(1.0)
+        assert before.narrowest.segment == 0 and before.narrowest.place[1] == 7
+        assert after.narrow == narrow
+        # Counted here: rows of segment 0 in each column between the fields.
+        across = (moved.segment_of.reshape(15, 28) == 0).sum(axis=0)[8:20]
+        assert across.min() >= 2 * radius
+
+
+def test_a_corridor_that_cannot_be_wider_is_told_with_its_place() -> None:
+    """As before, but no other color than their own reaches what is beside the corridor."""
+    rows = [[0] * 8 + [1] * 12 + [0] * 8 for _ in range(15)]
+    rows[7] = [0] * 28
+    upper = [
+        [2 if y > 7 and number == 1 else number for number in row] for y, row in enumerate(rows)
+    ]
+    drawn = grid(28, 15, upper)
+    colors = tuple((number,) for number in drawn.segment_of.tolist())
+    fixed = replace(drawn, surface=replace(drawn.surface, vertex_colors=colors))
+    moved = move_borders(fixed, 2.0)
+    report = moved.borders
+    assert report.moved == 0 and report.after == report.before
+    assert report.after.narrow == 1 and not report.stays_inside
+    assert 8 <= report.after.narrowest.place[0] <= 19
+    # The center runs along 12 columns and sees 2 m of others above, 2 m below: rows at 1 m, 2 m.
+    assert report.after.repeated_m2 == pytest.approx(12 * 4)
+
+
+def test_a_crack_holds_a_segment_together_as_it_is() -> None:
+    """Beside a crack of its color a segment hangs together round the crack's end only."""
+    columns, rows = 9, 7
+    surface = grid(columns, rows, [[0] * columns] * rows).surface
+    cracked = tuple(
+        Crack(a, b, (0,))
+        for a, b in sorted({(min(e), max(e)) for e in surface.left_of})
+        if {a % columns, b % columns} == {3, 4} and max(a, b) < columns * (rows - 1)
+    )
+    # Segment 0 goes round the crack through the last row; segment 1 is a spot above that.
+    spot = [[0] * columns for _ in range(rows)]
+    for y in range(3, 5):
+        spot[y][6] = 1
+    moved = move_borders(grid(columns, rows, spot, cracked))
+    numbers = moved.segment_of.reshape(rows, columns)
+    assert (numbers[rows - 1, 3:5] == 0).all() and moved.segments == 2
+
+
+@pytest.mark.parametrize("radius", [0.0, -1.0, math.inf, math.nan])
+def test_a_radius_is_positive(radius: float) -> None:
+    drawn = grid(4, 4, [[0, 0, 1, 1]] * 4)
+    with pytest.raises(InputError, match="tool_radius_m: must be a positive number of meters"):
+        move_borders(drawn, radius)
+
+
+def test_a_cost_is_finite_and_given_for_each_vertex_and_color() -> None:
+    drawn = grid(4, 4, [[0, 0, 1, 1]] * 4)
+    for cost in (np.zeros((16, 3)), np.zeros(16), np.full((16, 2), np.nan)):
+        with pytest.raises(InputError, match=r"cost: needs a finite number for each of \(16, 2\)"):
+            move_borders(drawn, cost=cost)
+
+
+def test_painting_from_outside_moves_borders() -> None:
+    surface = blobs(4)
+    painted = cellcolor.paint(surface, cellcolor.solve(surface, search_space="surface"))
+    assert painted.borders.after.length_m < painted.borders.before.length_m
+    wide = cellcolor.paint(
+        surface, cellcolor.solve(surface, search_space="surface"), tool_radius_m=2.0
+    )
+    assert wide.borders.tool_radius_m == 2.0
