@@ -12,6 +12,9 @@ from cellcolor.data.solution import Solution as Solution
 from cellcolor.data.solution import SubCell as SubCell
 from cellcolor.data.surface import Crack as Crack
 from cellcolor.data.surface import LabelledSurface as LabelledSurface
+from cellcolor.data.trajectory import Trajectory as Trajectory
+from cellcolor.data.trajectory_verdict import Fault as Fault
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict as TrajectoryVerdict
 from cellcolor.deadline import OutOfTime as OutOfTime
 from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.judging import check as check

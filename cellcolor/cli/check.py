@@ -1,4 +1,4 @@
-"""``cellcolor check``: a solution against its instance, a plan against its labelled surface."""
+"""``cellcolor check``: a solution or a plan against what it was made for, or a trajectory."""
 
 from __future__ import annotations
 
@@ -10,14 +10,19 @@ from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_scheme
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_subject
+from cellcolor.cli.progress import judge_progress_of
 from cellcolor.cli.terminal import complain, print_json, say
 from cellcolor.data import plan as plan_file
+from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.subject import Subject
+from cellcolor.door.trajectories import format_of_claim, judge_trajectory, read_trajectory
 from cellcolor.errors import InputError
-from cellcolor.files.documents import read_document
+
+_SHOWN = 3  # faults of each kind
 
 
 def check_files(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -> Exit:
@@ -25,11 +30,15 @@ def check_files(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -
 
     Args:
         subject: an instance, a labelled surface or a scene.
-        claim: a solution of it, or a plan on its surface.
-        deadline: when the proven range that a plan is compared with has to be there.
+        claim: a solution of it, a plan on its surface, or a trajectory for the scene.
+        deadline: when the proven range that a plan or a trajectory is compared with has to be
+            there.
         as_json: one JSON object instead of lines.
     """
-    is_plan = _is_plan(claim)
+    form = format_of_claim(claim)  # anything else is read as a solution
+    if form == trajectory_file.FORMAT:
+        return _check_trajectory(subject, claim, deadline, as_json)
+    is_plan = form == plan_file.FORMAT
     try:
         opened = read_subject(subject, deadline if is_plan else NEVER)
     except OutOfTime:
@@ -52,12 +61,47 @@ def check_files(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -
     return Exit.DONE if verdict["valid"] else Exit.INVALID
 
 
-def _is_plan(claim: Path) -> bool:
-    """Whether a file says that it is a plan; anything else is read as a solution."""
+def _check_trajectory(subject: Path, claim: Path, deadline: Deadline, as_json: bool) -> Exit:
+    given = read_trajectory(claim)
     try:
-        return read_document(claim).get("format") == plan_file.FORMAT
-    except InputError:
-        return False
+        opened = read_subject(subject, deadline)
+        with judge_progress_of(claim) as report:
+            verdict = judge_trajectory(opened, given, deadline, report)
+    except InputError as error:
+        raise error if error.file else error.in_file(str(claim)) from error
+    except OutOfTime:
+        message = f"{claim}: unknown: the time limit came before there was a verdict"
+        complain(message)
+        if as_json:
+            print_json({"file": str(claim), "error": message})
+        return Exit.STOPPED
+    if as_json:
+        print_json({"file": str(claim)} | json.loads(verdict.to_json()))
+    else:
+        _print_trajectory(claim, verdict)
+    return Exit.DONE if verdict.valid else Exit.INVALID
+
+
+def _print_trajectory(claim: Path, verdict: TrajectoryVerdict) -> None:
+    said = count(sum(verdict.fault_counts.values()), "fault")
+    say(f"{claim}: {'valid' if verdict.valid else f'not valid, {said}'}")
+    for kind, number in verdict.fault_counts.items():
+        first = verdict.of_kind(kind)[:_SHOWN]
+        for fault in first:
+            say(f"  {fault}")
+        if number > len(first):
+            say(f"  {kind}: {number - len(first)} more")
+    seconds = "" if verdict.seconds is None else f", {verdict.seconds:.1f} s"
+    tested = f"{count(verdict.samples, 'sample')}, {count(verdict.tested, 'configuration')} tested"
+    say(f"  {count(verdict.strokes, 'stroke')}, {count(verdict.lift_offs, 'lift-off')}{seconds}")
+    say(f"  {tested}")
+    if verdict.minimum_lift_offs is not None:
+        extra = f"{verdict.claimed_extra} more stated, {verdict.unclaimed_extra} more not stated"
+        say(f"  fewest lift-offs on this surface, proved: {verdict.minimum_lift_offs}; {extra}")
+    if verdict.covered is not None:
+        say(f"  {verdict.covered}")
+    for note in verdict.notes:
+        say(f"  {note}")
 
 
 def _check_solution(subject: Subject, claim: Path) -> dict[str, Any]:

@@ -200,20 +200,22 @@ def solve(
 
 @cellcolor.command()
 @click.argument("subject", metavar="FILE", type=_INPUT)
-@click.argument("claim", metavar="SOLUTION.json|PLAN.json", type=_PATH)
+@click.argument("claim", metavar="SOLUTION.json|PLAN.json|TRAJECTORY", type=_PATH)
 @click.option(
     "--time-limit",
     metavar="S",
     type=_SECONDS,
     default=60.0,
     show_default=True,
-    help="Seconds, reading included, for the proven range that a plan is compared with.",
+    help="Seconds, reading included, for a trajectory, or for the proven range that a plan is "
+    "compared with.",
 )
 @click.option("--json", "as_json", is_flag=True, help="One JSON object.")
 def check(subject: Path, claim: Path, time_limit: float, as_json: bool) -> int:
-    """Check a solution against what was solved, or a plan against its labelled surface.
+    """Check a solution, a plan on a labelled surface, or a trajectory for a scene.
 
-    FILE is an instance, a labelled surface or a scene; a plan needs one of the last two.
+    FILE is what was solved, an instance, a labelled surface or a scene; for a plan it leads to a
+    surface, for a trajectory (.json or .csv) it is the scene.
     """
     begun = time.monotonic()
 

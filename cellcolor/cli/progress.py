@@ -58,6 +58,20 @@ def build_progress_of(file: Path) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
+def judge_progress_of(file: Path) -> Iterator[Callable[[str], None]]:
+    """A line with the time spent and what of a trajectory is judged, if there is a terminal."""
+    name = shown(file.name)
+    with _line(f"{name}: judging") as show:
+
+        def report(stage: str) -> None:
+            INTERRUPTS.check()
+            if show is not None:
+                show(f"{name}: {stage}")
+
+        yield report
+
+
+@contextmanager
 def _line(text: str) -> Iterator[Callable[[str], None] | None]:
     """A line that can be replaced; None without a terminal."""
     if not sys.stderr.isatty():

@@ -1,43 +1,82 @@
-"""``cellcolor.check`` for solutions; ``judge`` and ``proven_range`` for other planners' plans."""
+"""``check`` for solutions and trajectories; ``judge``, ``proven_range`` for others' plans."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from os import PathLike
+from typing import Any, overload
 
 from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import Report, check_solution
 from cellcolor.checker.known_results import contradictions
 from cellcolor.data.solution import Solution
+from cellcolor.data.trajectory import FORMAT as TRAJECTORY
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import Deadline
 from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.result import Result
 from cellcolor.door.solving import deadline_after
 from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.door.trajectories import format_of_claim, judge_trajectory, read_trajectory
 from cellcolor.oracle import ProvenRange, Verdict
 
 __all__ = ["check", "judge", "judge_by", "proven_range"]
 
 
-def check(instance: Solvable, solution: Solution | Result | str | PathLike[str]) -> Report:
-    """An independent checker's opinion of a solution: its division, and every number in it.
+@overload
+def check(instance: Solvable, solution: Solution | Result) -> Report: ...
 
-    What the instance itself says is known (``known``) must not be contradicted either. Lower
-    bounds are verified by their certificates; those without one are taken on trust as far as
-    nothing contradicts them (docs/semantics.md).
+
+@overload
+def check(
+    instance: Solvable, solution: Trajectory, *, time_limit: float | None = 60.0
+) -> TrajectoryVerdict: ...
+
+
+@overload
+def check(
+    instance: Solvable, solution: str | PathLike[str], *, time_limit: float | None = 60.0
+) -> Any: ...
+
+
+def check(
+    instance: Solvable,
+    solution: Solution | Result | Trajectory | str | PathLike[str],
+    *,
+    time_limit: float | None = 60.0,
+) -> Report | TrajectoryVerdict:
+    """An independent checker's opinion of a solution or of a trajectory.
+
+    Of a solution its division is checked, and every number in it. What the instance itself says is
+    known (``known``) must not be contradicted either. Lower bounds are verified by their
+    certificates; those without one are taken on trust as far as nothing contradicts them
+    (docs/semantics.md). A trajectory is held against its scene, with the proven minimum of
+    lift-offs beside its own (docs/judging-trajectories.md).
 
     Args:
         instance: what was solved: an instance, a labelled surface or a scene; its file, its
-            shipped name, the value.
-        solution: the solution or its file.
+            shipped name, the value. A scene for a trajectory.
+        solution: the solution, the trajectory, or the file of one of them; tables of trajectories
+            are told by their suffix, ``.csv``.
+        time_limit: seconds for all of it with a trajectory; None for as long as it takes.
 
     Returns:
-        What is wrong, ``problems``, each naming its element; the segments counted; and for each
-        of the solution's bounds whether it was verified.
+        Of a solution what is wrong, ``problems``, each naming its element; the segments counted;
+        and for each of the solution's bounds whether it was verified. Of a trajectory its verdict.
+        Type checkers are told ``Any`` of a file.
 
     Raises:
         InputError: one of the two cannot be used.
+        OutOfTime: the time limit came before there was a verdict on a trajectory.
     """
+    if isinstance(solution, (str, PathLike)) and format_of_claim(solution) == TRAJECTORY:
+        deadline = deadline_after(time_limit)
+        read = read_trajectory(solution)
+        return judge_trajectory(open_subject(instance, deadline), read, deadline)
+    if isinstance(solution, Trajectory):
+        deadline = deadline_after(time_limit)
+        return judge_trajectory(open_subject(instance, deadline), solution, deadline)
     subject = open_subject(instance)
     graph = subject.graph()
     if isinstance(solution, Result):

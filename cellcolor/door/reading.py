@@ -5,16 +5,20 @@ from __future__ import annotations
 import re
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from cellcolor.data import instance as instance_file
 from cellcolor.data import plan as plan_file
 from cellcolor.data import solution as solution_file
 from cellcolor.data import surface as surface_file
+from cellcolor.data import trajectory as trajectory_file
+from cellcolor.data import trajectory_verdict as verdict_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.door.extras import extras_for
 from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import is_scene
@@ -26,22 +30,25 @@ if TYPE_CHECKING:
 
 __all__ = ["read"]
 
-_KINDS: dict[str, type[LabelledSurface] | type[Instance] | type[Solution] | type[Plan]] = {
+_Value: TypeAlias = LabelledSurface | Instance | Solution | Plan | Trajectory | TrajectoryVerdict
+_KINDS: dict[str, type[_Value]] = {
     surface_file.FORMAT: LabelledSurface,
     instance_file.FORMAT: Instance,
     solution_file.FORMAT: Solution,
     plan_file.FORMAT: Plan,
+    trajectory_file.FORMAT: Trajectory,
+    verdict_file.FORMAT: TrajectoryVerdict,
 }
 _SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
 """The table, or a key of it, that every setup has and no scene."""
 
 
 def read(source: str | PathLike[str]) -> Any:
-    """The value in a file: a scene, a robot's setup, a surface, an instance, a solution or a plan.
+    """The value in a file: scene, setup, surface, instance, solution, plan, trajectory or verdict.
 
     Scenes and setups are told by their suffix, ``.toml``, all else by its ``format``. Of a file of
     optimal schemes it is the solution in the first line. Type checkers are told ``Any``: whoever
-    names the file knows what is in it, and would have to rule out the other five every time.
+    names the file knows what is in it, and would have to rule out all others every time.
 
     Args:
         source: the file, as a text or a path, or as a text the name of a shipped one

@@ -19,12 +19,21 @@ from typing import Any
 from pydantic import TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
-from cellcolor.data import bound, coverage, instance, plan, solution, surface
+from cellcolor.data import (
+    bound,
+    coverage,
+    instance,
+    plan,
+    solution,
+    surface,
+    trajectory,
+    trajectory_verdict,
+)
 
 FOLDER = Path(__file__).parent
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-MODULES = (bound, coverage, instance, plan, solution, surface)
+MODULES = (bound, coverage, instance, plan, solution, surface, trajectory, trajectory_verdict)
 """Where the classes are that the schemas have definitions of."""
 
 
@@ -54,6 +63,13 @@ FORMATS = {
         solution.SCHEME_FORMAT, None, solution._SCHEME_ADAPTER, solution._SchemeLine
     ),
     "plan-1": Format(plan.FORMAT, 1, plan._ADAPTER, plan.Plan),
+    "trajectory-1": Format(trajectory.FORMAT, 1, trajectory._ADAPTER, trajectory.Trajectory),
+    "trajectory-verdict-1": Format(
+        trajectory_verdict.FORMAT,
+        1,
+        trajectory_verdict._ADAPTER,
+        trajectory_verdict.TrajectoryVerdict,
+    ),
 }
 """The JSON formats by the names of their schemas' files."""
 

@@ -7,7 +7,19 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import pytest
-from documents import INSTANCE, PLAN, SOLUTION, SURFACE, Change, Document, broken, drop, put
+from documents import (
+    INSTANCE,
+    PLAN,
+    SOLUTION,
+    SURFACE,
+    TRAJECTORY,
+    VERDICT,
+    Change,
+    Document,
+    broken,
+    drop,
+    put,
+)
 from hypothesis import given
 from library import INSTANCES, PAPER
 from meshes import surfaces
@@ -23,12 +35,14 @@ from cellcolor.data.solution import (
     scheme_line,
 )
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 
 
 class Kind(Protocol):
-    """Any of the four formats."""
+    """Any of the formats."""
 
     @classmethod
     def from_document(cls, document: Document) -> Any: ...
@@ -41,6 +55,8 @@ KINDS: dict[type[Kind], Document] = {
     Instance: INSTANCE,
     Solution: SOLUTION,
     Plan: PLAN,
+    Trajectory: TRAJECTORY,
+    TrajectoryVerdict: VERDICT,
 }
 
 
@@ -293,12 +309,34 @@ PLAN_FAULTS = {
 }
 
 
+TRAJECTORY_FAULTS = {
+    "too few joints": (put("joints", 1, to=[0.5]), "joints", "rows of numbers"),
+    "joints of another arm": (put("joint_names", to=["pan"]), "joints", "needs 1 numbers"),
+    "too few times": (put("times", to=[0.0, 1.0]), "joints", "has 3 entries for 2 times"),
+    "endless time": (put("times", 1, to=float("inf")), "times[1]", "number"),
+    "flat points": (put("points", 0, to=[0.0, 0.0]), "points[0][2]", "required"),
+    "contact as a number": (put("contact", 0, to=1), "contact[0]", "boolean"),
+    "half a segment": (put("segment", 0, to=0.5), "segment[0]", "integer"),
+    "sample as text": (put("unplanned", 0, to="1"), "unplanned[0]", "integer"),
+    "no reason": (drop("left_out", 0, "reason"), "left_out[0].reason", "required"),
+    "unknown member": (put("extra_lift_offs", 0, "why", to=""), "extra_lift_offs[0].why", "Un"),
+}
+
+VERDICT_FAULTS = {
+    "valid in spite of faults": (put("valid", to=True), "valid", "something else"),
+    "unknown kind": (put("faults", 0, "kind", to="ugly"), "faults[0].kind", "Input should be"),
+    "fewer than none": (put("strokes", to=-1), "strokes", "greater than or equal to 0"),
+}
+
+
 def _cases() -> list[Any]:
     faults = {
         LabelledSurface: SURFACE_FAULTS,
         Instance: INSTANCE_FAULTS,
         Solution: SOLUTION_FAULTS,
         Plan: PLAN_FAULTS,
+        Trajectory: TRAJECTORY_FAULTS,
+        TrajectoryVerdict: VERDICT_FAULTS,
     }
     return [
         pytest.param(kind, *fault, id=f"{kind.__name__}: {name}")

@@ -74,6 +74,76 @@ PLAN: Document = {
     "vertex_colors": [0, 0, 1, None],
 }
 
+TRAJECTORY: Document = {
+    "format": "cellcolor/trajectory",
+    "version": 1,
+    "name": "three samples",
+    "joint_names": ["pan", "lift"],
+    "times": [0.0, 0.5, 1.0],
+    "joints": [[0.0, 1.0], [0.25, 1.5], [0.5, 1.0]],
+    "points": [[0.0, 0.0, 1.0], [0.5, 0.0, 1.0], [1.0, 0.0, 1.0]],
+    "normals": [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]],
+    "contact": [True, False, True],
+    "segment": [0, -1, 0],
+    "unplanned": [1],
+    "extra_lift_offs": [
+        {
+            "sample": 0,
+            "segment": 0,
+            "reason": "winding",
+            "text": "pan would run out of its limits",
+            "place": [0.0, 0.0, 1.0],
+        }
+    ],
+    "left_out": [
+        {"segment": 0, "area_m2": 0.5, "reason": "torque", "place": [0.5, 0.0, 1.0]},
+    ],
+    "meta": {"made": "by hand"},
+}
+
+VERDICT: Document = {
+    "format": "cellcolor/trajectory-verdict",
+    "version": 1,
+    "valid": False,
+    "name": "three samples",
+    "samples": 3,
+    "tested": 101,
+    "timed": True,
+    "seconds": 1.0,
+    "strokes": 2,
+    "lift_offs": 1,
+    "claimed_extra": 1,
+    "minimum_lift_offs": 0,
+    "unclaimed_extra": 0,
+    "fault_counts": {"jump": 1},
+    "faults": [
+        {
+            "kind": "jump",
+            "text": "pan moves by 6.283 rad to the next sample",
+            "sample": 0,
+            "last_sample": 1,
+            "time": 0.0,
+            "joint": "pan",
+            "reason": None,
+            "place": [0.0, 0.0, 1.0],
+        }
+    ],
+    "covered": {
+        "reachable_m2": 2.0,
+        "spacing_m": 0.25,
+        "covered_share": 0.5,
+        "closely_covered_share": 0.25,
+        "left_out_share": 0.125,
+        "uncovered_m2": 0.75,
+        "mean_visits": 1.5,
+        "most_visits": 2,
+        "repeated_m": 0.25,
+        "length_m": 4.0,
+        "length_times_spacing_per_area": 0.5,
+    },
+    "notes": ["The setup has no [motion], so accelerations are not judged."],
+}
+
 Change = Callable[[Document], None]
 
 

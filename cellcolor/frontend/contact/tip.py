@@ -38,6 +38,11 @@ class Tip:
         )
         self._obstacles, self._ground = obstacles, ground
 
+    @property
+    def length(self) -> float:
+        """From the tip back to where the tool's body begins, m."""
+        return self._body.length
+
     def blocked(self, points: Array, directions: Array) -> Mask:
         """Whether something is in the way, (k,).
 

@@ -1,0 +1,237 @@
+"""Verdicts on trajectories: what is wrong with one, where and when, and what it covers."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass
+from os import PathLike
+from typing import Annotated, Any, Literal
+
+from pydantic import ConfigDict, Field, TypeAdapter
+
+from cellcolor.data.wording import count
+from cellcolor.errors import InputError
+from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.validation import settle
+
+FORMAT = "cellcolor/trajectory-verdict"
+
+FaultKind = Literal[
+    "time",
+    "jump",
+    "joint limit",
+    "velocity",
+    "acceleration",
+    "pose",
+    "off surface",
+    "tilted",
+    "invalid",
+    "branch",
+    "crack",
+    "unplanned",
+    "claim",
+    "uncovered",
+    "repeated",
+]
+"""What can be wrong; docs/judging-trajectories.md says what each one means."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """Something that is wrong with a trajectory.
+
+    Attributes:
+        kind: what sort of fault.
+        text: a sentence with the measure and what is allowed.
+        sample: the first sample at fault, or the one before it where the fault lies between two;
+            None where no sample is at fault, as with area that none comes near.
+        last_sample: the last sample of the same stretch; equal to ``sample`` for a single one.
+        time: of ``sample``, s; None without it, and where the trajectory has no times.
+        joint: the joint's name, None where the fault is no single joint's.
+        reason: the test that fails, of the kind ``invalid``.
+        place: where the tool's tip is, or the area, in the world, m.
+    """
+
+    kind: FaultKind
+    text: str
+    sample: int | None = None
+    last_sample: int | None = None
+    time: float | None = None
+    joint: str | None = None
+    reason: str | None = None
+    place: tuple[float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+    def __str__(self) -> str:
+        where = "" if self.sample is None else f"sample {self.sample}"
+        if self.last_sample is not None and self.last_sample != self.sample:
+            where = f"samples {self.sample} to {self.last_sample}"
+        if self.time is not None:
+            where += f" at {self.time:.3f} s"
+        if self.place is not None:
+            x, y, z = self.place
+            where += f"{' ' if where else ''}({x:.3f}, {y:.3f}, {z:.3f}) m"
+        return f"{self.kind}: {where}{': ' if where else ''}{self.text}"
+
+
+@dataclass(frozen=True, slots=True)
+class CoveredArea:
+    """What the tool goes over, of the area that the labelled surface has a color for.
+
+    Distances are along the surface. A visit of a point is a pass within half the spacing.
+
+    Attributes:
+        reachable_m2: the area that has a color.
+        spacing_m: the wanted distance between neighboring passes, from the setup.
+        covered_share: share of it within 1.5 times the spacing of a pass.
+        closely_covered_share: share of it within 0.75 times the spacing of a pass.
+        left_out_share: share of it that the trajectory states to leave out, that is not closely
+            covered, and where the segment's configuration is indeed not valid.
+        uncovered_m2: the area farther than 1.5 times the spacing from any pass and not so excused.
+        mean_visits: of the area visited at all.
+        most_visits: of any place.
+        repeated_m: length of the passes that run along an earlier one.
+        length_m: of all that is done in contact.
+        length_times_spacing_per_area: 1 if passes lie side by side at just the spacing.
+    """
+
+    reachable_m2: float
+    spacing_m: float
+    covered_share: float
+    closely_covered_share: float
+    left_out_share: float
+    uncovered_m2: float
+    mean_visits: float
+    most_visits: int
+    repeated_m: float
+    length_m: float
+    length_times_spacing_per_area: float
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+    def __str__(self) -> str:
+        return (
+            f"covered {self.covered_share:.2%}, closely {self.closely_covered_share:.2%}, rightly "
+            f"left out {self.left_out_share:.2%} of {self.reachable_m2:.4f} m²; visits "
+            f"{self.mean_visits:.2f} on average, {self.most_visits} at most; {self.repeated_m:.3f} "
+            f"of {self.length_m:.2f} m along earlier passes"
+        )
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class TrajectoryVerdict:
+    """What an independent judge finds in a trajectory.
+
+    Attributes:
+        name: the trajectory's.
+        samples: how many it has.
+        tested: configurations tested, those between distant samples included.
+        timed: whether it has times; without them velocities and accelerations are not judged.
+        seconds: from the first sample to the last, s; None without times.
+        strokes: stretches in contact.
+        lift_offs: how often the tool is lifted off between two of them.
+        claimed_extra: extra lift-offs that the trajectory itself states, with a reason each.
+        minimum_lift_offs: the proven minimum that it is compared with, None if none was given.
+        unclaimed_extra: lift-offs beyond the minimum that the trajectory does not state; None
+            without a minimum.
+        fault_counts: how many faults of each kind there are.
+        faults: the first of each kind, at most a hundred of a kind.
+        covered: what it covers; None where that is not judged.
+        notes: what was not judged, and why, a sentence each.
+    """
+
+    name: str
+    samples: Annotated[int, Field(ge=0)]
+    tested: Annotated[int, Field(ge=0)]
+    timed: bool
+    seconds: float | None
+    strokes: Annotated[int, Field(ge=0)]
+    lift_offs: Annotated[int, Field(ge=0)]
+    claimed_extra: Annotated[int, Field(ge=0)]
+    minimum_lift_offs: int | None
+    unclaimed_extra: int | None
+    fault_counts: dict[FaultKind, int]
+    faults: tuple[Fault, ...]
+    covered: CoveredArea | None
+    notes: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+    @property
+    def valid(self) -> bool:
+        """Whether there is no fault."""
+        return not self.fault_counts
+
+    def of_kind(self, kind: FaultKind) -> tuple[Fault, ...]:
+        """The faults of one kind."""
+        return tuple(fault for fault in self.faults if fault.kind == kind)
+
+    def __str__(self) -> str:
+        faults = count(sum(self.fault_counts.values()), "fault")
+        said = "valid" if self.valid else f"not valid, {faults}"
+        return f"{self.name}: {said}, {count(self.lift_offs, 'lift-off')}"
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self}>"
+
+    def to_json(self) -> str:
+        """The file's text."""
+        document: dict[str, Any] = {"format": FORMAT, "version": 1, "valid": self.valid}
+        return dump_lines(document | asdict(self), frozenset({"faults"}))
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> TrajectoryVerdict:
+        """A verdict from a parsed JSON object.
+
+        Raises:
+            InputError: a member is missing, unknown or of the wrong type, or ``valid`` says
+                something else than the faults.
+        """
+        raw = validate(_ADAPTER, take_body(document, FORMAT))
+        verdict = cls(**{name: getattr(raw, name) for name in _MEMBERS})
+        if raw.valid != verdict.valid:
+            raise InputError(None, "valid", "says something else than fault_counts")
+        return verdict
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> TrajectoryVerdict:
+        """A verdict from a file.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        document = read_document(path)
+        try:
+            return cls.from_document(document)
+        except InputError as error:
+            raise error.in_file(str(path)) from error
+
+
+@dataclass(frozen=True, slots=True)
+class _VerdictFile:
+    """The file's members."""
+
+    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
+
+    valid: bool
+    name: str
+    samples: Annotated[int, Field(ge=0)]
+    tested: Annotated[int, Field(ge=0)]
+    timed: bool
+    seconds: float | None
+    strokes: Annotated[int, Field(ge=0)]
+    lift_offs: Annotated[int, Field(ge=0)]
+    claimed_extra: Annotated[int, Field(ge=0)]
+    minimum_lift_offs: int | None
+    unclaimed_extra: int | None
+    fault_counts: dict[FaultKind, int]
+    faults: tuple[Fault, ...]
+    covered: CoveredArea | None
+    notes: tuple[str, ...]
+
+
+_MEMBERS = tuple(TrajectoryVerdict.__dataclass_fields__)
+_ADAPTER = TypeAdapter(_VerdictFile)

@@ -1,0 +1,87 @@
+"""Trajectories at the front door: read from any of their files, and judged."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import TypeAlias
+
+from cellcolor.data import trajectory as trajectory_file
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.deadline import Deadline
+from cellcolor.door.extras import extras_for
+from cellcolor.door.subject import Subject
+from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document
+
+__all__ = ["ReadTrajectory", "format_of_claim", "judge_trajectory", "read_trajectory"]
+
+ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
+"""A trajectory, or a table that a scene's arm has to complete."""
+
+
+def format_of_claim(file: str | PathLike[str]) -> str | None:
+    """The format of what is to be checked; tables are told by their suffix, None if unreadable."""
+    if _is_table(file):
+        return trajectory_file.FORMAT
+    try:
+        form = read_document(file).get("format")
+    except InputError:
+        return None
+    return form if isinstance(form, str) else None
+
+
+def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:
+    """What is in a trajectory's file.
+
+    Raises:
+        InputError: it cannot be used; names file and member, or file, line and column.
+    """
+    return read_trajectory_csv(file) if _is_table(file) else Trajectory.read(file)
+
+
+def judge_trajectory(
+    subject: Subject,
+    given: ReadTrajectory,
+    deadline: Deadline,
+    progress: Callable[[str], None] | None = None,
+) -> TrajectoryVerdict:
+    """The verdict on a trajectory for a scene, the proven minimum beside it if it is found in time.
+
+    Raises:
+        InputError: the subject is no scene, or the trajectory is of another arm.
+        OutOfTime: the deadline came before there was a verdict.
+    """
+    from cellcolor import oracle
+
+    built = subject.build()
+    with extras_for("the front end"):
+        from cellcolor.frontend.prepared import prepare
+        from cellcolor.trajectory_checker.check import check_trajectory
+        from cellcolor.trajectory_checker.other_planners import completed
+
+    report = progress or (lambda _: None)
+    report("preparation")
+    prepared = prepare(built.scene, deadline)
+    timed = isinstance(given, Trajectory) or given.times is not None
+    if isinstance(given, TrajectoryTable):
+        given = completed(given, prepared.robot, deadline)
+    report("proven minimum")
+    # Half of the time is for the judge, who has something to say whatever is proved.
+    bounds = oracle.proven_range(built.surface, time_limit=deadline.share(0.5).left)
+    return check_trajectory(
+        prepared,
+        built,
+        given,
+        timed=timed,
+        minimum_lift_offs=max(0, bounds.lower - 1) if bounds.exact else None,
+        deadline=deadline,
+        progress=progress,
+    )
+
+
+def _is_table(file: str | PathLike[str]) -> bool:
+    return Path(file).suffix == ".csv"

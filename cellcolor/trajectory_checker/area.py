@@ -1,0 +1,145 @@
+"""The area judged: what is covered, what is rightly left out, what is gone over twice."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import CoveredArea
+from cellcolor.frontend.build import BuildResult
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.trajectory_checker.covered import excused, patches, reach, reachable_areas
+from cellcolor.trajectory_checker.dense import Dense
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
+from cellcolor.trajectory_checker.repeated import passes, repeated_stretches
+from cellcolor.trajectory_checker.tolerances import Limits
+
+__all__ = ["FAR", "NEAR", "judge_area", "thinned"]
+
+FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as closely covered
+_VISIT = 0.5  # spacings; a pass so near to a point is a visit of it
+_ALONG = 0.25  # spacings; a pass so near to an earlier one runs along it
+_APART = 2.0  # spacings of path between two places that belong to two passes
+_THINNED = 0.05  # spacings of path between two places of contact that are measured with
+
+
+def thinned(dense: Dense, rows: Index, spacing: float) -> Mask:
+    """Which places of contact (c,) to measure with: those some way after the one before."""
+    steps = np.linalg.norm(np.diff(dense.tips[rows], axis=0), axis=1)
+    begins = dense.stroke[rows[1:]] != dense.stroke[rows[:-1]]
+    number = np.floor(np.concatenate([[0.0], np.cumsum(steps)]) / (_THINNED * spacing))
+    kept = np.ones(len(rows), dtype=bool)
+    kept[1:] = begins | (np.diff(number) > 0)
+    kept[:-1] |= begins
+    kept[-1:] = True
+    return kept
+
+
+def judge_area(
+    prepared: PreparedScene,
+    built: BuildResult,
+    trajectory: Trajectory,
+    dense: Dense,
+    rows: Index,
+    located: Located,
+    branches: Index,
+    fine: FineMesh,
+    spacing: float,
+    limits: Limits,
+    faults: FaultList,
+) -> CoveredArea:
+    """Measure what is covered, and note what is not, and what is gone over too often.
+
+    Args:
+        rows: (c,) those of ``dense`` in contact, with their places and branches.
+    """
+    kept = thinned(dense, rows, spacing)
+    length = _length(dense, rows)
+    rows, branches = rows[kept], branches[kept]
+    located = Located(*(getattr(located, field.name)[kept] for field in fields(located)))
+    areas = reachable_areas(built, fine)
+    total = float(areas.sum())
+    reached = reach(fine, located, FAR * spacing)
+    missed = (areas > 0) & (reached.distance > NEAR * spacing)
+    right = excused(prepared, trajectory, dense, rows, branches, fine, reached, missed)
+    uncovered = missed & ~right & (reached.distance > FAR * spacing)
+    visits = passes(dense, rows, located, fine, _VISIT * spacing)
+    visited = (visits > 0) & (areas > 0)
+    twice = repeated_stretches(dense, rows, located, _ALONG * spacing, _APART * spacing)
+
+    def share(of: Mask) -> float:
+        return float(areas[of].sum() / total) if total else 0.0
+
+    covered = CoveredArea(
+        reachable_m2=total,
+        spacing_m=spacing,
+        covered_share=share(reached.distance <= FAR * spacing),
+        closely_covered_share=share(reached.distance <= NEAR * spacing),
+        left_out_share=share(right),
+        uncovered_m2=float(areas[uncovered].sum()),
+        mean_visits=float(np.average(visits[visited], weights=areas[visited]))
+        if visited.any()
+        else 0.0,
+        most_visits=int(visits[visited].max(initial=0)),
+        repeated_m=sum(stretch.length for stretch in twice),
+        length_m=length,
+        length_times_spacing_per_area=length * spacing / total if total else 0.0,
+    )
+    _note_uncovered(fine, areas, uncovered, missed & ~right, total, spacing, limits, faults)
+    if covered.mean_visits > limits.most_mean_visits:
+        text = (
+            f"a place is visited {covered.mean_visits:.3f} times on average, allowed are "
+            f"{limits.most_mean_visits:g}"
+        )
+        faults.add("repeated", text)
+    for stretch in twice:
+        if stretch.length <= limits.longest_repeated_spacings * spacing:
+            continue
+        first, last, begin, end = (
+            int(dense.sample[rows[row]])
+            for row in (stretch.first, stretch.last, stretch.earlier_first, stretch.earlier_last)
+        )
+        text = (
+            f"runs for {stretch.length:.4f} m along an earlier pass, samples {begin} to {end}, "
+            f"allowed are {limits.longest_repeated_spacings * spacing:.4f} m"
+        )
+        faults.add("repeated", text, first, last, place=dense.tips[rows[stretch.first]])
+    return covered
+
+
+def _note_uncovered(
+    fine: FineMesh,
+    areas: Array,
+    uncovered: Mask,
+    loosely: Mask,
+    total: float,
+    spacing: float,
+    limits: Limits,
+    faults: FaultList,
+) -> None:
+    """Note parts as large as a footprint that no pass comes near, and shares that are too low."""
+    for area, place in patches(fine, areas, uncovered):
+        if area > np.pi * spacing**2:
+            text = f"{area:.6f} m² are farther than {FAR * spacing:.4g} m from every pass"
+            faults.add("uncovered", text, place=place)
+    for mask, factor, least in (
+        (uncovered, FAR, limits.least_covered_share),
+        (loosely, NEAR, limits.least_closely_covered_share),
+    ):
+        share = 1 - float(areas[mask].sum()) / total if total else 1.0
+        if share < least:
+            text = (
+                f"{share:.3%} of the reachable area is within {factor * spacing:.4g} m of a pass "
+                f"or rightly left out, at least {least:.3%} has to be"
+            )
+            largest = patches(fine, areas, mask)[0]
+            faults.add("uncovered", text, place=largest[1])
+
+
+def _length(dense: Dense, rows: Index) -> float:
+    steps = np.linalg.norm(np.diff(dense.tips[rows], axis=0), axis=1)
+    return float(steps[dense.stroke[rows[1:]] == dense.stroke[rows[:-1]]].sum())

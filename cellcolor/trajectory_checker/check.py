@@ -1,0 +1,172 @@
+"""The verdict on a trajectory (docs/judging-trajectories.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import CoveredArea, TrajectoryVerdict
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
+from cellcolor.frontend.build import BuildResult
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.trajectory_checker.area import judge_area
+from cellcolor.trajectory_checker.dense import Dense, densified, poses_of
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.file_poses import judge_poses
+from cellcolor.trajectory_checker.fine_mesh import refined
+from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
+from cellcolor.trajectory_checker.on_surface import branches_of, judge_contact, judge_cracks
+from cellcolor.trajectory_checker.tolerances import Limits
+from cellcolor.trajectory_checker.validity import judge_validity
+
+__all__ = ["check_trajectory"]
+
+_FINE = 0.25  # spacings; the edges of the triangles that area is measured with
+_WITHOUT_SPACING = 0.005  # m; the same where the setup has no spacing
+
+
+def check_trajectory(
+    prepared: PreparedScene,
+    built: BuildResult,
+    trajectory: Trajectory,
+    *,
+    timed: bool = True,
+    minimum_lift_offs: int | None = None,
+    limits: Limits | None = None,
+    deadline: Deadline = NEVER,
+    progress: Callable[[str], None] | None = None,
+) -> TrajectoryVerdict:
+    """Judge a trajectory by its scene alone, whatever made it.
+
+    Args:
+        prepared: the scene.
+        built: the same scene's labelled surface: the area that has a color has to be covered.
+        trajectory: what is judged.
+        timed: whether its times mean anything; without them velocities are not judged.
+        minimum_lift_offs: what its lift-offs are compared with.
+        limits: what it has to cover and may repeat; the usual ones without.
+        deadline: when to give up.
+        progress: told what is being done.
+
+    Raises:
+        InputError: the trajectory is of another arm, or the setup's velocities are.
+        OutOfTime: the deadline came first.
+        TooLarge: surface or trajectory would not fit into memory.
+    """
+    report = progress or (lambda _: None)
+    robot, motion = prepared.robot, prepared.setup.motion
+    _check_arm(prepared, trajectory)
+    faults = FaultList(trajectory, timed)
+    notes: list[str] = []
+    report("joints")
+    tips, axes = poses_of(robot, trajectory.joints, deadline)
+    jumps = judge_joints(trajectory, tips, _joint_limits(prepared, timed, notes), timed, faults)
+    judge_poses(trajectory, robot, tips, axes, faults)
+    _judge_claims(trajectory, faults)
+    skip = jumps.copy()
+    skip[[sample for sample in trajectory.unplanned if sample < len(skip)]] = True
+    dense = densified(trajectory, robot, tips, axes, skip, deadline)
+    report("validity")
+    judge_validity(prepared, trajectory, dense, deadline, faults)
+    report("contact")
+    fine_edge = _WITHOUT_SPACING if motion is None else _FINE * motion.spacing_m
+    fine = refined(prepared.surface, fine_edge, deadline)
+    rows = np.flatnonzero(dense.contact)
+    located = fine.locate(dense.tips[rows], dense.outward[rows])
+    judge_contact(dense, rows, located, faults)
+    deadline.check()
+    branches = branches_of(prepared, dense, rows)
+    judge_cracks(built, dense, rows, located, branches, fine, faults)
+    covered: CoveredArea | None = None
+    if motion is None:
+        notes.append("The setup has no [motion], so area covered is not judged.")
+    else:
+        report("area")
+        deadline.check()
+        covered = judge_area(
+            prepared, built, trajectory, dense, rows, located, branches, fine, motion.spacing_m,
+            limits or Limits(), faults,
+        )  # fmt: skip
+    return _verdict(trajectory, dense, timed, minimum_lift_offs, faults, covered, notes)
+
+
+def _verdict(
+    trajectory: Trajectory,
+    dense: Dense,
+    timed: bool,
+    minimum: int | None,
+    faults: FaultList,
+    covered: CoveredArea | None,
+    notes: list[str],
+) -> TrajectoryVerdict:
+    lift_offs, claimed = trajectory.lift_offs, len(trajectory.extra_lift_offs)
+    return TrajectoryVerdict(
+        name=trajectory.name,
+        samples=len(trajectory.times),
+        tested=len(dense),
+        timed=timed,
+        seconds=trajectory.seconds if timed else None,
+        strokes=len(trajectory.strokes),
+        lift_offs=lift_offs,
+        claimed_extra=claimed,
+        minimum_lift_offs=minimum,
+        unclaimed_extra=None if minimum is None else max(0, lift_offs - minimum - claimed),
+        fault_counts=dict(faults.counts),
+        faults=tuple(faults.faults),
+        covered=covered,
+        notes=tuple(notes),
+    )
+
+
+def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:
+    names = prepared.robot.joint_names
+    if trajectory.joint_names != names:
+        message = f"must be {', '.join(names)}, are {', '.join(trajectory.joint_names)}"
+        raise InputError(None, "joint_names", message)
+    for member in ("unplanned", "extra_lift_offs"):
+        for number, entry in enumerate(getattr(trajectory, member)):
+            sample = entry if isinstance(entry, int) else entry.sample
+            if not 0 <= sample < len(trajectory.times):
+                raise InputError(None, f"{member}[{number}]", f"there is no sample {sample}")
+
+
+def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> JointLimits:
+    robot, setup = prepared.robot, prepared.setup
+    lower: Array | None = robot.lower
+    upper: Array | None = robot.upper
+    if not setup.constraints.collision:
+        lower = upper = None
+        notes.append("The setup leaves out collisions and joint limits.")
+    velocity = np.array(robot.model.velocityLimit, dtype=np.float64)
+    acceleration: Array | None = None
+    if not timed:
+        notes.append("There are no times, so velocities and accelerations are not judged.")
+    elif setup.motion is None:
+        notes.append("The setup has no [motion], so accelerations are not judged.")
+    if setup.motion is not None:
+        lowered = setup.motion.joint_velocities_rad_per_s
+        acceleration = np.array(setup.motion.joint_accelerations_rad_per_s2)
+        for key, given in (
+            ("joint_velocities_rad_per_s", lowered),
+            ("joint_accelerations_rad_per_s2", acceleration),
+        ):
+            if given is not None and len(given) != robot.joints:
+                message = f"needs {robot.joints} numbers, has {len(given)}"
+                file = None if setup.file is None else str(setup.file)
+                raise InputError(file, f"motion.{key}", message)
+        if lowered is not None:
+            velocity = np.minimum(velocity, lowered)
+    return JointLimits(lower, upper, velocity, acceleration)
+
+
+def _judge_claims(trajectory: Trajectory, faults: FaultList) -> None:
+    """Note extra lift-offs that are stated where there is none."""
+    ends = {after - 1 for _, after in trajectory.strokes[:-1]}
+    for extra in trajectory.extra_lift_offs:
+        if extra.sample not in ends:
+            text = "an extra lift-off is stated after this sample, and there is none"
+            faults.add("claim", text, extra.sample, place=np.array(extra.place))

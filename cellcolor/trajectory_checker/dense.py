@@ -1,0 +1,103 @@
+"""A trajectory with configurations put in wherever two samples are too far apart to be trusted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.deadline import Deadline
+from cellcolor.errors import TooLarge
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.trajectory_checker.tolerances import STEP, STEP_ANGLE
+
+__all__ = ["Dense", "densified", "poses_of"]
+
+_MOST = 3_000_000  # configurations; some hundred bytes each
+_AT_ONCE = 20_000
+_SLACK = 1e-6  # of a step; samples laid out just as far apart as they may need none in between
+
+
+@dataclass(frozen=True)
+class Dense:
+    """Samples, and configurations on the way from one to the next, in the order of the motion.
+
+    Attributes:
+        sample: (d,) the sample, or the one before.
+        way: (d,) how far it is to the next sample, 0 at a sample.
+        joints: (d, joints) in rad.
+        tips: (d, 3) where the tool's tip is, m.
+        axes: (d, 3) unit vectors along the tool, from the flange to the tip.
+        contact: (d,) whether it is in contact: between two samples if both are.
+        stroke: (d,) number of the stroke, -1 without contact.
+    """
+
+    sample: Index
+    way: Array
+    joints: Array
+    tips: Array
+    axes: Array
+    contact: Mask
+    stroke: Index
+
+    def __len__(self) -> int:
+        return len(self.sample)
+
+    def where(self, row: int) -> str:
+        """What a sentence about a row ends with if that is no sample."""
+        return ", between it and the next sample" if self.way[row] else ""
+
+    @property
+    def outward(self) -> Array:
+        """(d, 3) against the tool's axis."""
+        return -self.axes
+
+
+def poses_of(robot: Robot, joints: Array, deadline: Deadline) -> tuple[Array, Array]:
+    """Tips and tool axes (k, 3) of configurations (k, joints)."""
+    tips, axes = np.empty((len(joints), 3)), np.empty((len(joints), 3))
+    for first in range(0, len(joints), _AT_ONCE):
+        deadline.check()
+        rows = slice(first, first + _AT_ONCE)
+        poses = forward(robot, joints[rows])
+        tips[rows], axes[rows] = poses.tip, poses.tool_axis
+    return tips, axes
+
+
+def densified(
+    trajectory: Trajectory, robot: Robot, tips: Array, axes: Array, skip: Mask, deadline: Deadline
+) -> Dense:
+    """Put configurations in so that tip, tool axis and joints move only a little from one to next.
+
+    Args:
+        tips, axes: (k, 3) of the samples.
+        skip: (k - 1,) steps that are known to be no motion: nothing is put into them.
+
+    Raises:
+        TooLarge: there would be millions.
+    """
+    joints, count = trajectory.joints, len(trajectory.joints)
+    steps = np.abs(np.diff(joints, axis=0)).max(axis=1, initial=0.0) / STEP_ANGLE
+    moved = np.linalg.norm(np.diff(tips, axis=0), axis=1) / STEP
+    turned = 2 * np.arcsin(np.clip(np.linalg.norm(np.diff(axes, axis=0), axis=1) / 2, 0, 1))
+    longest = np.maximum(np.maximum(steps, moved), turned / STEP_ANGLE)
+    pieces = np.maximum(np.ceil(longest - _SLACK), 1).astype(np.int64)
+    pieces[skip] = 1
+    pieces = np.append(pieces, 1) if count else pieces
+    if pieces.sum() > _MOST:
+        raise TooLarge(f"the trajectory is too long: more than {_MOST} configurations to be tested")
+    sample = np.repeat(np.arange(count), pieces)
+    number = np.arange(len(sample)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    way = number / pieces[sample]
+    after = np.minimum(sample + 1, max(count - 1, 0))
+    at = joints[sample] + way[:, None] * (joints[after] - joints[sample])
+    all_tips, all_axes = tips[sample], axes[sample]
+    put_in = np.flatnonzero(number)
+    all_tips[put_in], all_axes[put_in] = poses_of(robot, at[put_in], deadline)
+    contact = trajectory.contact[sample] & (trajectory.contact[after] | (number == 0))
+    begins = contact & ~np.concatenate([[False], contact[:-1]])
+    stroke = np.where(contact, np.cumsum(begins) - 1, -1)
+    return Dense(sample, way, at, all_tips, all_axes, contact, stroke)

@@ -1,0 +1,106 @@
+"""Collecting faults: neighboring samples with the same fault are one."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import Fault, FaultKind
+
+__all__ = ["FaultList", "stretches"]
+
+_MOST = 100  # of a kind; the rest is counted
+
+
+class FaultList:
+    """The faults of one trajectory.
+
+    Attributes:
+        counts: how many of each kind were found.
+        faults: the first of each kind.
+    """
+
+    def __init__(self, trajectory: Trajectory, timed: bool) -> None:
+        self._times = trajectory.times if timed else None
+        self._joint_names = trajectory.joint_names
+        self.counts: Counter[FaultKind] = Counter()
+        self.faults: list[Fault] = []
+
+    def add(
+        self,
+        kind: FaultKind,
+        text: str,
+        sample: int | None = None,
+        last_sample: int | None = None,
+        joint: int | None = None,
+        reason: str | None = None,
+        place: Array | None = None,
+    ) -> None:
+        """Note one fault; ``joint`` is the joint's number, ``place`` (3,) in m."""
+        self.counts[kind] += 1
+        if self.counts[kind] > _MOST:
+            return
+        at = None if sample is None or self._times is None else float(self._times[sample])
+        name = None if joint is None else self._joint_names[joint]
+        x_y_z = None if place is None else (float(place[0]), float(place[1]), float(place[2]))
+        last_sample = sample if last_sample is None else last_sample
+        self.faults.append(Fault(kind, text, sample, last_sample, at, name, reason, x_y_z))
+
+    def add_stretches(
+        self,
+        kind: FaultKind,
+        at_fault: Mask,
+        excess: Array,
+        text: Callable[[int], str],
+        places: Array,
+        joint: int | None = None,
+        reason: str | None = None,
+        sample_of: Index | None = None,
+    ) -> None:
+        """Note each stretch of neighboring rows at fault once, with the text of its worst row.
+
+        Args:
+            at_fault: (k,).
+            excess: (k,) how bad each is.
+            text: what to say of a row.
+            places: (k, 3) in m.
+            sample_of: (k,) the sample of each row, or the one before it; the row's number without.
+        """
+        for first, after in stretches(at_fault):
+            worst = first + int(np.argmax(excess[first:after]))
+            begin, end = first, after - 1
+            if sample_of is not None:
+                begin, end = int(sample_of[first]), int(sample_of[after - 1])
+            self.add(kind, text(worst), begin, end, joint, reason, places[first])
+
+    def add_joint_stretches(
+        self,
+        kind: FaultKind,
+        at_fault: Mask,
+        excess: Array,
+        text: Callable[[int, int], str],
+        places: Array,
+    ) -> None:
+        """The same for every joint: ``at_fault`` and ``excess`` (k, joints), a text of row and
+        joint that the joint's name goes before.
+        """
+        for joint in np.flatnonzero(at_fault.any(axis=0)).tolist():
+            name = self._joint_names[joint]
+            said = partial(_of_joint, name, joint, text)
+            self.add_stretches(kind, at_fault[:, joint], excess[:, joint], said, places, joint)
+
+
+def _of_joint(name: str, joint: int, text: Callable[[int, int], str], row: int) -> str:
+    return f"{name} {text(row, joint)}"
+
+
+def stretches(of: Mask) -> list[tuple[int, int]]:
+    """First row of each stretch of neighbors that are true, and the one after its last."""
+    steps = np.diff(np.concatenate([[0], of.astype(np.int8), [0]]))
+    begins, ends = np.flatnonzero(steps > 0).tolist(), np.flatnonzero(steps < 0).tolist()
+    return list(zip(begins, ends, strict=True))

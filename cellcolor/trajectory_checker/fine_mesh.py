@@ -1,0 +1,267 @@
+"""The surface in triangles much smaller than the tool, to measure on and to find points on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.sparse import csr_array
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array, Index
+from cellcolor.deadline import Deadline
+from cellcolor.errors import TooLarge
+from cellcolor.frontend.parts.surface import Surface, every_edge, face_normals
+
+__all__ = ["FineMesh", "Located", "refined"]
+
+_MOST = 2_000_000  # small triangles; some hundred bytes each
+_NEIGHBORS = 16  # small triangles that are asked at first which of them is nearest to a point
+_AT_ONCE = 4_000  # points; times neighbors a matter of memory
+
+
+@dataclass(frozen=True)
+class Located:
+    """Where points are on a fine mesh: on the nearest small triangle that faces their way.
+
+    Attributes:
+        triangle: (k,) the small triangle.
+        points: (k, 3) the nearest point of it, m.
+        normals: (k, 3) the surface's interpolated unit normal there.
+        owner: (k,) the vertex of the given surface whose barycentric part it is in.
+    """
+
+    triangle: Index
+    points: Array
+    normals: Array
+    owner: Index
+
+
+@dataclass(frozen=True)
+class FineMesh:
+    """A surface refined.
+
+    Attributes:
+        surface: the given surface.
+        vertices: (n, 3) in m; those of the given surface come first.
+        triangles: (m, 3).
+        face: (m,) which face of the given surface each small triangle is a part of.
+        corners: (m, 3, 3) barycentric coordinates, in that face, of each of its corners.
+    """
+
+    surface: Surface
+    vertices: Array
+    triangles: Index
+    face: Index
+    corners: Array
+
+    @cached_property
+    def areas(self) -> Array:
+        """(m,) in m²."""
+        doubled: Array = np.linalg.norm(face_normals(self.vertices, self.triangles), axis=1)
+        return doubled / 2
+
+    @cached_property
+    def owner(self) -> Index:
+        """(m,) the vertex of the given surface in whose barycentric part its centroid is."""
+        return self._owners(self.face, self.corners.mean(axis=1))
+
+    @cached_property
+    def normals(self) -> Array:
+        """(n, 3) the given surface's interpolated unit normals."""
+        normals = np.empty_like(self.vertices)
+        given = self.surface.normals[self.surface.faces[self.face]]
+        for corner in range(3):
+            normals[self.triangles[:, corner]] = _mixed(self.corners[:, corner], given)
+        return _unit(normals)
+
+    @cached_property
+    def near(self) -> csr_array:
+        """(n, n) distances of vertices that an edge or two join, m.
+
+        A way along these is longer than the shortest one on the surface, by some percent: with
+        single edges alone it would be up to a sixth.
+        """
+        edges, n = every_edge(self.triangles), len(self.vertices)
+        one = csr_array((np.ones(len(edges), dtype=np.int8), tuple(edges.T)), shape=(n, n))
+        one = one + one.T
+        both = (one + one @ one).tocoo()
+        i, j = both.coords
+        apart = np.linalg.norm(self.vertices[i] - self.vertices[j], axis=1)
+        return csr_array((apart, (i, j)), shape=(n, n))
+
+    @cached_property
+    def _tree(self) -> cKDTree:
+        return cKDTree(self.vertices[self.triangles].mean(axis=1))
+
+    @cached_property
+    def _radius(self) -> float:
+        """No point of a small triangle is farther from its centroid, m."""
+        corners = self.vertices[self.triangles]
+        apart = np.linalg.norm(corners - corners.mean(axis=1, keepdims=True), axis=2)
+        return float(apart.max())
+
+    @cached_property
+    def _facing(self) -> Array:
+        return _unit(face_normals(self.vertices, self.triangles))
+
+    def locate(self, points: Array, outward: Array) -> Located:
+        """The nearest points of the surface.
+
+        Of a thin sheet, the side whose normals are less than 90 degrees off is meant, if one is.
+
+        Args:
+            points: (k, 3) in m.
+            outward: (k, 3) against the tool's axis.
+        """
+        triangle = np.zeros(len(points), dtype=np.int64)
+        weights = np.zeros((len(points), 3))
+        for first in range(0, len(points), _AT_ONCE):
+            rows = np.arange(first, min(first + _AT_ONCE, len(points)))
+            asked = min(_NEIGHBORS, len(self.triangles))
+            while len(rows):
+                reach, found, inside = self._nearest_of(points[rows], outward[rows], asked)
+                triangle[rows], weights[rows] = found[0], inside
+                # A triangle that was not asked has its centroid farther off than all that were.
+                unsure = reach[0] > reach[1] - self._radius
+                if asked == len(self.triangles):
+                    break
+                rows, asked = rows[unsure], min(4 * asked, len(self.triangles))
+        at = np.einsum("kc,kcd->kd", weights, self.vertices[self.triangles[triangle]])
+        within = np.einsum("kc,kcd->kd", weights, self.corners[triangle])
+        faces = self.face[triangle]
+        given = self.surface.normals[self.surface.faces[faces]]
+        normals = _unit(_mixed(within, given))
+        return Located(triangle, at, normals, self._owners(faces, within))
+
+    def _nearest_of(
+        self, points: Array, outward: Array, asked: int
+    ) -> tuple[tuple[Array, Array], tuple[Index], Array]:
+        """Distances of the nearest and of the last asked, the nearest triangle, weights in it."""
+        far, candidates = self._tree.query(points, k=asked)
+        far, candidates = far.reshape(-1, asked), candidates.reshape(-1, asked)
+        corners = self.vertices[self.triangles[candidates]]
+        weights = _closest_weights(points[:, None], corners)
+        nearest = np.einsum("kqc,kqcd->kqd", weights, corners)
+        apart = np.linalg.norm(nearest - points[:, None], axis=2)
+        facing = np.einsum("kqd,kd->kq", self._facing[candidates], outward) > 0
+        # Where none of those asked faces this way, the nearest one will do.
+        apart = np.where(facing | ~facing.any(axis=1, keepdims=True), apart, np.inf)
+        best = np.argmin(apart, axis=1)
+        k = np.arange(len(points))
+        return (apart[k, best], far[:, -1]), (candidates[k, best],), weights[k, best]
+
+    def _owners(self, faces: Index, within: Array) -> Index:
+        owners: Index = self.surface.faces[faces, np.argmax(within, axis=1)]
+        return owners
+
+
+def refined(surface: Surface, longest: float, deadline: Deadline) -> FineMesh:
+    """A surface with every edge longer than ``longest`` (m) bisected until none is left.
+
+    Raises:
+        TooLarge: there would be millions of small triangles.
+    """
+    vertices, triangles = surface.vertices, np.array(surface.faces, dtype=np.int64)
+    face = np.arange(len(triangles))
+    corners = np.tile(np.eye(3), (len(triangles), 1, 1))
+    while True:
+        deadline.check()
+        edges = every_edge(triangles)
+        lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
+        split = edges[lengths > longest]
+        if not len(split):
+            return FineMesh(surface, vertices, triangles, face, corners)
+        if len(triangles) + 2 * len(split) > _MOST:
+            message = f"more than {_MOST} triangles with edges of {1000 * longest:.3g} mm"
+            raise TooLarge(f"the surface is too large to be judged at this spacing: {message}")
+        middle = np.arange(len(vertices), len(vertices) + len(split))
+        vertices = np.concatenate([vertices, vertices[split].mean(axis=1)])
+        triangles, face, corners = _bisected(triangles, face, corners, split, middle)
+
+
+def _bisected(
+    triangles: Index, face: Index, corners: Array, split: Index, middle: Index
+) -> tuple[Index, Index, Array]:
+    """Triangles with the middles of some of their edges as new corners.
+
+    Args:
+        split: (s, 2) the edges, smaller vertex first, in lexicographic order.
+        middle: (s,) the vertex in the middle of each.
+    """
+    size = int(triangles.max()) + 1
+    keys = split[:, 0] * size + split[:, 1]
+    sides = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2), axis=2)
+    wanted = sides[..., 0] * size + sides[..., 1]
+    place = np.minimum(np.searchsorted(keys, wanted), len(keys) - 1)
+    is_split = keys[place] == wanted
+    # Turned so that split edges come first: edge c leads from corner c to corner c + 1.
+    count = is_split.sum(axis=1)
+    turn = np.where(count == 1, np.argmax(is_split, axis=1), 0)
+    turn = np.where(count == 2, (np.argmin(is_split, axis=1) + 1) % 3, turn)
+    order = (turn[:, None] + np.arange(3)) % 3
+    row = np.arange(len(triangles))[:, None]
+    mids = middle[place][row, order]
+    at, own = triangles[row, order], corners[row, order]
+    half = (own + np.roll(own, -1, axis=1)) / 2
+    names = np.concatenate([at, mids], axis=1)
+    places = np.concatenate([own, half], axis=1)
+    # Corners 0 1 2, middles 3 (of 0-1), 4 (of 1-2), 5 (of 2-0).
+    patterns = {
+        0: [(0, 1, 2)],
+        1: [(0, 3, 2), (3, 1, 2)],
+        2: [(3, 1, 4), (0, 3, 4), (0, 4, 2)],
+        3: [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+    }
+    parts = [
+        (names[rows][:, list(three)], face[rows], places[rows][:, list(three)])
+        for number, pattern in patterns.items()
+        for rows in [np.flatnonzero(count == number)]
+        for three in pattern
+    ]
+    new_triangles, new_face, new_corners = zip(*parts, strict=True)
+    return np.concatenate(new_triangles), np.concatenate(new_face), np.concatenate(new_corners)
+
+
+def _closest_weights(points: Array, corners: Array) -> Array:
+    """Barycentric coordinates (..., 3) of the nearest points of triangles (..., 3, 3)."""
+    a, b, c = (corners[..., k, :] for k in range(3))
+    ab, ac, ap = b - a, c - a, points - a
+    dot = _dot
+    d00, d01, d11 = dot(ab, ab), dot(ab, ac), dot(ac, ac)
+    d20, d21 = dot(ap, ab), dot(ap, ac)
+    scale = d00 * d11 - d01 * d01
+    safe = np.where(scale > 0, scale, 1.0)
+    v, w = (d11 * d20 - d01 * d21) / safe, (d00 * d21 - d01 * d20) / safe
+    weights = np.stack([1 - v - w, v, w], axis=-1)
+    outside = (weights < 0).any(axis=-1) | (scale <= 0)
+    # Outside, the nearest point is on one of the edges.
+    best = np.full(outside.shape, np.inf)
+    for first, second in ((0, 1), (1, 2), (2, 0)):
+        start, along = corners[..., first, :], corners[..., second, :] - corners[..., first, :]
+        squared = dot(along, along)
+        way = dot(points - start, along) / np.where(squared > 0, squared, 1.0)
+        way = np.clip(way, 0.0, 1.0)
+        apart = points - start - way[..., None] * along
+        closer = outside & (dot(apart, apart) < best)
+        best = np.where(closer, dot(apart, apart), best)
+        on_edge = np.zeros_like(weights)
+        on_edge[..., first], on_edge[..., second] = 1 - way, way
+        weights = np.where(closer[..., None], on_edge, weights)
+    return weights
+
+
+def _dot(one: Array, other: Array) -> Array:
+    return np.asarray((one * other).sum(axis=-1))
+
+
+def _mixed(weights: Array, given: Array) -> Array:
+    """Weights (k, 3) of three vectors each (k, 3, 3): (k, 3)."""
+    mixed: Array = np.einsum("kc,kcd->kd", weights, given)
+    return mixed
+
+
+def _unit(vectors: Array) -> Array:
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(lengths > 0, lengths, 1.0))

@@ -1,0 +1,149 @@
+"""In contact: tip on the surface, tool against the normal, one branch, no crack."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.trajectory_verdict import FaultKind
+from cellcolor.frontend.arm.kinematics import TASK_JOINTS
+from cellcolor.frontend.build import BuildResult
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.trajectory_checker.dense import Dense
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
+from cellcolor.trajectory_checker.tolerances import BRANCH, OFF_SURFACE, TILT
+
+__all__ = ["branches_of", "judge_contact", "judge_cracks"]
+
+_PARTS = 16  # of a step that seems to cross a crack, to see whether it passes by its end
+
+
+def judge_contact(dense: Dense, rows: Index, located: Located, faults: FaultList) -> None:
+    """Note where the tip is off the surface or the tool is tilted.
+
+    Args:
+        rows: (c,) those of ``dense`` in contact; ``located`` says where they are on the surface.
+    """
+    apart = np.linalg.norm(dense.tips[rows] - located.points, axis=1)
+    chord = np.linalg.norm(dense.outward[rows] - located.normals, axis=1)
+    tilt = 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0))
+    _note(
+        "off surface",
+        dense,
+        rows,
+        1000 * apart,
+        1000 * OFF_SURFACE,
+        "the tip is {:.4g} mm off the surface, allowed are {:.4g}",
+        faults,
+    )
+    _note(
+        "tilted",
+        dense,
+        rows,
+        np.degrees(tilt),
+        float(np.degrees(TILT)),
+        "the tool is {:.4g} degrees off the surface's normal, allowed are {:.4g}",
+        faults,
+    )
+
+
+def _note(
+    kind: FaultKind,
+    dense: Dense,
+    rows: Index,
+    measure: Array,
+    most: float,
+    text: str,
+    faults: FaultList,
+) -> None:
+    excess = np.zeros(len(dense))
+    excess[rows] = measure
+    faults.add_stretches(
+        kind,
+        excess > most,
+        excess,
+        lambda k: text.format(excess[k], most) + dense.where(k),
+        dense.tips,
+        sample_of=dense.sample,
+    )
+
+
+def branches_of(prepared: PreparedScene, dense: Dense, rows: Index) -> Index:
+    """The branch (c,) that configurations belong to, -1 where it is none that is known.
+
+    Joints are compared up to full circles, and without a last one that only turns the tool.
+    """
+    found = np.full(len(rows), -1)
+    solutions = prepared.inverse(dense.tips[rows], dense.axes[rows])[..., :TASK_JOINTS]
+    off = solutions - dense.joints[rows, None, :TASK_JOINTS]
+    off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+    off = np.where(np.isnan(off), np.inf, off)
+    nearest = np.argmin(off, axis=1)
+    known = off[np.arange(len(rows)), nearest] <= BRANCH
+    found[known] = nearest[known]
+    return found
+
+
+def judge_cracks(
+    built: BuildResult,
+    dense: Dense,
+    rows: Index,
+    located: Located,
+    branches: Index,
+    fine: FineMesh,
+    faults: FaultList,
+) -> None:
+    """Note where the branch changes in contact, and where a crack of its color is crossed."""
+    together = dense.stroke[rows[1:]] == dense.stroke[rows[:-1]]
+    known = together & (branches[1:] >= 0) & (branches[:-1] >= 0)
+    changed = known & (branches[1:] != branches[:-1])
+    names = built.branches
+    for step in np.flatnonzero(changed).tolist():
+        k = int(rows[step])
+        text = f"changes from {names[branches[step]]!r} to {names[branches[step + 1]]!r}"
+        after = int(dense.sample[rows[step + 1]])
+        faults.add("branch", text, int(dense.sample[k]), after, place=dense.tips[k])
+    torn = _torn(built)
+    if not len(torn):
+        return
+    steps = np.flatnonzero(known & ~changed)
+    steps = steps[_crosses(located.owner[steps], located.owner[steps + 1], branches[steps], torn)]
+    if not len(steps):
+        return
+    share = np.linspace(0.0, 1.0, _PARTS + 1)[None, :, None]
+    start, end = located.points[steps, None], located.points[steps + 1, None]
+    points = (start + share * (end - start)).reshape(-1, 3)
+    outward = np.repeat(dense.outward[rows[steps]], _PARTS + 1, axis=0)
+    owner = fine.locate(points, outward).owner.reshape(len(steps), -1)
+    of = np.repeat(branches[steps][:, None], _PARTS, axis=1)
+    for row, step in enumerate(steps.tolist()):
+        crossing = _crosses(owner[row, :-1], owner[row, 1:], of[row], torn)
+        if not crossing.any():
+            continue
+        part = int(np.argmax(crossing))
+        u, v = int(owner[row, part]), int(owner[row, part + 1])
+        k = int(rows[step])
+        text = f"crosses the crack between vertices {u} and {v} in {names[branches[step]]!r}"
+        after = int(dense.sample[rows[step + 1]])
+        faults.add("crack", text, int(dense.sample[k]), after, place=dense.tips[k])
+
+
+def _torn(built: BuildResult) -> Index:
+    """The cracks (t, 3), sorted: both vertices, the smaller first, and the branch."""
+    branch = built.stages.cleaned.coloring.branch
+    torn = {
+        (min(crack.i, crack.j), max(crack.i, crack.j), branch[color])
+        for crack in built.surface.cracks
+        for color in crack.colors
+    }
+    return np.array(sorted(torn), dtype=np.int64).reshape(-1, 3)
+
+
+def _crosses(one: Index, other: Index, branches: Index, torn: Index) -> Mask:
+    """Which steps (s,) between the parts of two vertices cross a crack of their branch."""
+    vertices = int(max(torn[:, 1].max(), one.max(initial=0), other.max(initial=0))) + 1
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    most = int(max(torn[:, 2].max(), branches.max(initial=0))) + 1
+    keys = (low * vertices + high) * most + branches
+    return np.isin(keys, (torn[:, 0] * vertices + torn[:, 1]) * most + torn[:, 2])

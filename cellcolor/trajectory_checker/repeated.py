@@ -1,0 +1,138 @@
+"""How often the tool comes by the same place, and which stretches run along an earlier pass."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array, Index
+from cellcolor.trajectory_checker.dense import Dense
+from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
+
+__all__ = ["Repeated", "passes", "repeated_stretches"]
+
+_AT_ONCE = 20_000  # places of contact
+_ALONG = 0.9  # cosine of the angle up to which two passes run along each other
+
+
+@dataclass(frozen=True)
+class Repeated:
+    """A stretch that runs along an earlier pass.
+
+    Attributes:
+        first, last: rows of the configurations in contact.
+        earlier_first, earlier_last: rows of the earlier pass beside these two.
+        length: m.
+    """
+
+    first: int
+    last: int
+    earlier_first: int
+    earlier_last: int
+    length: float
+
+
+def passes(dense: Dense, rows: Index, located: Located, fine: FineMesh, within: float) -> Index:
+    """How often (n,) the tool comes within a distance (m) of the vertices of the fine mesh.
+
+    Coming back after less than that distance is the same pass. What faces another way, as the back
+    of a sheet does, is not come by.
+    """
+    ways = _ways(dense, rows)
+    tree = cKDTree(fine.vertices)
+    vertices, places = [], []
+    for first in range(0, len(rows), _AT_ONCE):
+        part = slice(first, first + _AT_ONCE)
+        near = tree.query_ball_point(located.points[part], within, return_sorted=False)
+        counts = np.fromiter(map(len, near), dtype=np.int64, count=len(near))
+        if not counts.sum():
+            continue
+        vertex = np.concatenate([np.asarray(own, dtype=np.int64) for own in near])
+        place = first + np.repeat(np.arange(len(near)), counts)
+        facing = np.einsum("ij,ij->i", fine.normals[vertex], located.normals[place]) > 0
+        vertices.append(vertex[facing])
+        places.append(place[facing])
+    result = np.zeros(len(fine.vertices), dtype=np.int64)
+    if not vertices:
+        return result
+    vertex, place = np.concatenate(vertices), np.concatenate(places)
+    order = np.lexsort((place, vertex))
+    vertex, place = vertex[order], place[order]
+    begins = np.ones(len(vertex), dtype=bool)
+    begins[1:] = (vertex[1:] != vertex[:-1]) | (ways[place[1:]] - ways[place[:-1]] > within)
+    np.add.at(result, vertex[begins], 1)
+    return result
+
+
+def repeated_stretches(
+    dense: Dense, rows: Index, located: Located, within: float, apart: float
+) -> list[Repeated]:
+    """The stretches that run along an earlier pass, either way.
+
+    Args:
+        within: how near the earlier pass is, m.
+        apart: so far, in m along the path, two places have to be to belong to two passes.
+    """
+    if len(rows) < 2:
+        return []
+    ways = _ways(dense, rows)
+    points, normals = located.points, located.normals
+    tangents = _tangents(points, dense.stroke[rows])
+    earlier = np.full(len(rows), -1)
+    for one, other in _pairs(points, within):
+        close = (ways[other] - ways[one] > apart) & (
+            np.einsum("ij,ij->i", normals[one], normals[other]) > 0
+        )
+        along = np.abs(np.einsum("ij,ij->i", tangents[one], tangents[other])) >= _ALONG
+        kept = close & along
+        np.maximum.at(earlier, other[kept], one[kept])
+    return _joined(earlier, ways, apart / 2)
+
+
+def _joined(earlier: Index, ways: Array, gap: float) -> list[Repeated]:
+    """Stretches of places with an earlier one beside them, across gaps of up to ``gap`` (m)."""
+    own = np.flatnonzero(earlier >= 0)
+    if not len(own):
+        return []
+    cuts = np.flatnonzero(np.diff(ways[own]) > gap) + 1
+    found = []
+    for part in np.split(own, cuts):
+        first, last = int(part[0]), int(part[-1])
+        length = float(ways[last] - ways[first])
+        found.append(Repeated(first, last, int(earlier[first]), int(earlier[last]), length))
+    return found
+
+
+def _pairs(points: Array, within: float) -> list[tuple[Index, Index]]:
+    """Pairs of rows, the smaller first, of points nearer to each other than a distance."""
+    tree = cKDTree(points)
+    found = []
+    for first in range(0, len(points), _AT_ONCE):
+        near = tree.query_ball_point(points[first : first + _AT_ONCE], within, return_sorted=False)
+        counts = np.fromiter(map(len, near), dtype=np.int64, count=len(near))
+        other = first + np.repeat(np.arange(len(near)), counts)
+        one = np.concatenate([np.asarray(own, dtype=np.int64) for own in near])
+        before = one < other
+        found.append((one[before], other[before]))
+    return found
+
+
+def _ways(dense: Dense, rows: Index) -> Array:
+    """How far (c,) the tool has come in contact, m; far apart from stroke to stroke."""
+    steps = np.linalg.norm(np.diff(dense.tips[rows], axis=0), axis=1)
+    same = dense.stroke[rows[1:]] == dense.stroke[rows[:-1]]
+    far = 1.0 + float(steps.sum())
+    return np.concatenate([[0.0], np.cumsum(np.where(same, steps, far))])
+
+
+def _tangents(points: Array, stroke: Index) -> Array:
+    """Unit directions (c, 3) of the path, from the place before to the one after."""
+    after = np.minimum(np.arange(len(points)) + 1, len(points) - 1)
+    before = np.maximum(np.arange(len(points)) - 1, 0)
+    after = np.where(stroke[after] == stroke, after, np.arange(len(points)))
+    before = np.where(stroke[before] == stroke, before, np.arange(len(points)))
+    along = points[after] - points[before]
+    lengths = np.linalg.norm(along, axis=1, keepdims=True)
+    return np.asarray(along / np.where(lengths > 0, lengths, 1.0))

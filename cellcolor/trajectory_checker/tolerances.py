@@ -1,0 +1,50 @@
+"""What the judge lets pass, and why so much (docs/judging-trajectories.md)."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+__all__ = [
+    "ANGLE_ROUNDING",
+    "BRANCH",
+    "JUMP",
+    "OFF_SURFACE",
+    "POSE_ANGLE",
+    "POSE_DISTANCE",
+    "SHARE_OVER_LIMIT",
+    "STEP",
+    "STEP_ANGLE",
+    "TILT",
+    "Limits",
+]
+
+STEP = 0.001  # m; between samples whose tips are farther apart, others are put in and tested
+STEP_ANGLE = math.radians(1.0)  # the same for the turn of the tool and of each joint
+
+ANGLE_ROUNDING = 1e-6  # rad; files with six decimals are off by half of that
+SHARE_OVER_LIMIT = 0.01  # of a velocity or acceleration; for planners that keep a limit just so
+JUMP = 0.5  # rad; farther between neighbors nothing says any more which way a joint goes
+POSE_DISTANCE = 1e-4  # m; the file's point against the one that the joints give
+POSE_ANGLE = math.radians(0.1)  # the same for the normal
+OFF_SURFACE = 0.001  # m; a mesh leaves the curved object it stands for by up to 0.6 mm as shipped
+TILT = math.radians(1.0)  # the tool's axis against the interpolated normal
+BRANCH = 0.01  # rad; configurations nearer than this to a branch's are its
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What a trajectory has to cover, and how often it may go over the same place.
+
+    Attributes:
+        least_covered_share: share of the reachable area within 1.5 times the spacing of a pass,
+            rightly left out area counted as covered.
+        least_closely_covered_share: the same for 0.75 times the spacing.
+        most_mean_visits: mean number of passes within half the spacing.
+        longest_repeated_spacings: how long a stretch may run along an earlier pass, in spacings.
+    """
+
+    least_covered_share: float = 0.99
+    least_closely_covered_share: float = 0.97
+    most_mean_visits: float = 1.3
+    longest_repeated_spacings: float = 3.0

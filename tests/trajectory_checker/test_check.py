@@ -1,0 +1,286 @@
+"""Each kind of fault, made one at a time in a trajectory that has none."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+import rasters
+
+from cellcolor.arrays import Array
+from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.errors import InputError
+from cellcolor.trajectory_checker.check import check_trajectory
+from cellcolor.trajectory_checker.tolerances import Limits
+
+
+def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
+    prepared, built, _ = rasters.cap()
+    return check_trajectory(prepared, built, trajectory, **options)
+
+
+def moved(points: Array, normals: Array, samples: slice) -> Trajectory:
+    """The cap's trajectory with other poses at some samples, in the same branch."""
+    prepared, _, trajectory = rasters.cap()
+    found = prepared.inverse(points, -normals)
+    off = found - trajectory.joints[samples][:, None]
+    turns = np.round(off / (2 * np.pi)) * 2 * np.pi
+    off, found = np.abs(off - turns).max(axis=2), found - turns
+    nearest = np.nanargmin(off, axis=1)
+    joints = trajectory.joints.copy()
+    joints[samples] = found[np.arange(len(found)), nearest]
+    all_points, all_normals = trajectory.points.copy(), trajectory.normals.copy()
+    all_points[samples], all_normals[samples] = points, normals
+    return replace(trajectory, joints=joints, points=all_points, normals=all_normals)
+
+
+def middle() -> int:
+    """A sample in the middle of the first stroke."""
+    first, after = rasters.cap()[2].strokes[0]
+    return (first + after) // 2
+
+
+def test_counts() -> None:
+    trajectory = rasters.cap()[2]
+    stated = ExtraLiftOff(trajectory.strokes[0][1] - 1, 0, "winding", "", (0.0, 0.0, 0.0))
+    verdict = judged(trajectory, minimum_lift_offs=0)
+    assert (verdict.strokes, verdict.lift_offs, verdict.unclaimed_extra) == (2, 1, 1)
+    assert judged(trajectory).unclaimed_extra is None
+    verdict = judged(replace(trajectory, extra_lift_offs=(stated,)), minimum_lift_offs=0)
+    assert verdict.valid
+    assert (verdict.claimed_extra, verdict.unclaimed_extra) == (1, 0)
+
+
+def test_an_extra_lift_off_has_to_be_there() -> None:
+    trajectory = rasters.cap()[2]
+    stated = ExtraLiftOff(middle(), 0, "winding", "", (0.0, 0.0, 0.0))
+    verdict = judged(replace(trajectory, extra_lift_offs=(stated,)))
+    assert [(fault.kind, fault.sample) for fault in verdict.faults] == [("claim", middle())]
+
+
+def test_a_move_that_was_not_planned() -> None:
+    trajectory = rasters.cap()[2]
+    after = trajectory.strokes[0][1] + 60
+    verdict = judged(replace(trajectory, unplanned=(after,)))
+    assert [(fault.kind, fault.sample) for fault in verdict.faults] == [("unplanned", after)]
+
+
+def test_off_the_surface() -> None:
+    """Allowed is a millimeter."""
+    _, _, trajectory = rasters.cap()
+    at = slice(middle(), middle() + 1)
+    for height, kinds in ((0.0009, set()), (0.0012, {"off surface"})):
+        points = trajectory.points[at] + height * trajectory.normals[at]
+        verdict = judged(moved(points, trajectory.normals[at], at), timed=False)
+        assert set(verdict.fault_counts) == kinds
+        for fault in verdict.faults:
+            assert fault.sample == middle()
+            assert "1.2 mm" in fault.text
+
+
+def test_tilted() -> None:
+    """Allowed is a degree."""
+    _, _, trajectory = rasters.cap()
+    at = slice(middle(), middle() + 1)
+    normal = trajectory.normals[middle()]
+    across = np.cross(normal, [1.0, 0.0, 0.0])
+    across /= np.linalg.norm(across)
+    for degrees, kinds in ((0.8, set()), (1.2, {"tilted"})):
+        turn = math.radians(degrees)
+        turned = (math.cos(turn) * normal + math.sin(turn) * across)[None]
+        verdict = judged(moved(trajectory.points[at], turned, at), timed=False)
+        assert set(verdict.fault_counts) == kinds
+        for fault in verdict.faults:
+            assert (fault.sample, fault.last_sample) == (middle(), middle())
+
+
+def test_between_distant_samples_too() -> None:
+    """Without the samples on a bend of the path the joints cut it short, off the surface."""
+    _, _, trajectory = rasters.cap()
+    first, after = trajectory.strokes[0]
+    kept = np.ones(len(trajectory.times), dtype=bool)
+    kept[first + 1 : after - 1] = False
+    names = ("times", "joints", "points", "normals", "contact", "segment")
+    short = replace(trajectory, **{name: getattr(trajectory, name)[kept] for name in names})
+    verdict = judged(short)
+    (fault, *_) = verdict.of_kind("off surface")
+    assert (fault.sample, fault.last_sample) == (first, first)
+    assert "between it and the next sample" in fault.text
+    assert verdict.tested > len(short.times)
+
+
+def test_a_change_of_branch_in_contact() -> None:
+    prepared, _, trajectory = rasters.cap()
+    at = slice(middle(), trajectory.strokes[0][1])
+    found = prepared.inverse(trajectory.points[at], -trajectory.normals[at])
+    off = np.abs(np.remainder(found - trajectory.joints[at][:, None] + np.pi, 2 * np.pi) - np.pi)
+    own = np.nanargmin(off.max(axis=2), axis=1)
+    joints = trajectory.joints.copy()
+    joints[at] = found[np.arange(len(own)), own ^ 1]  # the wrist flipped
+    verdict = judged(replace(trajectory, joints=joints))
+    (fault,) = verdict.of_kind("branch")
+    assert (fault.sample, fault.last_sample) == (middle() - 1, middle())
+    assert "flipped" in fault.text
+
+
+def test_the_tip_may_not_pass_through_the_object_on_the_way() -> None:
+    """The stroke goes on as a transfer 6 mm under the surface: the tool's body stays above."""
+    _, _, trajectory = rasters.cap()
+    at = slice(middle(), middle() + 20)
+    points = trajectory.points[at] - 0.006 * trajectory.normals[at]
+    contact, segment = trajectory.contact.copy(), trajectory.segment.copy()
+    contact[at], segment[at] = False, -1
+    under = replace(moved(points, trajectory.normals[at], at), contact=contact, segment=segment)
+    verdict = judged(under, timed=False)
+    faults = verdict.of_kind("invalid")
+    assert {fault.reason for fault in faults} == {"object collision"}
+    assert any(
+        fault.sample == middle() - 1 and fault.last_sample == middle() + 19 for fault in faults
+    )
+    over = replace(trajectory, contact=contact, segment=segment)
+    assert not judged(over, timed=False).of_kind("invalid")
+
+
+def test_force_and_conditioning_are_not_asked_on_the_way() -> None:
+    """An arm too weak for anything fails in contact only."""
+    scene = rasters.cap()[0].scene
+    weak = scene.with_setup(scene.setup.varied(task={"normal_force_n": 1e4}))
+    from cellcolor.frontend.prepared import prepare
+
+    _, built, trajectory = rasters.cap()
+    verdict = check_trajectory(prepare(weak), built, trajectory)
+    faults = verdict.of_kind("invalid")
+    assert {fault.reason for fault in faults} == {"torque"}
+    assert [(f.sample, f.last_sample) for f in faults] == [
+        (first, after - 1) for first, after in trajectory.strokes
+    ]
+
+
+def test_velocities_and_accelerations() -> None:
+    """The raster is at 0.9 of the greatest acceleration, far below the greatest velocity."""
+    trajectory = rasters.cap()[2]
+    faster = replace(trajectory, times=trajectory.times * 0.97)
+    verdict = judged(faster)
+    assert verdict.fault_counts == {}
+    faster = replace(trajectory, times=trajectory.times * 0.9)
+    verdict = judged(faster)
+    assert set(verdict.fault_counts) == {"acceleration"}
+    assert all(fault.joint is not None for fault in verdict.faults)
+    faster = replace(trajectory, times=trajectory.times * 0.01)
+    verdict = judged(faster)
+    assert {"velocity", "acceleration"} == set(verdict.fault_counts)
+    fault = verdict.of_kind("velocity")[0]
+    joint = trajectory.joint_names.index(str(fault.joint))
+    assert fault.sample is not None
+    step = trajectory.joints[fault.sample + 1] - trajectory.joints[fault.sample]
+    time = faster.times[fault.sample + 1] - faster.times[fault.sample]
+    assert abs(step[joint] / time) > math.pi  # what the URDF allows
+
+
+def test_without_times_only_geometry_is_judged() -> None:
+    trajectory = rasters.cap()[2]
+    nonsense = replace(trajectory, times=trajectory.times[::-1])
+    verdict = judged(nonsense, timed=False)
+    assert verdict.valid
+    assert verdict.seconds is None
+    assert verdict.notes == ("There are no times, so velocities and accelerations are not judged.",)
+
+
+def test_declared_limits() -> None:
+    """Each is a fault only if the limit says so."""
+    trajectory = rasters.cap()[2]
+    assert judged(trajectory, limits=Limits(most_mean_visits=1.1)).of_kind("repeated")
+    assert judged(trajectory, limits=Limits(most_mean_visits=1.2)).valid
+    strict = Limits(least_covered_share=1.0, least_closely_covered_share=1.0)
+    missing = replace(trajectory, contact=trajectory.contact & (trajectory.segment != 1))
+    assert len(judged(missing, limits=strict).of_kind("uncovered")) == 3
+    loose = Limits(least_covered_share=0.0, least_closely_covered_share=0.0)
+    # A part larger than a footprint is a fault all the same.
+    assert len(judged(missing, limits=loose).of_kind("uncovered")) == 1
+
+
+def test_what_is_left_out_without_a_cause_is_uncovered() -> None:
+    """The second segment is stated to be left out, and its branch is valid there."""
+    trajectory = rasters.cap()[2]
+    place = tuple(trajectory.points[trajectory.segment == 1][200].tolist())
+    stated = (LeftOut(0, 0.01, "torque", place),)
+    missing = replace(
+        trajectory, contact=trajectory.contact & (trajectory.segment != 1), left_out=stated
+    )
+    verdict = judged(missing)
+    assert verdict.covered is not None
+    assert verdict.covered.left_out_share == 0.0
+    assert verdict.of_kind("uncovered")
+
+
+def test_what_is_rightly_left_out_is_not_uncovered() -> None:
+    """The same with an arm that is too weak anywhere: then nothing is valid there."""
+    from cellcolor.frontend.prepared import prepare
+
+    prepared, built, trajectory = rasters.cap()
+    scene = prepared.scene
+    weak = prepare(scene.with_setup(scene.setup.varied(task={"normal_force_n": 1e4})))
+    missing = replace(
+        trajectory,
+        contact=trajectory.contact & (trajectory.segment != 1),
+        left_out=(LeftOut(0, 0.01, "torque", (0.0, 0.0, 0.0)),),
+    )
+    verdict = check_trajectory(weak, built, missing)
+    assert verdict.covered is not None
+    assert verdict.covered.left_out_share > 0.3
+    assert not verdict.of_kind("uncovered")
+    unstated = check_trajectory(weak, built, replace(missing, left_out=()))
+    assert unstated.of_kind("uncovered")
+
+
+def test_the_area_of_a_flat_raster() -> None:
+    """Lines 8.57 mm apart: as many visits as bands of 10 mm make of the area between them."""
+    prepared, built, trajectory = rasters.square()
+    covered = check_trajectory(prepared, built, trajectory).covered
+    assert covered is not None
+    assert covered.reachable_m2 == pytest.approx(0.16 * 0.12)
+    assert (covered.covered_share, covered.closely_covered_share) == pytest.approx((1.0, 1.0))
+    assert covered.mean_visits == pytest.approx(10 / (120 / 14), rel=0.03)
+    assert covered.repeated_m == 0
+    steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
+    both = trajectory.contact[1:] & trajectory.contact[:-1]
+    assert covered.length_m == pytest.approx(steps[both].sum(), rel=1e-6)
+
+
+def test_shares_as_by_hand_on_a_flat_square() -> None:
+    """Half of the lines left out: covered is what is so far from the last one."""
+    prepared, built, trajectory = rasters.square()
+    kept = trajectory.contact & (trajectory.points[:, 1] < np.median(trajectory.points[:, 1]))
+    half = replace(trajectory, contact=kept)
+    covered = check_trajectory(prepared, built, half).covered
+    assert covered is not None
+    # The rectangle is 0.12 m wide.
+    last = trajectory.points[kept, 1].max()
+    low = prepared.surface.vertices[:, 1].min()
+    for share, factor in ((covered.covered_share, 1.5), (covered.closely_covered_share, 0.75)):
+        assert share == pytest.approx((last - low + factor * 0.01) / 0.12, abs=0.01)
+
+
+def test_another_arms_trajectory_is_refused() -> None:
+    trajectory = rasters.cap()[2]
+    other = replace(trajectory, joint_names=tuple("abcdef"))
+    with pytest.raises(InputError, match="joint_names: must be shoulder_pan_joint"):
+        judged(other)
+    with pytest.raises(InputError, match=r"unplanned\[0\]: there is no sample 99999"):
+        judged(replace(trajectory, unplanned=(99999,)))
+
+
+def test_an_empty_trajectory_covers_nothing() -> None:
+    trajectory = rasters.cap()[2]
+    names = ("times", "joints", "points", "normals", "contact", "segment")
+    empty = replace(trajectory, **{name: getattr(trajectory, name)[:0] for name in names})
+    verdict = judged(empty)
+    assert (verdict.strokes, verdict.lift_offs, verdict.samples) == (0, 0, 0)
+    assert set(verdict.fault_counts) == {"uncovered"}

@@ -1,0 +1,97 @@
+"""The fine mesh: conforming, as large as before, and asked for nearest points."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import NEVER
+from cellcolor.errors import TooLarge
+from cellcolor.frontend.parts.surface import Surface, every_edge, face_normals
+from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
+
+
+def bumpy(seed: int, count: int = 5) -> Surface:
+    """A square grid of uneven triangles with bumps."""
+    random = np.random.default_rng(seed)
+    x, y = np.meshgrid(np.arange(count) * 0.01, np.arange(count) * 0.02, indexing="ij")
+    vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(count * count)])
+    vertices += random.uniform(-0.003, 0.003, vertices.shape)
+    at = np.arange(count * count).reshape(count, count)
+    a, b, c, d = (part.ravel() for part in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
+    faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    normals = np.zeros_like(vertices)
+    np.add.at(normals, faces, face_normals(vertices, faces)[:, None])
+    return Surface(vertices, faces, normals / np.linalg.norm(normals, axis=1, keepdims=True))
+
+
+@settings(deadline=None, max_examples=20)
+@given(seed=st.integers(0, 1000), longest=st.sampled_from([0.002, 0.005, 0.012, 0.1]))
+def test_refined_meshes_conform(seed: int, longest: float) -> None:
+    surface = bumpy(seed)
+    fine = refined(surface, longest, NEVER)
+    sides = np.concatenate([fine.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+    ends = fine.vertices[every_edge(fine.triangles)]
+    assert np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max() <= longest
+    # Every directed edge once: each edge has one triangle on each side, or is on the border.
+    assert len(np.unique(sides, axis=0)) == len(sides)
+    euler = len(fine.vertices) - len(every_edge(fine.triangles)) + len(fine.triangles)
+    assert euler == 1  # a disc, so nowhere torn
+    whole = np.linalg.norm(face_normals(surface.vertices, surface.faces), axis=1).sum() / 2
+    assert fine.areas.sum() == pytest.approx(whole)
+    # Each corner is where its barycentric coordinates in the given face say.
+    given_corners = surface.vertices[surface.faces[fine.face]]
+    assert np.allclose(fine.vertices[fine.triangles], fine.corners @ given_corners)
+
+
+def test_owners_have_a_third_of_each_face() -> None:
+    surface = bumpy(1)
+    fine = refined(surface, 0.0008, NEVER)
+    owned = np.bincount(fine.owner, fine.areas, minlength=len(surface.vertices))
+    assert np.allclose(owned, surface.vertex_areas(), rtol=0.05)
+
+
+def brute_nearest(fine: FineMesh, point: Array) -> float:
+    """The distance from a point to the nearest of very many points of the mesh."""
+    share = np.linspace(0, 1, 41)
+    u, v = np.meshgrid(share, share)
+    inside = u + v <= 1
+    weights = np.column_stack([1 - u[inside] - v[inside], u[inside], v[inside]])
+    corners = fine.surface.vertices[fine.surface.faces]
+    points = np.einsum("wc,fcd->fwd", weights, corners).reshape(-1, 3)
+    return float(np.linalg.norm(points - point, axis=1).min())
+
+
+def test_nearest_points_are_the_nearest() -> None:
+    fine = refined(bumpy(2), 0.004, NEVER)
+    random = np.random.default_rng(0)
+    points = random.uniform([-0.01, -0.01, -0.01], [0.05, 0.09, 0.02], (200, 3))
+    located = fine.locate(points, np.tile([0.0, 0.0, 1.0], (200, 1)))
+    found = np.linalg.norm(located.points - points, axis=1)
+    for point, distance in zip(points, found, strict=True):
+        brute = brute_nearest(fine, point)
+        assert brute - 4e-4 <= distance <= brute + 1e-12
+
+
+def test_of_a_thin_sheet_the_side_that_faces_the_tool_is_meant() -> None:
+    """Two squares 0.1 mm apart, back to back."""
+    flat = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) * 0.02
+    under = flat - [0, 0, 1e-4]
+    faces = np.array([[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]])
+    normals = np.repeat([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], 4, axis=0)
+    fine = refined(Surface(np.concatenate([flat, under]), faces, normals), 0.003, NEVER)
+    place = np.array([[0.01, 0.01, -0.0001]])  # on the lower one
+    for side in (1.0, -1.0):
+        located = fine.locate(place, np.array([[0.0, 0.0, side]]))
+        assert located.normals[0, 2] == side
+
+
+def test_what_would_not_fit_into_memory_is_refused() -> None:
+    with pytest.raises(TooLarge, match="too large to be judged"):
+        refined(bumpy(0), 1e-5, NEVER)
