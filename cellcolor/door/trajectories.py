@@ -55,7 +55,7 @@ def judge_trajectory(
         InputError: the subject is no scene, or the trajectory is of another arm.
         OutOfTime: the deadline came before there was a verdict.
     """
-    from cellcolor import oracle
+    from cellcolor.oracle import prove
 
     built = subject.build()
     with extras_for("the front end"):
@@ -71,7 +71,7 @@ def judge_trajectory(
         given = completed(given, prepared.robot, deadline)
     report("proven minimum")
     # Half of the time is for the judge, who has something to say whatever is proved.
-    bounds = oracle.proven_range(built.surface, time_limit=deadline.share(0.5).left)
+    bounds = prove(built.surface, deadline.share(0.5)).bounds
     return check_trajectory(
         prepared,
         built,
