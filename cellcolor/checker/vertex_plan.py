@@ -10,6 +10,26 @@ from cellcolor.data.surface import LabelledSurface
 
 
 @dataclass(frozen=True, slots=True)
+class Violation:
+    """Why a plan is not valid at a vertex.
+
+    Attributes:
+        vertex: the vertex.
+        color: the color that the plan has there, None for none.
+        place: where the vertex is, m.
+        reason: what is wrong, a clause.
+    """
+
+    vertex: int
+    color: int | None
+    place: tuple[float, float, float]
+    reason: str
+
+    def __str__(self) -> str:
+        return f"vertex_colors[{self.vertex}]: {self.reason}"
+
+
+@dataclass(frozen=True, slots=True)
 class PlanReport:
     """The verdict on a plan.
 
@@ -18,11 +38,13 @@ class PlanReport:
         segments: the number of segments counted, None when the plan is not valid.
         segment_of: the segment of each vertex, -1 where it has no color; numbered in the order of
             their first vertices. Empty when the plan is not valid.
+        violations: those of the problems that are about a vertex.
     """
 
     problems: tuple[str, ...]
     segments: int | None
     segment_of: tuple[int, ...] = ()
+    violations: tuple[Violation, ...] = ()
 
     @property
     def valid(self) -> bool:
@@ -41,17 +63,20 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
     if len(plan.vertex_colors) != count:
         given = len(plan.vertex_colors)
         return PlanReport((f"vertex_colors: {given} entries for {count} vertices",), None)
-    problems = []
+    violations = []
     for vertex, (color, available) in enumerate(
         zip(plan.vertex_colors, surface.vertex_colors, strict=True)
     ):
-        where = f"vertex_colors[{vertex}]"
         if color is None and available:
-            problems.append(f"{where}: null, but colors {list(available)} reach this vertex")
+            reason = f"null, but colors {list(available)} reach this vertex"
         elif color is not None and color not in available:
-            problems.append(f"{where}: color {color} does not reach this vertex")
-    if problems:
-        return PlanReport(tuple(problems), None)
+            reason = f"color {color} does not reach this vertex"
+        else:
+            continue
+        x, y, z = surface.vertices[vertex].tolist()
+        violations.append(Violation(vertex, color, (x, y, z), reason))
+    if violations:
+        return PlanReport(tuple(map(str, violations)), None, violations=tuple(violations))
     segments: Groups[int] = Groups()
     for vertex, color in enumerate(plan.vertex_colors):
         if color is not None:

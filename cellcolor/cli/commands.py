@@ -285,7 +285,9 @@ def bench(files: tuple[Path, ...], time_limit: float) -> int:
 
 
 @cellcolor.command()
-@click.argument("files", metavar="FILE [SOLUTION.json]", nargs=-1, required=True, type=_INPUT)
+@click.argument(
+    "files", metavar="FILE [SOLUTION.json|PLAN.json]", nargs=-1, required=True, type=_INPUT
+)
 @click.option(
     "-o",
     "--output",
@@ -321,10 +323,10 @@ def show(
 ) -> int:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
-    With a solution after what was solved: by segment.
+    With a solution after what was solved, or a plan on its surface: by segment.
     """
     if len(files) > 2:
-        raise click.UsageError("one file to show, or one and its solution")
+        raise click.UsageError("one file to show, or one and its solution or plan")
     implied = {
         "color": color is not None,
         "reasons": reason,

@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.inputs import open_file
+from cellcolor.cli.inputs import is_plan, open_file
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import say
 from cellcolor.door.drawing import View, draw, kind_of_picture, picture_of
@@ -27,13 +27,17 @@ def show_files(
     """Draw one picture.
 
     Args:
-        files: what to show, and its solution if there is a second one.
+        files: what to show, and its solution or a plan if there is a second one.
         output: the picture's file.
         name: of the picture; what else it is drawn of is in a ``View``.
     """
     kind = kind_of_picture(output)
     check_output(output, kind, files)
-    view = View(name, files[1] if len(files) > 1 else None, color, vertex, branch)
+    claim = files[1] if len(files) > 1 else None
+    if claim is not None and name == "segments" and is_plan(claim):
+        name = "plan"
+    claims = {"plan" if name == "plan" else "solution": claim}
+    view = View(name, color=color, vertex=vertex, branch=branch, **claims)
     with extras_for(files[0]):
         try:
             picture = picture_of(view)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cellcolor.checker.division import check_solution
+from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.door.extras import extras_for
 from cellcolor.door.subject import Subject
@@ -84,6 +85,7 @@ class View:
         color: whose domain, by name or number.
         vertex: that the arm is on.
         branch: of the arm, or of the reasons, by name or number.
+        plan: of another planner, or its file.
     """
 
     name: str
@@ -91,6 +93,7 @@ class View:
     color: str | int | None = None
     vertex: int | None = None
     branch: str | int | None = None
+    plan: Plan | str | PathLike[str] | None = None
 
 
 def kind_of_picture(path: Path) -> FileKind:
@@ -117,6 +120,7 @@ def picture_of(view: View) -> Picture:
         "vertex": view.vertex,
         "branch": view.branch,
         "solution": view.solution,
+        "plan": view.plan,
     }
     for part, given in options.items():
         if given is None and part in picture.needs:
@@ -158,6 +162,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
         "graph": subject.graph,
         "decomposition": lambda: subject.decomposition,
         "solution": lambda: _solution(subject, view.solution),
+        "plan": lambda: view.plan if isinstance(view.plan, Plan) else Plan.read(view.plan or ""),
         "reasons": lambda: subject.reasons,
         "color": color,
         "vertex": vertex,

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.checker.division import check_solution
-from cellcolor.checker.vertex_plan import check_plan
+from cellcolor.checker.vertex_plan import PlanReport, check_plan
 from cellcolor.data import plan as plan_file
 from cellcolor.data.plan import Plan
 from cellcolor.data.proof_wording import reason_of, witness_in_words
@@ -145,23 +145,24 @@ class Oracle:
             plan = plan.solution
         if isinstance(plan, Solution):
             report = check_solution(self._subject.graph(), plan)
-            problems, segments = report.problems, None if report.problems else report.segments
-            segment_of: tuple[int, ...] = ()
+            segments = None if report.problems else report.segments
+            found, given = PlanReport(report.problems, segments), None
         else:
             given = plan if isinstance(plan, Plan) else Plan(self._colors(plan))
             found = check_plan(self.surface, given)
-            problems, segments, segment_of = found.problems, found.segments, found.segment_of
+        about: dict[str, Any] = {"surface": self.surface, "plan": given}
+        segments = found.segments
         if segments is None:
-            return Verdict(problems, None, self._known)
+            return Verdict(found.problems, None, self._known, found.violations, **about)
         bounds = self.prove(deadline or deadline_after(self._time_limit)).bounds
         if segments < bounds.lower:
             raise BeatenBound(self.surface.name, segments, bounds.lower)
         if segments == bounds.lower:
-            return Verdict((), segments, bounds, why=self._why)
+            return Verdict((), segments, bounds, why=self._why, **about)
         improvement = None
-        if segment_of and self.best is not None:
-            improvement = improvement_of(self.surface, segment_of, self.best)
-        return Verdict((), segments, bounds, improvement)
+        if given is not None and self.best is not None:
+            improvement = improvement_of(self.surface, found.segment_of, self.best)
+        return Verdict((), segments, bounds, improvement=improvement, **about)
 
     def __repr__(self) -> str:
         proved = f", {self.__dict__['_proof'].bounds}" if "_proof" in self.__dict__ else ""

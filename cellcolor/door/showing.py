@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from os import PathLike
 
+from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.door.drawing import Drawing, View, draw, kind_of_picture, picture_of
 from cellcolor.door.result import Result
@@ -23,6 +24,7 @@ def show(
     color: str | int | None = None,
     vertex: int | None = None,
     branch: str | int | None = None,
+    plan: Plan | str | PathLike[str] | None = None,
 ) -> Drawing:
     """Draw a scene, a labelled surface, an instance or a result.
 
@@ -33,12 +35,13 @@ def show(
     Args:
         source: what to draw: its file, its shipped name, or the value.
         path: a file .html, .png or .svg; None draws without writing, for notebooks.
-        view: the picture: ``cells``, ``color``, ``graph``, ``reasons`` (why points are out of
-            reach), ``segments`` or ``arm``; None for what the options below ask for.
+        view: the picture: ``cells``, ``color``, ``graph``, ``plan``, ``reasons`` (why points
+            are out of reach), ``segments`` or ``arm``; None for what the options below ask for.
         solution: by segment, in this solution, result or file of one.
         color: where one color is available, by its name or number.
         vertex: the arm on this vertex, in one ``branch``.
         branch: an inverse-kinematic branch, by its name or number.
+        plan: by segment, in this plan of another planner or the file of one.
 
     Raises:
         InputError: there is nothing of that kind to be seen, or the file cannot be written.
@@ -49,14 +52,14 @@ def show(
         solution = solution.solution
     subject = source.subject if isinstance(source, Result) else open_subject(source)
     if view is None:
-        asked = {"color": color, "arm": vertex, "segments": solution}
+        asked = {"color": color, "arm": vertex, "segments": solution, "plan": plan}
         names = [name for name, given in asked.items() if given is not None]
         if len(names) > 1:
-            raise InputError(None, None, "one of color, vertex and solution at a time")
+            raise InputError(None, None, "one of color, vertex, solution and plan at a time")
         view = names[0] if names else _usual_view(source, subject)
     if view == "segments" and solution is None and isinstance(source, Result):
         solution = source.solution
-    seen = View(view, solution, color, vertex, branch)
+    seen = View(view, solution, color, vertex, branch, plan)
     drawing = draw(picture_of(seen), subject, seen)
     if path is not None:
         drawing.save(path)

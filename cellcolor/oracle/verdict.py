@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from os import PathLike
+from typing import TYPE_CHECKING
 
+from cellcolor.checker.vertex_plan import Violation
+from cellcolor.data.plan import Plan
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
+from cellcolor.errors import InputError
 from cellcolor.oracle.improvement import Improvement
 from cellcolor.oracle.ranges import ProvenRange
+
+if TYPE_CHECKING:
+    import cellcolor
 
 __all__ = ["Verdict"]
 
@@ -20,16 +29,22 @@ class Verdict:
         segments: of the plan; None when it is not valid.
         bounds: the proven range for any division of the surface; None when the plan is not valid
             and nothing was proved.
+        violations: those of the problems that are about a vertex, with its place.
         improvement: a plan with fewer segments, and what it joins; None where none is known.
         why: of an optimal plan why there cannot be fewer segments, a clause; None where nothing
             needs a reason or none is known.
+        surface: what the plan is on.
+        plan: what was judged; None for a solution.
     """
 
     problems: tuple[str, ...]
     segments: int | None
     bounds: ProvenRange | None
+    violations: tuple[Violation, ...] = field(default=(), compare=False)
     improvement: Improvement | None = field(default=None, compare=False)
     why: str | None = field(default=None, compare=False)
+    surface: LabelledSurface | None = field(default=None, compare=False, repr=False)
+    plan: Plan | None = field(default=None, compare=False, repr=False)
 
     @property
     def valid(self) -> bool:
@@ -78,6 +93,22 @@ class Verdict:
         if self.improvement is not None:
             best = min(best, self.improvement.segments_on_mesh)
         return ProvenRange(self.bounds.lower, best)
+
+    def plot(self, path: str | PathLike[str] | None = None) -> cellcolor.Drawing:
+        """Draw the plan by segment, or where it is not valid.
+
+        Args:
+            path: a file .html, .png or .svg; None draws without writing, for notebooks.
+
+        Raises:
+            InputError: a solution was judged, which is drawn by its result; the extra ``viz`` is
+                not installed, or the file cannot be written.
+        """
+        if self.surface is None or self.plan is None:
+            raise InputError(None, "plan", "is a solution; cellcolor.show draws it")
+        import cellcolor  # the whole package's face, which only somebody who looks at it needs
+
+        return cellcolor.show(self.surface, path, plan=self.plan)
 
     def __str__(self) -> str:
         if self.segments is None or self.lift_offs is None:

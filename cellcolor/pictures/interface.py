@@ -10,6 +10,7 @@ from cellcolor.pictures.picture import Picture2D, Picture3D
 if TYPE_CHECKING:
     from cellcolor.data.candidate_table import CandidateTable
     from cellcolor.data.instance import Instance
+    from cellcolor.data.plan import Plan
     from cellcolor.data.solution import Solution
     from cellcolor.data.surface import LabelledSurface
     from cellcolor.decomposition import Decomposition
@@ -25,6 +26,7 @@ Source = Literal[
     "graph",
     "decomposition",
     "solution",
+    "plan",
     "reasons",
     "build",
     "color",
@@ -69,6 +71,12 @@ class Given:
         """A solution of the graph with a division, which the checker has found valid."""
         solution: Solution = self._sources["solution"]
         return solution
+
+    @property
+    def plan(self) -> Plan:
+        """One color per vertex of the surface, valid or not."""
+        plan: Plan = self._sources["plan"]
+        return plan
 
     @property
     def reasons(self) -> CandidateTable:

@@ -17,6 +17,7 @@ PICTURES = {
     "cells": "cellcolor.pictures.by_cell_and_color:CellPicture",
     "color": "cellcolor.pictures.by_cell_and_color:ColorPicture",
     "graph": "cellcolor.pictures.topological_graph:GraphPicture",
+    "plan": "cellcolor.pictures.by_plan:PlanPicture",
     "reasons": "cellcolor.pictures.by_reason:ReasonPicture",
     "segments": "cellcolor.pictures.by_segment:SegmentPicture",
 }
