@@ -15,6 +15,7 @@ from meshes import drawn, surfaces
 import cellcolor
 import cellcolor.door.oracle
 from cellcolor.checker.vertex_plan import check_plan
+from cellcolor.cli import main
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
@@ -166,3 +167,36 @@ def test_a_coarse_mesh_is_named_beside_the_surface(middle: int) -> None:
     assert (verdict.improvement.segments, verdict.improvement.segments_on_mesh) == (2, 3)
     assert verdict.on_mesh == ProvenRange(2, 3)
     assert "this mesh is coarse: on it 3 segments are the fewest found" in str(verdict)
+
+
+def test_a_verdict_draws_itself(tmp_path: Path) -> None:
+    oracle = cellcolor.Oracle(ROW)
+    oracle.judge(WORSE).plot(tmp_path / "plan.png")
+    assert (tmp_path / "plan.png").read_bytes().startswith(b"\x89PNG")
+    drawing = oracle.judge(WORSE).plot()
+    assert str(drawing).endswith("plan with 3 segments, 2 lift-offs")
+    names = [layer.name for layer in drawing.picture.layers]  # type: ignore[union-attr]
+    assert [name.partition(":")[0] for name in names] == ["segment 0", "segment 1", "segment 2"]
+    with pytest.raises(InputError, match="is a solution"):
+        oracle.judge(cellcolor.solve(ROW)).plot()
+
+
+def test_what_is_wrong_has_a_place_and_is_drawn() -> None:
+    wrong = (None, BLUE, *WORSE[2:])
+    verdict = cellcolor.Oracle(ROW).judge(wrong)
+    assert [(v.vertex, v.color) for v in verdict.violations] == [(0, None), (1, BLUE)]
+    assert [v.place for v in verdict.violations] == [tuple(ROW.vertices[k]) for k in (0, 1)]
+    assert tuple(map(str, verdict.violations)) == verdict.problems
+    drawing = verdict.plot()
+    assert str(drawing).endswith("no valid plan, 2 vertices wrong")
+    assert "wrong color, or none" in [layer.name for layer in drawing.picture.layers]  # type: ignore[union-attr]
+
+
+def test_a_plan_is_shown_from_a_shell(tmp_path: Path) -> None:
+    surface, plan = tmp_path / "row.surface.json", tmp_path / "row.plan.json"
+    surface.write_text(ROW.to_json())
+    plan.write_text(Plan(WORSE).to_json())
+    assert main(["show", str(surface), str(plan), "-o", str(tmp_path / "plan.svg")]) == 0
+    assert "segment 2" in (tmp_path / "plan.svg").read_text()
+    plan.write_text(Plan(WORSE[1:]).to_json())
+    assert main(["show", str(surface), str(plan), "-o", str(tmp_path / "plan.svg")]) == 2
