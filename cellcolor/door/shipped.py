@@ -100,7 +100,7 @@ def _described(path: Path) -> str:
             if not line.startswith("#"):
                 break
             comment.append(line.removeprefix("#").strip())
-        kind = "scene" if path.parent.name == "scenes" else "robot"
+        kind = "robot" if path.parent.name == "robots" else "scene"
         return f"{kind}: {_first_sentence(' '.join(comment))}"
     import json
 

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import itertools
-
 import numpy as np
 import pinocchio as pin
 import pytest
+from covers import covers
 from reasons import Reason
 from shipped import SCENES, shipped
 
@@ -34,17 +33,6 @@ LIFT_OFFS = {
 
 def built(name: str, vertices: int) -> BuildResult:
     return build_surface(shipped(name, vertices))
-
-
-def covers(surface: LabelledSurface, count: int) -> list[set[str]]:
-    """All choices of so many colors that together reach every reachable vertex."""
-    needs = {frozenset(colors) for colors in surface.vertex_colors if colors}
-    chosen = itertools.combinations(range(len(surface.colors)), count)
-    return [
-        {surface.colors[color] for color in colors}
-        for colors in chosen
-        if all(need & set(colors) for need in needs)
-    ]
 
 
 def wrist_above(robot: Robot, configurations: Array) -> list[bool]:

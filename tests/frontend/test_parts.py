@@ -1,0 +1,127 @@
+"""The shipped parts of real shape: their meshes, their minima, and the torus that is refused."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+from covers import covers
+from library import INSTANCES
+from shipped import TOP
+
+import cellcolor
+from cellcolor.deadline import Deadline
+from cellcolor.decomposition import decompose
+from cellcolor.errors import InputError
+from cellcolor.frontend import build_surface
+from cellcolor.frontend.scene import Scene
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+PARTS = INSTANCES / "parts"
+# Euler's characteristic: 2 of a ball; two less for each of the bracket's bores through it, and none
+# of a torus; 1 of a disc, one less for each hole.
+MESHES = {
+    "bracket": 2 - 2 * 3,
+    "blend": 2,
+    "saddle": 1,
+    "perforated_sheet": 1 - 5,
+    "sphere": 2,
+    "torus": 0,
+}
+CLOSED = {"bracket", "blend", "sphere", "torus"}
+# The paper has no such parts. As many colors are needed to reach every point, whatever the division
+# (see the test), and a division with no more segments exists.
+SEGMENTS = {
+    "bracket": 5,
+    "blend": 4,
+    "saddle": 2,
+    "perforated_sheet": 3,
+    "sphere": 4,
+    "torus": 4,
+}
+SLOW = pytest.mark.slow
+QUICK = ("saddle", "perforated_sheet")
+
+
+def some_slow(names: dict[str, int]) -> list[object]:
+    """Parts that take seconds to build or to make are not in every run."""
+    return [pytest.param(name, marks=() if name in QUICK else SLOW) for name in names]
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_meshes(name: str) -> None:
+    """Even triangles, outside out, and small files."""
+    file = PARTS / f"{name}.obj"
+    assert file.stat().st_size < 150_000
+    mesh = trimesh.load_mesh(file, process=False)
+    assert 1000 <= len(mesh.vertices) <= 3000
+    assert mesh.is_winding_consistent and mesh.euler_number == MESHES[name]
+    assert mesh.is_watertight == (name in CLOSED)
+    assert name not in CLOSED or mesh.volume > 0
+    smallest = np.degrees(mesh.face_angles.min(axis=1))
+    assert smallest.min() > 20 and np.percentile(smallest, 10) > 40  # of 60 at most
+    long = mesh.edges_unique_length
+    assert long.max() < 2.2 * np.median(long)
+
+
+def test_size_of_bracket_ball_and_torus() -> None:
+    """Volumes: of the ball and the torus in closed form; the bracket's of its solid pieces."""
+    volume = {name: trimesh.load_mesh(PARTS / f"{name}.obj").volume for name in CLOSED}
+    assert volume["sphere"] == pytest.approx(4 / 3 * np.pi * 110**3, rel=0.01)
+    assert volume["torus"] == pytest.approx(2 * np.pi**2 * 125 * 40**2, rel=0.02)
+    plates = 160 * (16 * 256 + 16 * 200 - 20**2 / 2 + 45**2 * (1 - np.pi / 4))
+    rib = 16 * (150 * 95 / 2 - 45**2 * (1 - np.pi / 4))
+    boss = np.pi * 12 / 3 * (30**2 + 30 * 20 + 20**2)
+    holes = np.pi * (2 * 12**2 * 16 + 10**2 * 28)
+    # Polygons in place of circles make bores narrower and fill some of the fillet.
+    assert volume["bracket"] == pytest.approx(plates + rib + boss - holes, rel=0.004)
+
+
+def test_the_bracket_has_sharp_edges() -> None:
+    """Many neighboring faces at right angles, and nearly all others flat, chamfered or filleted."""
+    mesh = trimesh.load_mesh(PARTS / "bracket.obj", process=False)
+    turn = np.degrees(mesh.face_adjacency_angles)
+    assert (np.abs(turn - 90) < 1).sum() > 300
+    assert (turn < 1).mean() > 0.6
+
+
+@pytest.mark.parametrize("name", some_slow(MESHES))
+def test_files_are_what_the_script_makes(name: str, tmp_path: Path) -> None:
+    script = TOP / "benchmarks" / "parts" / "make.py"
+    subprocess.run([sys.executable, script, tmp_path, name], check=True, capture_output=True)
+    assert (tmp_path / f"{name}.obj").read_bytes() == (PARTS / f"{name}.obj").read_bytes()
+
+
+def test_no_part_is_forgotten() -> None:
+    scenes = {file.stem for file in PARTS.glob("*.toml")}
+    assert scenes == {*MESHES, "torus_refused"} and SEGMENTS.keys() == MESHES.keys()
+    assert {file.stem for file in PARTS.glob("*.obj")} == MESHES.keys()
+    listed = cellcolor.library()
+    assert all(listed[name].startswith("scene: ") for name in scenes)
+
+
+@pytest.mark.parametrize("name", some_slow(SEGMENTS))
+def test_minima(name: str) -> None:
+    """Two solvers, and a bound that neither of them has made: colors that reach every point."""
+    result = build_surface(PARTS / f"{name}.toml")
+    assert result.report.reachable_area_m2 > 0.84 * result.report.area_m2
+    instance = decompose(result.surface)
+    for solver in ("cp-sat", "dfs"):
+        solution = solve(instance, Options(deadline=Deadline.after(60), workers=2), solver)
+        assert solution.status == "optimal" and solution.proved_for_surface
+        assert solution.segments == SEGMENTS[name]
+    assert not covers(result.surface, SEGMENTS[name] - 1)
+
+
+def test_the_refused_torus() -> None:
+    """It is the torus in the same place, and what is wrong is said with file and vertex."""
+    scene, refused = (Scene.read(PARTS / f"{name}.toml") for name in ("torus", "torus_refused"))
+    assert scene.object == refused.object and scene.placement == refused.placement
+    result = build_surface(refused)
+    with pytest.raises(InputError, match=r"lies in cell 0, which is not planar \(genus 1\)"):
+        decompose(result.surface)
