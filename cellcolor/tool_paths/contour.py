@@ -8,15 +8,15 @@ from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
-from cellcolor.tool_paths.distances import distance_along
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.joined_loops import join_loops
 from cellcolor.tool_paths.level_lines import Sliced, level_lines, slice_along
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["lay_contours"]
+__all__ = ["FINEST", "lay_contours", "lay_loops"]
 
-_FINEST = 0.5  # longest edge, in spacings
+FINEST = 0.5
+"""Longest edge of the meshes that level lines are drawn on, in spacings."""
 _CORE = 0.7  # where a core reaches so far, in spacings, inside the last loop, there is one more
 
 
@@ -30,10 +30,22 @@ def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
         spacing: between neighboring loops, m.
         deadline: when to give up.
     """
-    mesh = mesh.refined(_FINEST * spacing)
+    mesh = mesh.refined(FINEST * spacing)
     deadline.check()
-    border = np.flatnonzero(mesh.border)
-    distances = distance_along(mesh, border if len(border) else np.array([0]))
+    bordered = bool(mesh.border.any())
+    distances = mesh.from_border if bordered else mesh.distances_from(np.array([0]))
+    return lay_loops(mesh, distances, spacing, deadline)
+
+
+def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadline) -> Laid:
+    """Join the loops at half a spacing, one and a half, and so on of a field of distances.
+
+    Args:
+        mesh: a connected part of a segment, refined.
+        distances: (n,) 0 at the whole border, if there is one.
+        spacing: between neighboring loops, m.
+        deadline: when to give up.
+    """
     deadline.check()
     levels = spacing * (0.5 + np.arange(int(distances.max() / spacing) + 1))
     levels = levels[levels < distances.max()]

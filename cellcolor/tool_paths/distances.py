@@ -1,4 +1,4 @@
-"""Distances along a mesh: fast marching for smooth fields, shortest paths for ways."""
+"""Shortest ways along the edges of a mesh."""
 
 from __future__ import annotations
 
@@ -11,25 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 from cellcolor.arrays import Array, Index
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["Ways", "distance_along", "off_border", "ways_from"]
-
-
-def distance_along(mesh: Triangles, sources: Index) -> Array:
-    """(n,) distance of each vertex from the nearest source along the mesh, m.
-
-    By fast marching (Kimmel and Sethian 1998): first order in the length of edges. A vertex that
-    is no source has a neighbor that is nearer, so nothing but sources is a lowest place.
-    """
-    from potpourri3d import MeshFastMarchingDistanceSolver
-
-    solver = MeshFastMarchingDistanceSolver(mesh.points, mesh.corners)
-    found = solver.compute_distance(
-        [[(int(vertex), [])] for vertex in sources], [[0.0] for _ in sources]
-    )
-    distances = np.asarray(found, dtype=np.float64)
-    if not np.isfinite(distances).all():  # needle-like triangles may defeat it
-        distances = np.asarray(dijkstra(mesh.graph(), indices=sources, min_only=True))
-    return distances
+__all__ = ["Ways", "off_border", "ways_from"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,8 +53,7 @@ def off_border(mesh: Triangles, room: float) -> Array:
         mesh: the mesh.
         room: from which distance on a border does not matter, m.
     """
-    border = np.flatnonzero(mesh.border)
-    if not len(border):
+    if not mesh.border.any():
         return mesh.lengths
-    near = 1.0 - np.minimum(distance_along(mesh, border) / room, 1.0)
+    near = 1.0 - np.minimum(mesh.from_border / room, 1.0)
     return np.asarray(mesh.lengths * (1.0 + 2.0 * near[mesh.edges].mean(axis=1)))

@@ -18,7 +18,7 @@ from cellcolor.union_find import UnionFind
 
 __all__ = ["join_loops"]
 
-_MOST_CANDIDATES = 400  # bridges looked at for one door
+_MOST_CANDIDATES = 250  # bridges looked at for one door
 _MOST_TRIED = 2000  # pairs of them
 
 

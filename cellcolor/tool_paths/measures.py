@@ -9,7 +9,6 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
-from cellcolor.tool_paths.distances import distance_along
 from cellcolor.tool_paths.interface import Laid
 
 __all__ = ["PathMeasures", "Uncovered", "measure"]
@@ -73,7 +72,7 @@ def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, lis
     points = mesh.points[walk]
     steps = np.diff(points, axis=0)
     lengths = np.linalg.norm(steps, axis=1)
-    distances = distance_along(mesh, np.unique(walk))
+    distances = mesh.distances_from(np.unique(walk))
     areas = mesh.vertex_areas
     area = float(areas.sum())
     visits = visits_of(laid, spacing)

@@ -7,7 +7,7 @@ from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
-from cellcolor.tool_paths.distances import distance_along, off_border, ways_from
+from cellcolor.tool_paths.distances import off_border, ways_from
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
 
@@ -35,7 +35,7 @@ def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
     walk = laid.walk if len(laid.walk) > 1 else _along(mesh, weights, spacing)
     for _ in range(_ROUNDS):
         deadline.check()
-        targets = _targets(mesh, distance_along(mesh, np.unique(walk)), spacing)
+        targets = _targets(mesh, mesh.distances_from(np.unique(walk)), spacing)
         if not targets:
             break
         ways = ways_from(mesh.graph(weights), np.unique(walk))

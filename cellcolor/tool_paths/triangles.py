@@ -9,9 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Array, Index, Mask
 
@@ -85,6 +87,31 @@ class Triangles:
         on_border[self.edges[alone]] = True
         return on_border
 
+    @cached_property
+    def _marching(self) -> Any:
+        from potpourri3d import MeshFastMarchingDistanceSolver  # only where a path is laid
+
+        return MeshFastMarchingDistanceSolver(self.points, self.corners)
+
+    def distances_from(self, sources: Index) -> Array:
+        """(n,) distance of each vertex from the nearest source along the mesh, m.
+
+        By fast marching (Kimmel and Sethian 1998): first order in the length of edges. A vertex
+        that is no source has a neighbor that is nearer, so nothing but sources is a lowest place.
+        """
+        found = self._marching.compute_distance(
+            [[(vertex, [])] for vertex in sources.tolist()], [[0.0]] * len(sources)
+        )
+        distances = np.asarray(found, dtype=np.float64)
+        if not np.isfinite(distances).all():  # needle-like triangles may defeat it
+            distances = np.asarray(dijkstra(self.graph(), indices=sources, min_only=True))
+        return distances
+
+    @cached_property
+    def from_border(self) -> Array:
+        """(n,) distance of each vertex from the border along the mesh, m; there must be one."""
+        return self.distances_from(np.flatnonzero(self.border))
+
     def graph(self, weights: Array | None = None, edges: Mask | None = None) -> csr_matrix:
         """The edges as a symmetric matrix of weights, their lengths if none are given.
 
@@ -101,17 +128,14 @@ class Triangles:
             (np.concatenate([values, values]), (ends.T.ravel(), ends[:, ::-1].T.ravel())), (n, n)
         )
 
-    @cached_property
-    def face_of_edge(self) -> dict[tuple[int, int], int]:
-        """A triangle of the surface that each edge lies in, by its ends, ascending."""
+    def faces_of_walk(self, walk: Index) -> Index:
+        """A triangle of the surface that each step of a path lies in."""
         faces = np.empty(len(self.edges), dtype=np.int64)
         faces[self.edge_of_side.ravel()] = np.repeat(self.faces, 3)
-        return dict(zip(map(tuple, self.edges.tolist()), faces.tolist(), strict=True))
-
-    def faces_of_walk(self, walk: Index) -> Index:
-        """The triangles of the surface that the steps of a path lie in."""
-        steps = np.sort(np.stack([walk[:-1], walk[1:]], axis=1), axis=1).tolist()
-        return np.array([self.face_of_edge[a, b] for a, b in steps], dtype=np.int64)
+        count = len(self.points)
+        steps = np.sort(np.stack([walk[:-1], walk[1:]], axis=1), axis=1)
+        keys = self.edges[:, 0] * count + self.edges[:, 1]  # ascending, as the edges are
+        return faces[np.searchsorted(keys, steps[:, 0] * count + steps[:, 1])]
 
     def refined(self, longest: float) -> Triangles:
         """Halve edges until none is longer, m; triangles stay conforming."""

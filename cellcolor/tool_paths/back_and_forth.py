@@ -1,0 +1,105 @@
+"""The pattern ``back-and-forth``: parallel lines, walked to and fro, joined at their ends."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import dijkstra
+
+from cellcolor.arrays import Index
+from cellcolor.deadline import Deadline
+from cellcolor.tool_paths.contour import FINEST
+from cellcolor.tool_paths.distances import off_border
+from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.level_lines import LevelLine, level_lines, slice_along
+from cellcolor.tool_paths.sweep import sweep_field
+from cellcolor.tool_paths.triangles import Triangles
+
+__all__ = ["lay_back_and_forth"]
+
+_INSET = 0.5  # spacings: how far from the border lines end
+
+
+def lay_back_and_forth(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
+    """Lines at equal distances from one in the middle, each walked once, the nearest one next.
+
+    Args:
+        mesh: a connected part of a segment.
+        spacing: between neighboring lines, m.
+        deadline: when to give up.
+    """
+    mesh = mesh.refined(FINEST * spacing)
+    if mesh.border.any():  # the line along which lines end is there to be walked along
+        mesh = slice_along(mesh, mesh.from_border, np.array([_INSET * spacing])).mesh
+    mesh, field = sweep_field(mesh)
+    deadline.check()
+    low, high = float(field.min()), float(field.max())
+    count = max(1, round((high - low) / spacing))
+    levels = low + (high - low) * (np.arange(count) + 0.5) / count
+    sliced = slice_along(mesh, field, levels)
+    mesh = sliced.mesh
+    lines = sorted(level_lines(sliced), key=lambda line: line.level)
+    rows = [row for line in lines for row in _inside(mesh, line, spacing)]
+    if not rows:
+        return Laid(mesh, [])
+    return Laid(mesh, _one_after_the_other(mesh, rows, spacing, deadline))
+
+
+def _inside(mesh: Triangles, line: LevelLine, spacing: float) -> list[tuple[list[int], bool]]:
+    """The stretches of a line that keep away from the border, and whether they close."""
+    row = line.vertices
+    if not mesh.border.any():
+        return [(row.tolist(), line.closed)]
+    kept = mesh.from_border[row] > 0.9 * _INSET * spacing
+    if kept.all():
+        return [(row.tolist(), line.closed)]
+    if line.closed:  # begin where it is interrupted
+        start = int(np.flatnonzero(~kept)[0])
+        row, kept = np.roll(row, -start), np.roll(kept, -start)
+    pieces = np.split(row, np.flatnonzero(np.diff(kept)) + 1)
+    wanted = [bool(kept[0]) ^ bool(number % 2) for number in range(len(pieces))]
+    return [
+        (piece.tolist(), False)
+        for piece, own in zip(pieces, wanted, strict=True)
+        if own and len(piece) > 1
+    ]
+
+
+def _one_after_the_other(
+    mesh: Triangles, rows: list[tuple[list[int], bool]], spacing: float, deadline: Deadline
+) -> list[int]:
+    """All lines, from the first on; after each the one with an end nearest to where it ends."""
+    graph = mesh.graph(off_border(mesh, spacing / 2))
+    left = set(range(len(rows)))
+    owner = np.full(len(mesh.points), -1, dtype=np.int64)
+    for number, (row, closed) in enumerate(rows):
+        owner[row if closed else [row[0], row[-1]]] = number
+    left.discard(0)
+    owner[rows[0][0]] = -1
+    walk = list(rows[0][0])
+    while left:
+        deadline.check()
+        way = _nearest(graph, walk[-1], owner, spacing)
+        row, closed = rows[int(owner[way[-1]])]
+        left.discard(int(owner[way[-1]]))
+        owner[row] = -1
+        at = row.index(way[-1])
+        if closed:
+            row = row[at:] + row[:at]
+        elif at:
+            row = row[::-1]
+        walk += [*way[1:-1], *row]
+    return walk
+
+
+def _nearest(graph: csr_matrix, start: int, owner: Index, spacing: float) -> list[int]:
+    """The shortest way to an end of a line that is still to be walked."""
+    ends = np.flatnonzero(owner >= 0)
+    for limit in (4 * spacing, 16 * spacing, np.inf):
+        lengths, before = dijkstra(graph, indices=start, limit=limit, return_predecessors=True)
+        if np.isfinite(lengths[ends]).any():
+            break
+    way = [int(ends[lengths[ends].argmin()])]
+    while way[-1] != start:
+        way.append(int(before[way[-1]]))
+    return way[::-1]
