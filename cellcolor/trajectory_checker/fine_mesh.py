@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
-from cellcolor.frontend.parts.surface import Surface, every_edge, face_normals
+from cellcolor.frontend.parts.surface import Surface, face_normals
 
 __all__ = ["FineMesh", "Located", "refined"]
 
@@ -83,13 +83,13 @@ class FineMesh:
         A way along these is longer than the shortest one on the surface, by some percent: with
         single edges alone it would be up to a sixth.
         """
-        edges, n = every_edge(self.triangles), len(self.vertices)
+        edges, n = _edges(self.triangles), len(self.vertices)
         one = csr_array((np.ones(len(edges), dtype=np.int8), tuple(edges.T)), shape=(n, n))
         one = one + one.T
-        both = (one + one @ one).tocoo()
-        i, j = both.coords
-        apart = np.linalg.norm(self.vertices[i] - self.vertices[j], axis=1)
-        return csr_array((apart, (i, j)), shape=(n, n))
+        both = (one + one @ one).tocsr()
+        i, j = np.repeat(np.arange(n), np.diff(both.indptr)), both.indices
+        apart = np.sqrt(sum((x[i] - x[j]) ** 2 for x in self.vertices.T))
+        return csr_array((apart, both.indices, both.indptr), shape=(n, n))
 
     @cached_property
     def _tree(self) -> cKDTree:
@@ -168,7 +168,7 @@ def refined(surface: Surface, longest: float, deadline: Deadline) -> FineMesh:
     corners = np.tile(np.eye(3), (len(triangles), 1, 1))
     while True:
         deadline.check()
-        edges = every_edge(triangles)
+        edges = _edges(triangles)
         lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
         split = edges[lengths > longest]
         if not len(split):
@@ -179,6 +179,15 @@ def refined(surface: Surface, longest: float, deadline: Deadline) -> FineMesh:
         middle = np.arange(len(vertices), len(vertices) + len(split))
         vertices = np.concatenate([vertices, vertices[split].mean(axis=1)])
         triangles, face, corners = _bisected(triangles, face, corners, split, middle)
+
+
+def _edges(triangles: Index) -> Index:
+    """Every edge (k, 2) once, smaller vertex first, in lexicographic order."""
+    size = int(triangles.max()) + 1
+    one, other = triangles.ravel(), np.roll(triangles, -1, axis=1).ravel()
+    # One number a side sorts many times faster than pairs do.
+    keys = np.sort(np.minimum(one, other) * size + np.maximum(one, other))
+    return np.column_stack(np.divmod(keys[np.diff(keys, prepend=-1) > 0], size))
 
 
 def _bisected(

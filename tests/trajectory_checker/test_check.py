@@ -14,6 +14,7 @@ pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 import rasters
 
 from cellcolor.arrays import Array
+from cellcolor.data.surface import Crack
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
@@ -128,6 +129,62 @@ def test_a_change_of_branch_in_contact() -> None:
     (fault,) = verdict.of_kind("branch")
     assert (fault.sample, fault.last_sample) == (middle() - 1, middle())
     assert "flipped" in fault.text
+
+
+def crossings(path: Array, walls: Array) -> int:
+    """How often a path (k, 2) crosses walls (w, 2, 2), by signs of areas."""
+    a, b = path[:-1, None], path[1:, None]
+    c, d = walls[None, :, 0], walls[None, :, 1]
+
+    def side(p: Array, q: Array, r: Array) -> Array:
+        u, v = q - p, r - p
+        return np.asarray(u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0] > 0)
+
+    hit = (side(a, b, c) != side(a, b, d)) & (side(c, d, a) != side(c, d, b))
+    return int(hit.sum())
+
+
+def test_cracks_that_are_crossed() -> None:
+    """Seen from above, a crack is a wall from the middle of one triangle over that of the edge to
+    that of the other one.
+    """
+    prepared, built, trajectory = rasters.cap()
+    vertices, faces = prepared.surface.vertices[:, :2], prepared.surface.faces
+    (color,) = {
+        int(color)
+        for color, branch in enumerate(built.stages.cleaned.coloring.branch)
+        if (built.node_color[:, branch] == color).all()
+        and prepared.kinematics.branches[branch] == on_the_way(trajectory)
+    }
+    random = np.random.default_rng(0)
+    expected, cracks = 0, []
+    for i, j in random.permutation(prepared.surface.edges())[:60].tolist():
+        middles = vertices[faces[(faces == i).any(axis=1) & (faces == j).any(axis=1)]].mean(axis=1)
+        edge = (vertices[i] + vertices[j]) / 2
+        walls = np.array([[middle, edge] for middle in middles])
+        cracks.append(Crack(i, j, (color,)))
+        for first, after in trajectory.strokes:
+            expected += crossings(trajectory.points[first:after, :2], walls)
+    torn = replace(built, surface=replace(built.surface, cracks=tuple(cracks)))
+    verdict = check_trajectory(prepared, torn, trajectory)
+    assert expected > 20
+    assert verdict.fault_counts == {"crack": expected}
+    colors = built.surface.vertex_colors
+    shared = [set(colors[c.i]) & set(colors[c.j]) - {color} for c in cracks]
+    other = tuple(
+        Crack(c.i, c.j, tuple(sorted(own))) for c, own in zip(cracks, shared, strict=True) if own
+    )
+    assert other
+    torn = replace(built, surface=replace(built.surface, cracks=other))
+    assert check_trajectory(prepared, torn, trajectory).valid
+
+
+def on_the_way(trajectory: Trajectory) -> str:
+    """The name of the branch of the first sample."""
+    prepared = rasters.cap()[0]
+    found = prepared.inverse(trajectory.points[:1], -trajectory.normals[:1])[0]
+    off = np.abs(np.remainder(found - trajectory.joints[0] + np.pi, 2 * np.pi) - np.pi)
+    return prepared.kinematics.branches[int(np.nanargmin(off.max(axis=1)))]
 
 
 def test_the_tip_may_not_pass_through_the_object_on_the_way() -> None:

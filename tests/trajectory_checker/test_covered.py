@@ -1,0 +1,184 @@
+"""Distances along the surface, passes and repeated stretches, on surfaces without any robot."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import NEVER
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.trajectory_checker.covered import patches, reach
+from cellcolor.trajectory_checker.dense import Dense
+from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
+from cellcolor.trajectory_checker.repeated import passes, repeated_stretches
+
+
+def strip(heights: list[tuple[float, float]], width: float = 0.06) -> Surface:
+    """A profile (x, z) drawn out along y; its outside is on the left of the way."""
+    profile = np.array(heights)
+    ys = np.linspace(0, width, 7)
+    vertices = np.array([[x, y, z] for x, z in profile for y in ys])
+    at = np.arange(len(vertices)).reshape(len(profile), len(ys))
+    a, b, c, d = (p.ravel() for p in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
+    faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+    along = np.gradient(profile, axis=0)
+    normals = np.column_stack([-along[:, 1], np.zeros(len(profile)), along[:, 0]])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return Surface(vertices, faces, np.repeat(normals, len(ys), axis=0))
+
+
+FLAT = strip([(x, 0.0) for x in np.linspace(0, 0.1, 11)])
+# There and back 1 mm lower, around a narrow end.
+SHEET = strip([(x, 0.0) for x in np.linspace(0, 0.1, 11)] + [(0.1, -0.001)]
+              + [(x, -0.001) for x in np.linspace(0.09, 0, 10)])  # fmt: skip
+
+
+def dense_along(points: Array, strokes: Array | None = None) -> Dense:
+    k = len(points)
+    none = np.zeros((k, 1))
+    down = np.tile([0.0, 0.0, -1.0], (k, 1))
+    stroke = np.zeros(k, dtype=np.int64) if strokes is None else strokes
+    return Dense(np.arange(k), np.zeros(k), none, points, down, np.ones(k, dtype=bool), stroke)
+
+
+def along(*corners: tuple[float, float]) -> Array:
+    """Points half a millimeter apart from corner to corner, on z = 0."""
+    parts = []
+    for start, end in pairwise(corners):
+        count = int(np.ceil(np.hypot(end[0] - start[0], end[1] - start[1]) / 0.0005))
+        parts.append(np.linspace(start, end, count, endpoint=False))
+    flat = np.concatenate([*parts, [corners[-1]]])
+    return np.column_stack([flat, np.zeros(len(flat))])
+
+
+def up(points: Array) -> Array:
+    return np.tile([0.0, 0.0, 1.0], (len(points), 1))
+
+
+def fine(surface: Surface) -> FineMesh:
+    return refined(surface, 0.0025, NEVER)
+
+
+@settings(deadline=None, max_examples=10)
+@given(seed=st.integers(0, 10_000))
+def test_distances_on_a_plane_are_plain_distances(seed: int) -> None:
+    """Never shorter, and by less than 9 % longer; over a whole surface it is one or two."""
+    random = np.random.default_rng(seed)
+    points = np.column_stack([random.uniform(0, [0.1, 0.06], (3, 2)), np.zeros(3)])
+    mesh = fine(FLAT)
+    found = reach(mesh, mesh.locate(points, up(points)), 0.03)
+    plain = np.linalg.norm(mesh.vertices[:, None] - points, axis=2)
+    near = plain.min(axis=1) < 0.027
+    assert np.all(found.distance >= plain.min(axis=1) - 1e-9)
+    assert np.all(found.distance[near] <= 1.09 * plain.min(axis=1)[near] + 1e-9)
+    assert np.all(found.distance[plain.min(axis=1) > 0.03] == np.inf)
+    own = found.nearest >= 0
+    of_nearest = plain[own, found.nearest[own]]
+    assert np.all(of_nearest <= found.distance[own] + 1e-9)
+
+
+def test_the_back_of_a_sheet_is_far_from_its_front() -> None:
+    mesh = fine(SHEET)
+    points = along((0.03, 0.0), (0.03, 0.06))
+    found = reach(mesh, mesh.locate(points, up(points)), 0.015)
+    back = mesh.vertices[:, 2] < -0.0005
+    assert np.all(np.isinf(found.distance[back]))
+    front = ~back & (np.abs(mesh.vertices[:, 0] - 0.03) < 0.013)
+    assert np.all(found.distance[front] < 0.015)
+    # Around the end it is as near as the way is long.
+    points = along((0.095, 0.0), (0.095, 0.06))
+    found = reach(mesh, mesh.locate(points, up(points)), 0.015)
+    x, below = mesh.vertices[:, 0], mesh.vertices[:, 2] == -0.001
+    way = 0.005 + 0.001 + (0.1 - x)
+    assert np.all(np.isfinite(found.distance[below & (way < 0.0145)]))
+    # Two edges are taken for one straight way, across the rim as well.
+    assert np.all(np.isinf(found.distance[below & (way > 0.017)]))
+    visits = passes(dense_along(points), np.arange(len(points)), mesh.locate(points, up(points)),
+                    mesh, 0.005)  # fmt: skip
+    assert not visits[below & (x < 0.097)].any()
+
+
+def visits_on_flat(points: Array, strokes: Array | None = None) -> tuple[Array, Array]:
+    mesh = fine(FLAT)
+    rows = np.arange(len(points))
+    located = mesh.locate(points, up(points))
+    return mesh.vertices, passes(dense_along(points, strokes), rows, located, mesh, 0.005)
+
+
+def test_passes_are_counted() -> None:
+    """Two lines 10 mm apart, joined at one end: each place beside a line is visited once."""
+    line = along((0.02, 0.01), (0.02, 0.05), (0.03, 0.05), (0.03, 0.01))
+    vertices, visits = visits_on_flat(line)
+    x, y = vertices[:, 0], vertices[:, 1]
+    inside = (y > 0.012) & (y < 0.04)
+    assert set(visits[inside & (np.abs(x - 0.02) < 0.0048)]) == {1}
+    assert set(visits[inside & (np.abs(x - 0.03) < 0.0048)]) == {1}
+    assert set(visits[(x < 0.0149) | (x > 0.0351)]) == {0}
+    # Around the turn it is one pass all along.
+    assert set(visits[(np.abs(x - 0.025) < 0.004) & (np.abs(y - 0.049) < 0.002)]) == {1}
+
+
+def test_the_same_line_again_is_a_second_pass() -> None:
+    once = along((0.02, 0.01), (0.02, 0.05))
+    for again in (once, once[::-1]):
+        both = np.concatenate([once, again])
+        strokes = np.repeat([0, 1], len(once))
+        vertices, visits = visits_on_flat(both, strokes)
+        beside = (np.abs(vertices[:, 0] - 0.02) < 0.0048) & (np.abs(vertices[:, 1] - 0.03) < 0.015)
+        assert set(visits[beside]) == {2}
+
+
+@settings(deadline=None, max_examples=25)
+@given(
+    begin=st.floats(0.0, 0.02),
+    length=st.floats(0.03, 0.06),
+    off=st.sampled_from([0.0, 0.002, 0.003]),
+)
+def test_repeated_stretches(begin: float, length: float, off: float) -> None:
+    """A second stroke beside a part of the first one, nearer than 2.5 mm or not."""
+    first = along((0.0, 0.03), (0.1, 0.03))
+    second = along((begin + length, 0.03 + off), (begin, 0.03 + off))
+    points = np.concatenate([first, second])
+    stroke = np.repeat([0, 1], [len(first), len(second)])
+    mesh = fine(FLAT)
+    located = mesh.locate(points, up(points))
+    found = repeated_stretches(dense_along(points, stroke), np.arange(len(points)), located,
+                               0.0025, 0.02)  # fmt: skip
+    if off > 0.0025:
+        assert found == []
+        return
+    (stretch,) = found
+    assert (stretch.first, stretch.last) == (len(first), len(points) - 1)
+    assert stretch.length == pytest.approx(length, abs=0.001)
+    assert points[stretch.earlier_first, 0] == pytest.approx(begin + length, abs=0.003)
+    assert points[stretch.earlier_last, 0] == pytest.approx(begin, abs=0.003)
+
+
+def test_crossing_an_earlier_pass_is_no_repetition() -> None:
+    points = along((0.0, 0.03), (0.1, 0.03), (0.1, 0.05), (0.05, 0.05), (0.05, 0.0))
+    mesh = fine(FLAT)
+    located = mesh.locate(points, up(points))
+    assert not repeated_stretches(
+        dense_along(points), np.arange(len(points)), located, 0.0025, 0.02
+    )
+
+
+def test_patches_are_the_parts_and_their_areas() -> None:
+    mesh = fine(FLAT)
+    x = mesh.vertices[:, 0]
+    areas = np.full(len(x), 1e-6)
+    found = patches(mesh, areas, (x < 0.0101) | (x > 0.0799))
+    assert [area for area, _ in found] == pytest.approx(
+        [1e-6 * (x > 0.0799).sum(), 1e-6 * (x < 0.0101).sum()]
+    )
+    assert found[0][1][0] > 0.08
+    assert found[1][1][0] < 0.01
+    assert patches(mesh, areas, np.zeros(len(x), dtype=bool)) == []
