@@ -7,6 +7,7 @@ import shlex
 import shutil
 import sys
 import tomllib
+from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
@@ -101,3 +102,28 @@ def test_a_family(clone: Path) -> None:
 def test_one_screen(guide: str) -> None:
     page = (ROOT / "docs" / "how-to" / f"{guide}.md").read_text("utf-8")
     assert len(page.splitlines()) <= 80
+
+
+def test_another_planner(tmp_path: Path) -> None:
+    """It fails as the guide says, and passes once it is mended."""
+    first, test, _, failure, second = found = blocks("test-another-planner")
+    ((pytest_command, *options),) = commands(found)
+    assert pytest_command == "pytest"
+    plugin = (
+        []
+        if entry_points(group="pytest11", name="cellcolor")
+        else ["-p", "cellcolor.testing.plugin"]
+    )
+    command = [sys.executable, "-m", "pytest", *plugin, *options]
+    follow(first, tmp_path)
+    follow(test, tmp_path)
+    done = run(command, tmp_path, tmp_path)
+    assert done.returncode == 1 and failure.text.strip() in done.stdout, done.stdout
+    follow(second, tmp_path)
+    done = run(command, tmp_path, tmp_path)
+    assert done.returncode == 0, done.stdout
+    # What the guide says of another surface.
+    tilted = test.text.replace("half_pipe", "hemisphere_tilted")
+    (tmp_path / "test_planner.py").write_text(tilted, encoding="utf-8")
+    done = run(command, tmp_path, tmp_path)
+    assert done.returncode == 1 and "1 fewer are proved to be enough" in done.stdout

@@ -1,0 +1,1 @@
+"""For the test suites of other planners: a pytest plugin, and Hypothesis strategies."""
