@@ -91,6 +91,7 @@ class CoveredArea:
         uncovered_m2: the area farther than 1.5 times the spacing from any pass and not so excused.
         mean_visits: of the area visited at all.
         most_visits: of any place.
+        visited_again_share: share of the area visited at all that is visited more than once.
         repeated_m: length of the passes that run along an earlier one.
         length_m: of all that is done in contact.
         length_times_spacing_per_area: 1 if passes lie side by side at just the spacing.
@@ -104,6 +105,7 @@ class CoveredArea:
     uncovered_m2: float
     mean_visits: float
     most_visits: int
+    visited_again_share: float
     repeated_m: float
     length_m: float
     length_times_spacing_per_area: float
@@ -112,11 +114,12 @@ class CoveredArea:
         settle(self)
 
     def __str__(self) -> str:
+        again = f"{self.repeated_m:.3f} of {self.length_m:.2f} m along earlier passes"
         return (
             f"covered {self.covered_share:.2%}, closely {self.closely_covered_share:.2%}, rightly "
             f"left out {self.left_out_share:.2%} of {self.reachable_m2:.4f} m²; visits "
-            f"{self.mean_visits:.2f} on average, {self.most_visits} at most; {self.repeated_m:.3f} "
-            f"of {self.length_m:.2f} m along earlier passes"
+            f"{self.mean_visits:.2f} on average, {self.most_visits} at most, again "
+            f"on {self.visited_again_share:.1%}; {again}"
         )
 
 

@@ -74,6 +74,9 @@ def judge_area(
     def share(of: Mask) -> float:
         return float(areas[of].sum() / total) if total else 0.0
 
+    def mean(of: Array | Mask | Index, where: Mask) -> float:
+        return float(np.average(of[where], weights=areas[where])) if where.any() else 0.0
+
     covered = CoveredArea(
         reachable_m2=total,
         spacing_m=spacing,
@@ -81,10 +84,9 @@ def judge_area(
         closely_covered_share=share(reached.distance <= NEAR * spacing),
         left_out_share=share(right),
         uncovered_m2=float(areas[uncovered].sum()),
-        mean_visits=float(np.average(visits[visited], weights=areas[visited]))
-        if visited.any()
-        else 0.0,
+        mean_visits=mean(visits, visited),
         most_visits=int(visits[visited].max(initial=0)),
+        visited_again_share=mean(visits > 1, visited),
         repeated_m=sum(stretch.length for stretch in twice),
         length_m=length,
         length_times_spacing_per_area=length * spacing / total if total else 0.0,

@@ -76,7 +76,7 @@ def check_trajectory(
     fine_edge = _WITHOUT_SPACING if motion is None else _FINE * motion.spacing_m
     fine = refined(prepared.surface, fine_edge, deadline)
     rows = np.flatnonzero(dense.contact)
-    located = fine.locate(dense.tips[rows], dense.outward[rows])
+    located = fine.locate(dense.tips[rows], dense.outward[rows], deadline)
     judge_contact(dense, rows, located, faults)
     deadline.check()
     branches = branches_of(prepared, dense, rows)

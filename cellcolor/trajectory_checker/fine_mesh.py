@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface, face_normals
 
@@ -106,7 +106,7 @@ class FineMesh:
     def _facing(self) -> Array:
         return _unit(face_normals(self.vertices, self.triangles))
 
-    def locate(self, points: Array, outward: Array) -> Located:
+    def locate(self, points: Array, outward: Array, deadline: Deadline = NEVER) -> Located:
         """The nearest points of the surface.
 
         Of a thin sheet, the side whose normals are less than 90 degrees off is meant, if one is.
@@ -114,10 +114,12 @@ class FineMesh:
         Args:
             points: (k, 3) in m.
             outward: (k, 3) against the tool's axis.
+            deadline: when to give up.
         """
         triangle = np.zeros(len(points), dtype=np.int64)
         weights = np.zeros((len(points), 3))
         for first in range(0, len(points), _AT_ONCE):
+            deadline.check()
             rows = np.arange(first, min(first + _AT_ONCE, len(points)))
             asked = min(_NEIGHBORS, len(self.triangles))
             while len(rows):

@@ -16,6 +16,7 @@ from cellcolor.trajectory_checker.tolerances import BRANCH, OFF_SURFACE, TILT
 
 __all__ = ["branches_of", "judge_contact", "judge_cracks"]
 
+_AT_ONCE = 20_000  # configurations; a matter of memory: half a kilobyte each
 _PARTS = 16  # of a step that seems to cross a crack, to see whether it passes by its end
 
 
@@ -75,13 +76,15 @@ def branches_of(prepared: PreparedScene, dense: Dense, rows: Index) -> Index:
     Joints are compared up to full circles, and without a last one that only turns the tool.
     """
     found = np.full(len(rows), -1)
-    solutions = prepared.inverse(dense.tips[rows], dense.axes[rows])[..., :TASK_JOINTS]
-    off = solutions - dense.joints[rows, None, :TASK_JOINTS]
-    off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
-    off = np.where(np.isnan(off), np.inf, off)
-    nearest = np.argmin(off, axis=1)
-    known = off[np.arange(len(rows)), nearest] <= BRANCH
-    found[known] = nearest[known]
+    for first in range(0, len(rows), _AT_ONCE):
+        part = rows[first : first + _AT_ONCE]
+        solutions = prepared.inverse(dense.tips[part], dense.axes[part])[..., :TASK_JOINTS]
+        off = solutions - dense.joints[part, None, :TASK_JOINTS]
+        off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+        off = np.where(np.isnan(off), np.inf, off)
+        nearest = np.argmin(off, axis=1)
+        known = off[np.arange(len(part)), nearest] <= BRANCH
+        found[first : first + _AT_ONCE][known] = nearest[known]
     return found
 
 

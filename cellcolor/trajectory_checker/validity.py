@@ -21,6 +21,7 @@ from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
 
 __all__ = ["judge_validity"]
 
+_AT_ONCE = 100_000  # configurations; verdicts hold where all bodies are, a kilobyte each
 _THIN = 1e-4  # m; radius of the axis of the tool's tip, which must not pass through the object
 
 
@@ -44,18 +45,24 @@ def judge_validity(
         faults.add("unplanned", text, sample, place=at_samples[sample])
     contact = np.flatnonzero(dense.contact)
     names = prepared.judge.reason_names
-    _note(dense, contact, prepared.judge(dense.joints[contact]).reasons, names, faults)
+    _note(dense, contact, _reasons(prepared.judge, dense.joints[contact]), names, faults)
     # What lies between two samples with no planned move is known to be nothing.
     on_the_way = np.flatnonzero(~dense.contact & ~(unplanned[dense.sample] & (dense.way > 0)))
     setup = prepared.setup.varied(constraints={"force": False, "conditioning": False})
     judge = Judge(replace(prepared.workplace, setup=setup), (), deadline)
-    reasons = judge(dense.joints[on_the_way]).reasons
+    reasons = _reasons(judge, dense.joints[on_the_way])
     if setup.constraints.collision:
         through = np.flatnonzero(reasons == VALID)
         rows = on_the_way[through]
         hit = _through_object(prepared, dense.tips[rows], dense.axes[rows])
         reasons[through[hit]] = judge.reason_names.index("object collision")
     _note(dense, on_the_way, reasons, judge.reason_names, faults)
+
+
+def _reasons(judge: Judge, joints: Array) -> NDArray[np.uint8]:
+    """The code (k,) of the first test that each configuration fails."""
+    parts = [joints[first : first + _AT_ONCE] for first in range(0, len(joints), _AT_ONCE)]
+    return np.concatenate([np.zeros(0, dtype=np.uint8), *(judge(p).reasons for p in parts)])
 
 
 def _through_object(prepared: PreparedScene, tips: Array, axes: Array) -> NDArray[np.bool_]:

@@ -137,6 +137,7 @@ VERDICT: Document = {
         "uncovered_m2": 0.75,
         "mean_visits": 1.5,
         "most_visits": 2,
+        "visited_again_share": 0.25,
         "repeated_m": 0.25,
         "length_m": 4.0,
         "length_times_spacing_per_area": 0.5,

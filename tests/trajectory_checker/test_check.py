@@ -305,6 +305,8 @@ def test_the_area_of_a_flat_raster() -> None:
     assert covered.reachable_m2 == pytest.approx(0.16 * 0.12)
     assert (covered.covered_share, covered.closely_covered_share) == pytest.approx((1.0, 1.0))
     assert covered.mean_visits == pytest.approx(10 / (120 / 14), rel=0.03)
+    # A place between two lines is visited by both where these are nearer than 10 mm.
+    assert covered.visited_again_share == pytest.approx(covered.mean_visits - 1, abs=0.01)
     assert covered.repeated_m == 0
     steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
     both = trajectory.contact[1:] & trajectory.contact[:-1]
