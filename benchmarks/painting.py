@@ -27,6 +27,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
 from cellcolor.lab.families.registry import LARGE, MEDIUM, SMALL, Family
+from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import paint
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -55,6 +56,8 @@ class Row:
     divided: int = 0
     shares: list[float] = field(default_factory=list)
     seconds: list[float] = field(default_factory=list)
+    moving: list[float] = field(default_factory=list)
+    lengths: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
 
     def paint(
@@ -65,19 +68,34 @@ class Row:
         started = time.process_time()
         try:
             painted = paint(surface, decomposition, found, Deadline.after(600))
-            self.seconds.append(time.process_time() - started)
+            drawn = time.process_time()
+            moved = move_borders(painted)
+            finished = time.process_time()
             assert_whole(surface, painted, found)
+            assert_whole(surface, moved, found)
+            assert moved.segments == painted.segments and moved.borders is not None
         except Exception as error:  # whatever happens is a failure to be listed
             self.failures.append(f"{self.kind} {name}: {type(error).__name__}: {error}")
             return
         before, after = len(surface.vertices), len(painted.surface.vertices)
         self.shares.append((after - before) / before)
+        self.seconds.append(drawn - started)
+        self.moving.append(finished - drawn)
+        if moved.borders.before.length_m:
+            self.lengths.append(moved.borders.after.length_m / moved.borders.before.length_m)
 
     def __str__(self) -> str:
         done, failed = len(self.shares), len(self.failures)
-        added = f"{median(self.shares):.1%} | {max(self.shares):.1%}" if done else " | "
-        times = f"{median(self.seconds):.2f} | {max(self.seconds):.2f}" if done else " | "
-        return f"| {self.kind} | {done + failed} | {self.divided} | {done} | {added} | {times} |"
+        added = _spread(self.shares, "{:.0%}")
+        lengths = f"{median(self.lengths):.0%}" if self.lengths else ""
+        times = f"{_spread(self.seconds, '{:.2f}')} | {_spread(self.moving, '{:.2f}')}"
+        counts = f"{done + failed} | {self.divided} | {done}"
+        return f"| {self.kind} | {counts} | {added} | {lengths} | {times} |"
+
+
+def _spread(values: list[float], kind: str) -> str:
+    """Median and greatest, as two cells of a table."""
+    return f"{kind.format(median(values))} | {kind.format(max(values))}" if values else " | "
 
 
 def families(kinds: list[str], count: int, first: int, limit: float | None) -> Iterator[Row]:
@@ -140,8 +158,9 @@ def main() -> int:
     parser.add_argument("--solve", type=float, metavar="SECONDS", help="solve the families' draws")
     arguments = parser.parse_args()
     failures: list[str] = []
-    print("| kind | draws | divided cells | painted | added | worst | CPU s | worst |")
-    print("|---|--:|--:|--:|--:|--:|--:|--:|")
+    columns = "added | worst | length | drawn s | worst | moved s | worst"
+    print(f"| kind | draws | divided cells | painted | {columns} |")
+    print(f"|---|{'--:|' * 10}")
     for table in arguments.tables or names:
         if table == "families":
             rows = families(arguments.kinds, arguments.count, arguments.seed, arguments.solve)
