@@ -16,12 +16,13 @@ from cellcolor.data.comparing import same_members
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.report import BuildReport, make_report
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.frontend.stages import Stages
 from cellcolor.frontend.survey import survey
 from cellcolor.frontend.tables import in_file
 from cellcolor.version import __version__
@@ -29,7 +30,7 @@ from cellcolor.version import __version__
 if TYPE_CHECKING:
     import cellcolor
 
-__all__ = ["BuildResult", "build_surface"]
+__all__ = ["BuildResult", "build_surface", "result_of"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -109,12 +110,25 @@ def build_surface(
     with clock.timed("preparation"):
         prepared = prepare(scene, deadline)
     with in_file(prepared.scene.file):
-        stages = run_stages(prepared, clock)
-        clock.begin("report")
-        labelled = _labelled(prepared, stages, clock.seconds)
-        deadline.check()
-        report = _report(prepared, stages, clock.seconds)
-        deadline.check()
+        return result_of(*with_finer_borders(prepared, clock), clock)
+
+
+def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> BuildResult:
+    """A labelled surface and its report, from what the stages of a build have made.
+
+    Args:
+        prepared: the scene, with the surface that the stages were asked about.
+        stages: of this surface.
+        clock: what they have taken.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    clock.begin("report")
+    labelled = _labelled(prepared, stages, clock.seconds)
+    prepared.deadline.check()
+    report = _report(prepared, stages, clock.seconds)
+    prepared.deadline.check()
     return BuildResult(
         surface=labelled,
         branches=prepared.kinematics.branches,

@@ -84,7 +84,10 @@ class Thresholds(Table):
 
 
 class Continuity(Table):
-    """When two configurations on neighboring vertices are joined by a continuous motion."""
+    """When two configurations on neighboring vertices are joined by a continuous motion.
+
+    With ``border_length_m`` longer mesh edges are bisected where colors end or have a crack.
+    """
 
     base_step_rad: Positive
     step_per_length_rad_per_m: NotNegative
@@ -92,11 +95,20 @@ class Continuity(Table):
     near_singular_determinant_m3: NotNegative | None = None
     probe_spacing_m: Positive
     validity_spacing_m: Positive | None = None
+    border_length_m: Positive | None = None
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
         _one_of_each(self, "near_singular_determinant")
         return self
+
+    @model_serializer(mode="wrap")
+    def _border_length_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before borders could be refined stay the same to the byte."""
+        content: dict[str, Any] = whole(self)
+        if self.border_length_m is None:
+            del content["border_length_m"]
+        return content
 
 
 Share = Annotated[FiniteFloat, Field(ge=0, lt=1)]

@@ -14,6 +14,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.between import at_domain_border, remains_valid
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes, find_cracks, link, node_links
@@ -62,6 +63,7 @@ class Stages:
     """What the stages of a build have made, in their order.
 
     Attributes:
+        surface: what they were asked about.
         candidates: all branches on all vertices, and what became of them.
         continuous: the links along which a branch moves without a jump.
         links: those of them that are valid between the vertices as well.
@@ -69,6 +71,7 @@ class Stages:
         cleaned: the same after the sliver policy.
     """
 
+    surface: Surface
     candidates: Candidates
     continuous: Links
     links: Links
@@ -99,7 +102,7 @@ def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
         coloring = _colored(prepared, candidates, candidates.valid, links)
         prepared.deadline.check()
         cleaned = _cleaned(prepared, candidates, links, coloring)
-    return Stages(candidates, continuous, links, coloring, cleaned)
+    return Stages(prepared.surface, candidates, continuous, links, coloring, cleaned)
 
 
 def _candidates(prepared: PreparedScene, verdicts: Verdicts, shape: tuple[int, ...]) -> Candidates:

@@ -1,0 +1,165 @@
+"""A solution painted with the scene at hand: what is drawn is asked of the robot as well.
+
+A painting that had to be refined copies colors (docs/painting.md). Here each new vertex is asked
+what reaches it, and each mesh edge inside a segment whether the segment's color leads along it. If
+the scene refuses one of them, the refined surface gets the colors that it has in truth, and is
+solved and painted again; what is proved then is proved for that surface.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.data.solution import Solution
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.decomposition import Decomposition, decomposition_of
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.build import BuildResult, result_of
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.stage_clock import Progress, StageClock
+from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.painting.moving import move_borders
+from cellcolor.painting.paint import Painted, paint
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+__all__ = ["ScenePainting", "color_costs", "paint_scene"]
+
+_TIMES = 4
+"""So often is a surface solved at most; then what the scene refuses is only told."""
+_ROOMY = np.pi / 2
+"""rad; a joint that far from its limits is as well off as can be."""
+
+
+@dataclass(frozen=True)
+class ScenePainting:
+    """A painting that the scene was asked about.
+
+    Attributes:
+        painted: the painting, its borders moved.
+        normals: (n, 3) outward unit normals at its vertices.
+        built: the labelled surface that was painted, and what reaches it: what was given, unless it
+            had to be solved again.
+        decomposition: of that surface.
+        solution: of that surface.
+        minima: the segments of each surface that was solved, the given one first. There are
+            several if the scene refused a painting.
+        refused: vertices of the painting, ascending, at which the scene refuses it all the same: a
+            new one that the color does not reach, or the end of a mesh edge along which it does not
+            lead on.
+    """
+
+    painted: Painted
+    normals: Array
+    built: BuildResult
+    decomposition: Decomposition
+    solution: Solution
+    minima: tuple[int, ...]
+    refused: tuple[int, ...]
+
+
+def paint_scene(
+    prepared: PreparedScene,
+    built: BuildResult,
+    decomposition: Decomposition,
+    solution: Solution,
+    *,
+    tool_radius_m: float | None = None,
+    deadline: Deadline = NEVER,
+    progress: Progress | None = None,
+) -> ScenePainting:
+    """Paint a solution of a scene, and ask the scene about every vertex that is new.
+
+    Args:
+        prepared: the scene.
+        built: what was made of it.
+        decomposition: of the built surface.
+        solution: of that, with a division.
+        tool_radius_m: of the footprint; None for that of the setup, or for one mean mesh edge.
+        deadline: when to give up.
+        progress: told what is being done.
+
+    Raises:
+        InputError: the solution has no division, or the radius is not positive.
+        OutOfTime: the deadline came first.
+        TooLarge: a painting would need too many vertices.
+    """
+    clock = StageClock(deadline, progress)
+    motion = prepared.setup.motion
+    if tool_radius_m is None and motion is not None:
+        tool_radius_m = motion.tool_radius_m
+    minima: list[int] = []
+    while True:
+        minima.append(solution.segments or 0)
+        clock.begin("painting")
+        drawn = paint(built.surface, decomposition, solution, deadline)
+        normals = drawn.interpolated(built.stages.surface.normals)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        whole = drawn.surface is built.surface
+        finer = built.stages.surface
+        stages = built.stages
+        if not whole:
+            finer = Surface(drawn.surface.vertices, drawn.surface.faces, normals)
+            stages = run_stages(replace(prepared, surface=finer), clock)
+        clock.begin("moving borders")
+        branch = np.array(built.stages.cleaned.coloring.branch)
+        cost = color_costs(prepared.robot, stages.candidates)[:, branch]
+        painted = move_borders(drawn, tool_radius_m, cost, deadline)
+        refused = () if whole else _refused(painted, stages, branch)
+        if not refused or len(minima) == _TIMES:
+            minimum = tuple(minima)
+            return ScenePainting(painted, normals, built, decomposition, solution, minimum, refused)
+        clock.begin("solving again")
+        built = result_of(replace(prepared, surface=finer), stages, clock)
+        decomposition = decomposition_of(built.surface, None, deadline)
+        options = Options(solution.search_space, solution.strands, deadline=deadline)
+        solution = solve(decomposition.instance, options)
+
+
+def _refused(painted: Painted, stages: Stages, branch: Index) -> tuple[int, ...]:
+    """The vertices where the scene refuses a painting, see :class:`ScenePainting`.
+
+    Args:
+        painted: the painting.
+        stages: of its surface.
+        branch: (colors,) of each of its colors.
+    """
+    colors = painted.plan.vertex_colors
+    own = np.array([-1 if color is None else branch[color] for color in colors])
+    colored = np.flatnonzero(own >= 0)
+    refused = set(colored[~stages.candidates.valid[colored, own[colored]]].tolist())
+    edges, linked, segment = stages.links.edges, stages.links.linked, painted.segment_of
+    within = np.flatnonzero(
+        (segment[edges[:, 0]] == segment[edges[:, 1]]) & (own[edges[:, 0]] >= 0)
+    )
+    torn = within[~linked[within, own[edges[within, 0]]]]
+    for a, b in edges[torn].tolist():
+        if colors[a] not in painted.surface.cracked(a, b):
+            refused |= {a, b}
+    return tuple(sorted(refused))
+
+
+def color_costs(robot: Robot, candidates: Candidates) -> Array:
+    """How badly conditioned the arm is in each candidate (n, branches), from 0, best, to 1.
+
+    Two things count, and the worse of them: the task determinant as a share of the greatest one on
+    this surface, and how far the joint that is nearest to its limits is from them, as a share of a
+    quarter turn. Joints may be turned by full circles. Candidates that are not valid cost 1.
+    """
+    valid = candidates.valid
+    determinants = np.where(valid, candidates.determinants, 0.0)
+    greatest = float(determinants.max(initial=0.0))
+    good = determinants / greatest if greatest else determinants
+    joints = np.where(valid[:, :, None], candidates.configurations, 0.0)
+    circle = 2 * np.pi
+    # As far from both limits as full circles allow: the middle is the best place.
+    middle, half = (robot.lower + robot.upper) / 2, (robot.upper - robot.lower) / 2
+    off = np.abs(joints - middle)
+    nearest = np.minimum(off % circle, circle - off % circle)
+    room = np.clip((half - nearest) / _ROOMY, 0.0, 1.0).min(axis=2)
+    return np.asarray(np.where(valid, 1.0 - np.minimum(good, room), 1.0))

@@ -1,0 +1,125 @@
+"""Paintings of scenes: what is drawn is asked of the robot, and what a configuration costs."""
+
+from __future__ import annotations
+
+import random
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from painted import assert_whole, random_solution
+from shipped import shipped
+
+from cellcolor.data.candidate_table import VALID
+from cellcolor.decomposition import decomposition_of
+from cellcolor.frontend import build_surface
+from cellcolor.frontend.arm.conditioning import task_determinants
+from cellcolor.frontend.build import BuildResult
+from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.motion import scene_painting
+from cellcolor.motion.scene_painting import ScenePainting, color_costs, paint_scene
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+Scene = tuple[PreparedScene, BuildResult]
+
+
+@pytest.fixture(scope="module")
+def wok() -> Scene:
+    """The wok before an obstacle, so small that what is divided has to be refined."""
+    plain = shipped("wok_obstacle", 150)
+    scene = plain.varied(setup=plain.setup.varied(slivers=None))
+    return prepare(scene), build_surface(scene)
+
+
+def by_chance(wok: Scene, seed: int) -> ScenePainting:
+    """A painting of a division that no solver made."""
+    decomposition = decomposition_of(wok[1].surface)
+    solution = random_solution(decomposition.instance, 2, random.Random(seed))
+    return paint_scene(*wok, decomposition, solution)
+
+
+def reaches(prepared: PreparedScene, found: ScenePainting) -> bool:
+    """Whether every painted vertex's color is valid there: from points and normals alone."""
+    branch = np.array(found.built.stages.cleaned.coloring.branch)
+    painted = found.painted
+    own = [v for v, color in enumerate(painted.plan.vertex_colors) if color is not None]
+    branches = branch[[painted.plan.vertex_colors[v] for v in own]]
+    joints = prepared.follow(painted.surface.vertices[own], -found.normals[own], branches)
+    return bool((prepared.judge(joints).reasons == VALID).all())
+
+
+@pytest.mark.parametrize("name", ["wok", "hemisphere_tilted"])
+def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
+    scene = shipped(name, 400)
+    prepared, built = prepare(scene), build_surface(scene)
+    decomposition = decomposition_of(built.surface)
+    solution = solve(decomposition.instance, Options("surface"))
+    told: list[str] = []
+    found = paint_scene(prepared, built, decomposition, solution, progress=told.append)
+    assert found.painted.segments == solution.segments == found.minima[0]
+    assert found.minima == (solution.segments,) and found.refused == ()
+    assert_whole(built.surface, found.painted, solution)
+    assert np.allclose(np.linalg.norm(found.normals, axis=1), 1)
+    assert reaches(prepared, found)
+    borders = found.painted.borders
+    assert borders.tool_radius_m == scene.setup.motion.tool_radius_m
+    assert borders.after.cost < borders.before.cost
+    assert told == ["painting", "moving borders"]
+
+
+@pytest.mark.parametrize("seed", [0, 1, 3])
+def test_what_the_scene_refuses_is_solved_again(wok: Scene, seed: int) -> None:
+    """Divisions drawn at random copy colors far beyond where they reach."""
+    found = by_chance(wok, seed)
+    assert len(found.minima) > 1 and found.refused == ()
+    assert found.minima[-1] == found.solution.segments == found.painted.segments
+    assert len(found.built.surface.vertices) > len(wok[1].surface.vertices)
+    assert_whole(found.built.surface, found.painted, found.solution)
+    assert reaches(wok[0], found)
+    # What the second proof is of: every color of the finer surface is asked of the robot.
+    count = len(wok[1].surface.vertices)
+    assert found.built.surface.vertex_colors[:count] == wok[1].surface.vertex_colors
+
+
+def test_a_refined_painting_that_the_scene_takes_is_kept(wok: Scene) -> None:
+    found = by_chance(wok, 2)
+    assert len(found.painted.surface.vertices) > len(wok[1].surface.vertices)
+    assert len(found.minima) == 1 and found.built is wok[1]
+    assert reaches(wok[0], found)
+
+
+def test_in_the_end_what_is_refused_is_told(wok: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+    """With no second try: the vertices named are those that fail when asked once more."""
+    monkeypatch.setattr(scene_painting, "_TIMES", 1)
+    found = by_chance(wok, 0)
+    assert found.refused and not reaches(wok[0], found)
+    kept = np.ones(len(found.normals), dtype=bool)
+    kept[list(found.refused)] = False
+    colors = [
+        color if keep else None
+        for color, keep in zip(found.painted.plan.vertex_colors, kept, strict=True)
+    ]
+    plan = replace(found.painted.plan, vertex_colors=tuple(colors))
+    assert reaches(wok[0], replace(found, painted=replace(found.painted, plan=plan)))
+
+
+def test_costs_by_hand(wok: Scene) -> None:
+    """Each valid candidate by itself: every turn of every joint tried, and its determinant."""
+    prepared, built = wok
+    candidates, robot = built.stages.candidates, prepared.robot
+    cost = color_costs(robot, candidates)
+    rows, branches = np.nonzero(candidates.valid)
+    joints = candidates.configurations[rows, branches]
+    determinants = task_determinants(robot, joints, None)
+    for row, branch, q, determinant in zip(rows, branches, joints, determinants, strict=True):
+        room = [
+            max(
+                min(angle + 2 * np.pi * turn - low, high - angle - 2 * np.pi * turn)
+                for turn in range(-3, 4)
+            )
+            for angle, low, high in zip(q, robot.lower, robot.upper, strict=True)
+        ]
+        share = min(1.0, min(room) / (np.pi / 2), determinant / determinants.max())
+        assert cost[row, branch] == pytest.approx(1 - share)
+    assert (cost[~candidates.valid] == 1).all()
