@@ -22,11 +22,13 @@ from documents import Document
 from stand_in import stand_in
 
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import Fault
 from cellcolor.files.writing import HTML
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.pictures.report_page.content import Card, MotionReport
+from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.report_page.page import render_page
 from cellcolor.pictures.report_page.thinning import frames_of, least_until_next, straightened
+from cellcolor.pictures.report_page.verdict_cards import badges_of
 
 HOSTILE = "</script><b>&\"'{{DATA}}"
 
@@ -41,8 +43,8 @@ def report(**changes: object) -> MotionReport:
         made.result.witness,
         made.painted,
         made.trajectory,
-        (("judged valid", True), (HOSTILE, False)),
-        (Card("Verdict", ("One.", HOSTILE), (("a", "b"), ("1", HOSTILE)), True),),
+        made.measures,
+        made.verdict,
     )
     return replace(whole, **changes)
 
@@ -70,13 +72,15 @@ def test_the_page_is_known_again_and_the_same_each_time(page_file: Path) -> None
     assert not re.search(rb"""(?:src|href)\s*=|url\(|https?:|@import""", page)
 
 
-def test_texts_stay_texts(page_file: Path) -> None:
-    page = page_file.read_text(encoding="utf-8")
+def test_texts_stay_texts() -> None:
+    made = stand_in()
+    fault = Fault("jump", HOSTILE, sample=3, time=1.0)
+    verdict = replace(made.verdict, faults=(fault,), fault_counts={"jump": 1})
+    odd = replace(made.trajectory, name=HOSTILE)
+    page = render_page(report(trajectory=odd, verdict=verdict)).decode()
     assert "<b>" not in page
     assert page.count("&lt;/script&gt;&lt;b&gt;&amp;&quot;&#x27;{{DATA}}") == 3
-    odd = replace(stand_in().trajectory, name=HOSTILE)
-    data = data_of(render_page(report(trajectory=odd)).decode())
-    assert data["frames"]["samples"] == len(odd.times)
+    assert data_of(page)["frames"]["samples"] == len(odd.times)
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
@@ -114,10 +118,10 @@ def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) ->
         assert page.input_value("#time") == stopped
         assert float(stopped) < trajectory.times[-1]
         for name in ("part", "fit", "show-arm", "show-path", "show-moves", "show-around"):
-            page.click(f"#{name}")
+            page.locator(f"#{name}").dispatch_event("click")
         legends = set()
         for number in range(page.locator("#modes button").count()):
-            page.locator("#modes button").nth(number).click()
+            page.locator("#modes button").nth(number).dispatch_event("click")
             legends.add(page.inner_text("#legend"))
         assert len(legends) == 3
         assert faults == []
@@ -225,3 +229,23 @@ def test_a_straightened_line_passes_all_points(
         chord = points[first] + np.linspace(0, 1, 400)[:, None] * (points[last] - points[first])
         for between in points[first + 1 : last]:
             assert np.linalg.norm(chord - between, axis=1).min() <= tolerance + 5e-3
+
+
+def test_badges_count_against_the_proof() -> None:
+    made = stand_in()
+    strokes = made.trajectory.strokes
+    contact = made.trajectory.contact.copy()
+    contact[(strokes[0][0] + strokes[0][1]) // 2] = False  # one lift-off more
+    parted = replace(made.trajectory, contact=contact)
+    open_solution = replace(made.solution, surface_lower_bound=1, proved_for_surface=False)
+    cases = [
+        (report(), ("1 lift-off: the proved minimum", True)),
+        (report(trajectory=parted), ("2 lift-offs: 1 proved, 1 more", False)),
+        (report(solution=open_solution), ("1 lift-off; the minimum is not proved", None)),
+    ]
+    for case, expected in cases:
+        assert expected in badges_of(case)
+    faultless = replace(made.verdict, faults=(), fault_counts={})
+    assert ("judged valid", True) in badges_of(report(verdict=faultless))
+    assert ("judged valid", True) not in badges_of(report())
+    assert ("1 move not planned", False) in badges_of(report())

@@ -6,7 +6,7 @@ It is no plan: a segment is walked round a spanning tree of its mesh edges, and 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -17,10 +17,13 @@ from cellcolor.arrays import Array
 from cellcolor.data.solution import Solution
 from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.door.result import Result
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.painting.paint import Painted
+from cellcolor.tool_paths.measures import PathMeasures
+from cellcolor.trajectory_checker.check import check_trajectory
 
 SPEED = 0.05  # m/s
 RETRACT = 0.05  # m
@@ -41,6 +44,19 @@ class StandIn:
     @property
     def solution(self) -> Solution:
         return self.result.solution
+
+    @cached_property
+    def verdict(self) -> TrajectoryVerdict:
+        least = self.solution.lift_offs
+        return check_trajectory(self.prepared, self.built, self.trajectory, minimum_lift_offs=least)
+
+    @property
+    def measures(self) -> tuple[PathMeasures, ...]:
+        """Made up: one of each path."""
+        return tuple(
+            PathMeasures(0.1, path.length, 1.0, 0.99, 1.1, 3, 1.05, 0.2, 0.012, 0.8)
+            for path in self.paths.paths
+        )
 
 
 @cache

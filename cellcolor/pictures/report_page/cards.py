@@ -1,4 +1,4 @@
-"""The page's sections on the proof, the segments, what is out of reach, and what is not covered."""
+"""The page's sections, those on proof, segments, reach and what is not covered made here."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from cellcolor.data.bound import Bound
 from cellcolor.data.proof_wording import reason_of, witness_in_words
 from cellcolor.data.wording import count, listed
 from cellcolor.pictures.report_page.content import Card, MotionReport
+from cellcolor.pictures.report_page.verdict_cards import coverage_card, verdict_card
 
 __all__ = ["cards_of"]
 
@@ -26,7 +27,15 @@ _KINDS = {
 
 def cards_of(report: MotionReport) -> tuple[Card, ...]:
     """All of them, those with nothing to tell left out."""
-    cards = (_proof(report), _segments(report), _reach(report), _extra(report), _left_out(report))
+    cards = (
+        verdict_card(report),
+        _proof(report),
+        coverage_card(report),
+        _segments(report),
+        _reach(report),
+        _extra(report),
+        _left_out(report),
+    )
     return tuple(card for card in cards if card is not None)
 
 

@@ -6,10 +6,12 @@ from dataclasses import dataclass
 
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import Decomposition
 from cellcolor.frontend import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.painting.paint import Painted
+from cellcolor.tool_paths.measures import PathMeasures
 
 __all__ = ["Card", "MotionReport"]
 
@@ -43,8 +45,8 @@ class MotionReport:
         witness: cells no two of which can share a segment, as many as segments; or none.
         painted: the solution on the surface.
         trajectory: how the arm moves.
-        badges: what is to be seen first, each with whether that is as it should be.
-        cards: sections on what others found, in their order: the judge's verdict, coverage.
+        measures: of each tool path that it follows.
+        verdict: an independent judge's.
     """
 
     prepared: PreparedScene
@@ -54,5 +56,5 @@ class MotionReport:
     witness: tuple[int, ...]
     painted: Painted
     trajectory: Trajectory
-    badges: tuple[tuple[str, bool | None], ...] = ()
-    cards: tuple[Card, ...] = ()
+    measures: tuple[PathMeasures, ...]
+    verdict: TrajectoryVerdict

@@ -12,6 +12,7 @@ from cellcolor.data.wording import count
 from cellcolor.files.writing import MARKER
 from cellcolor.pictures.report_page.cards import cards_of
 from cellcolor.pictures.report_page.content import Card, MotionReport
+from cellcolor.pictures.report_page.verdict_cards import badges_of
 from cellcolor.pictures.report_page.viewer_data import MOST_FRAMES, viewer_data
 from cellcolor.version import __version__
 
@@ -36,16 +37,15 @@ def render_page(report: MotionReport) -> bytes:
     )
     if samples > MOST_FRAMES:
         note += f" Shown are about {MOST_FRAMES} of {samples} samples."
-    cards = (*report.cards, *cards_of(report))
     data = json.dumps(viewer_data(report), allow_nan=False, separators=(",", ":"))
     return _filled(
         {
             "MARKER": MARKER,
             "TITLE": html.escape(title),
             "PROOF": html.escape(_sentence(in_words(report.solution, witness))),
-            "BADGES": "".join(map(_badge, report.badges)),
+            "BADGES": "".join(map(_badge, badges_of(report))),
             "CHART_NOTE": html.escape(note),
-            "CARDS": "\n".join(map(_card, cards)),
+            "CARDS": "\n".join(map(_card, cards_of(report))),
             "FOOTER": html.escape(f"Made by cellcolor {__version__}; this file loads nothing."),
             "STYLE": _own_text("page.css"),
             "DATA": data.replace("<", "\\u003c"),  # nothing in it ends the script
@@ -87,7 +87,9 @@ def _card(card: Card) -> str:
     parts += [f"<p>{html.escape(text)}</p>" for text in card.paragraphs]
     if card.rows:
         head, *rows = card.rows
-        lines = [f"<tr>{''.join(f'<th>{html.escape(cell)}</th>' for cell in head)}</tr>"]
+        lines = []
+        if any(head):
+            lines.append(f"<tr>{''.join(f'<th>{html.escape(cell)}</th>' for cell in head)}</tr>")
         lines += [f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows]
         parts.append(f"<table>{''.join(lines)}</table>")
     return f"<section{_verdict_class(card.good, 'card')}>{''.join(parts)}</section>"
