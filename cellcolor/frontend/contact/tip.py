@@ -19,7 +19,11 @@ __all__ = ["Tip"]
 
 
 class Tip:
-    """All points within the contact radius of the tool's axis, from the tip to the tool's body."""
+    """All points within the contact radius of the tool's axis, from the tip to the tool's body.
+
+    Attributes:
+        body: the region as a shape that hangs on the last joint.
+    """
 
     def __init__(
         self, robot: Robot, radius: float, obstacles: list[Solid], ground: float | None
@@ -33,7 +37,7 @@ class Tip:
             if body.joint == robot.joints
         ]
         length = max(min(behind, default=0.0), 0.0)
-        self._body = Body(
+        self.body = Body(
             "tool tip", robot.joints, point, point - length * axis, radius, flat=False
         )
         self._obstacles, self._ground = obstacles, ground
@@ -50,12 +54,12 @@ class Tip:
             points: (k, 3) where the tip is, m.
             directions: (k, 3) unit vectors along the tool, from the flange to the tip.
         """
-        ends = np.stack([points, points - self._body.length * directions])
+        ends = np.stack([points, points - self.body.length * directions])
         hit = np.zeros(len(points), dtype=bool)
         if self._ground is not None:
-            hit |= ends[:, :, 2].min(axis=0) - self._body.radius < self._ground
+            hit |= ends[:, :, 2].min(axis=0) - self.body.radius < self._ground
         for obstacle in self._obstacles:
-            hit[~hit] = obstacle.touched_by(self._body, ends[:, ~hit])
+            hit[~hit] = obstacle.touched_by(self.body, ends[:, ~hit])
         return hit
 
     def free_along(self, surface: Surface, edges: Faces) -> Mask:
@@ -67,7 +71,7 @@ class Tip:
         free = np.ones(len(edges), dtype=bool)
         if not self._obstacles:
             return free
-        body, lengths = self._body, surface.lengths(edges)
+        body, lengths = self.body, surface.lengths(edges)
         ends = surface.vertices[edges.ravel()]
         near = np.min([solid.at_least(ends) for solid in self._obstacles], axis=0)
         # No point of an edge is farther from the nearer end than half its length.

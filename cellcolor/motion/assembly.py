@@ -1,0 +1,148 @@
+"""Strokes and the transfers between them, timed and put together to one trajectory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
+from cellcolor.deadline import Deadline
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.motion.strokes import Stroke
+from cellcolor.motion.timing import Speeds, timed
+from cellcolor.motion.transfers import Transfer
+
+__all__ = ["assembled"]
+
+
+@dataclass
+class _Rows:
+    """The samples of a trajectory as they come."""
+
+    times: list[Array] = field(default_factory=list)
+    joints: list[Array] = field(default_factory=list)
+    points: list[Array] = field(default_factory=list)
+    normals: list[Array] = field(default_factory=list)
+    segments: list[Array] = field(default_factory=list)
+    count: int = 0
+    now: float = 0.0
+
+    def add(self, times: Array, joints: Array, points: Array, normals: Array, segment: int) -> None:
+        """Samples; their times are those of the trajectory."""
+        self.times.append(times)
+        self.joints.append(joints)
+        self.points.append(points)
+        self.normals.append(normals)
+        self.segments.append(np.full(len(times), segment, dtype=np.int64))
+        self.count += len(times)
+
+
+def assembled(
+    name: str,
+    robot: Robot,
+    strokes: Sequence[Stroke],
+    transfers: Sequence[Transfer],
+    speeds: Speeds,
+    tool_speed: float,
+    left_out: tuple[LeftOut, ...],
+    meta: dict[str, Any],
+    deadline: Deadline,
+) -> Trajectory:
+    """The trajectory: every stroke, and every planned stretch between, from rest to rest.
+
+    Args:
+        name: what to call it.
+        robot: the arm.
+        strokes: in their order.
+        transfers: the way to the first stroke, those between strokes, and that from the last one.
+        speeds: of the joints.
+        tool_speed: of the tool in contact, m/s.
+        left_out: parts that the tool does not go to.
+        meta: as of the trajectory.
+        deadline: when to give up.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    rows, unplanned = _Rows(), []
+    extra, last_of, partings = [], {}, _partings(strokes)
+    for number, transfer in enumerate(transfers):
+        deadline.check()
+        at_stroke = 1 if number else 0  # the first sample is the stroke's last one
+        gap = _add_transfer(rows, robot, transfer, at_stroke, number < len(strokes), speeds)
+        if gap is not None:
+            unplanned.append(gap)
+        if number == len(strokes):
+            break
+        stroke = strokes[number]
+        if stroke.segment in last_of:
+            parting = partings[stroke.segment].pop(0)
+            extra.append(
+                ExtraLiftOff(
+                    last_of[stroke.segment],
+                    stroke.segment,
+                    parting.reason,
+                    parting.text,
+                    parting.place,
+                )
+            )
+        times = rows.now + timed(stroke.joints, speeds, stroke.points, tool_speed)
+        rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
+        rows.now = float(times[-1])
+        last_of[stroke.segment] = rows.count - 1
+    segment = np.concatenate(rows.segments)
+    return Trajectory(
+        name=name,
+        joint_names=robot.joint_names,
+        times=np.concatenate(rows.times),
+        joints=np.concatenate(rows.joints),
+        points=np.concatenate(rows.points),
+        normals=np.concatenate(rows.normals),
+        contact=segment >= 0,
+        segment=segment,
+        unplanned=tuple(unplanned),
+        extra_lift_offs=tuple(extra),
+        left_out=left_out,
+        meta=meta,
+    )
+
+
+def _partings(strokes: Sequence[Stroke]) -> dict[int, list[Any]]:
+    """Why segments have more than one stroke, as often as they have more."""
+    found: dict[int, list[Any]] = {}
+    for stroke in strokes:
+        found.setdefault(stroke.segment, [])
+        if stroke.parting is not None:
+            found[stroke.segment].append(stroke.parting)
+    return found
+
+
+def _add_transfer(
+    rows: _Rows,
+    robot: Robot,
+    transfer: Transfer,
+    first: int,
+    to_stroke: bool,
+    speeds: Speeds,
+) -> int | None:
+    """Add the samples of a transfer that no stroke has; where its gap is, if it has one."""
+    joints, count = transfer.joints, len(transfer.joints)
+    pieces = [(0, count - 1)]
+    if transfer.gap is not None:
+        ends = [0, transfer.gap, transfer.gap + 1, count - 1]
+        pieces = [(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True) if b > a]
+    times = np.zeros(count)
+    for a, b in pieces:
+        times[a : b + 1] = times[a] + timed(joints[a : b + 1], speeds)
+    times += rows.now
+    base = rows.count - first
+    own = slice(first, count - 1 if to_stroke else count)
+    poses = forward(robot, joints[own])
+    rows.add(times[own], joints[own], poses.tip, -poses.tool_axis, -1)
+    rows.now = float(times[-1])
+    return None if transfer.gap is None else base + transfer.gap

@@ -1,0 +1,92 @@
+"""Where the arm may move between strokes: inside its limits, and clear of everything."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.motion.following import joint_limits
+
+__all__ = ["FreeSpace"]
+
+_AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
+
+
+class FreeSpace:
+    """Tests of configurations without contact: joint limits, ground, the arm itself, solids.
+
+    Force and conditioning are not asked. The region at the tool's tip is held against everything
+    like a body of the arm, the object included, unless ``leaving`` says that the tool is only on
+    its way off the object or to it.
+
+    Attributes:
+        limits: lower and upper (joints,) of the joints, rad.
+    """
+
+    def __init__(self, prepared: PreparedScene, clearance: float, *, leaving: bool = False) -> None:
+        """``clearance`` is the distance that is kept from everything, m."""
+        place = prepared.workplace
+        self._place, self._on = place, prepared.setup.constraints.collision
+        self.limits = joint_limits(prepared)
+        tip = replace(place.tip.body, link=place.robot.bodies[-1].link)
+        self._leaving = leaving
+        self._robot = place.robot if leaving else _with_tip(place.robot, tip)
+        self._around = _wider(self._robot, clearance)
+        # Two bodies that keep a distance from each other keep half of it each.
+        self._half = _wider(self._robot, clearance / 2)
+
+    def __call__(self, configurations: Array) -> Mask:
+        """Which of configurations (k, joints) in rad, taken as they are, are free, (k,)."""
+        free = np.empty(len(configurations), dtype=bool)
+        for first in range(0, len(configurations), _AT_ONCE):
+            rows = slice(first, first + _AT_ONCE)
+            free[rows] = self._free(configurations[rows])
+        return free
+
+    def _free(self, configurations: Array) -> Mask:
+        lower, upper = self.limits
+        free = ((configurations >= lower) & (configurations <= upper)).all(axis=1)
+        if not self._on or not free.any():
+            return np.asarray(free)
+        place, rows = self._place, np.flatnonzero(free)
+        poses = forward(self._robot, configurations[rows])
+        ends = body_ends(self._around, poses)
+        hit = np.zeros(len(rows), dtype=bool)
+        if place.ground is not None:
+            exempt = place.setup.robot.may_touch_ground
+            hit |= hits_ground(self._around, ends, place.ground, exempt)
+        if self._leaving:
+            hit |= place.tip.blocked(poses.tip, poses.tool_axis)
+        for solid in (*place.obstacles, place.target):
+            hit[~hit] = solid.hits(self._around, ends[:, :, ~hit])
+        halves = body_ends(self._half, poses)
+        hit[~hit] = hits_itself(self._half, halves[:, :, ~hit])
+        free[rows] = ~hit
+        return np.asarray(free)
+
+
+def _with_tip(robot: Robot, tip: Body) -> Robot:
+    """The robot with the region at its tip as one more body of the tool."""
+    number, last = len(robot.bodies), len(robot.bodies) - 1
+    pairs = tuple((i, number) for i, j in robot.tested_pairs if j == last)
+    return replace(robot, bodies=(*robot.bodies, tip), tested_pairs=robot.tested_pairs + pairs)
+
+
+def _wider(robot: Robot, by: float) -> Robot:
+    """The robot with all that is nearer than a distance to its bodies, and a little more."""
+    return replace(robot, bodies=tuple([_wider_body(body, by) for body in robot.bodies]))
+
+
+def _wider_body(body: Body, by: float) -> Body:
+    if not body.flat:
+        return replace(body, radius=body.radius + by)
+    along = by * (body.end - body.start) / body.length
+    return Body(
+        body.link, body.joint, body.start - along, body.end + along, body.radius + by, flat=True
+    )

@@ -1,0 +1,56 @@
+"""What a setup says of motions, held against the arm."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.setup import Motion
+from cellcolor.frontend.tables import in_file
+from cellcolor.motion.timing import Speeds
+
+__all__ = ["home_of", "motion_of", "speeds_of"]
+
+
+def motion_of(prepared: PreparedScene) -> Motion:
+    """The table of a setup that a motion needs.
+
+    Raises:
+        InputError: there is none, or a list has another number of joints than the arm, the home
+            position is outside the limits, or the tool retracts less than it has to keep clear.
+    """
+    setup, robot = prepared.setup, prepared.robot
+    with in_file(setup.file):
+        motion = setup.motion
+        if motion is None:
+            raise InputError(None, "motion", "planning a motion needs this table")
+        for key in ("joint_velocities_rad_per_s", "joint_accelerations_rad_per_s2", "home_rad"):
+            given = getattr(motion, key)
+            if given is not None and len(given) != robot.joints:
+                message = f"has {len(given)} numbers for {robot.joints} joints"
+                raise InputError(None, f"motion.{key}", message)
+        for joint, angle in enumerate(motion.home_rad or ()):
+            if not robot.lower[joint] <= angle <= robot.upper[joint]:
+                message = f"outside the limits of {robot.joint_names[joint]!r}"
+                raise InputError(None, f"motion.home_rad[{joint}]", message)
+        least = setup.task.contact_radius_m + motion.clearance_m
+        if motion.retract_m <= least:
+            message = f"must be above {least:g} m, contact radius and clearance together"
+            raise InputError(None, "motion.retract_m", message)
+    return motion
+
+
+def home_of(motion: Motion) -> Array | None:
+    """Where the arm begins and ends (joints,), rad; None if that does not matter."""
+    return None if motion.home_rad is None else np.array(motion.home_rad)
+
+
+def speeds_of(motion: Motion, robot: Robot) -> Speeds:
+    """The URDF's velocities, lowered where the setup says so, and the setup's accelerations."""
+    velocities = np.array(robot.model.velocityLimit)
+    if motion.joint_velocities_rad_per_s is not None:
+        velocities = np.minimum(velocities, motion.joint_velocities_rad_per_s)
+    return Speeds(velocities, np.array(motion.joint_accelerations_rad_per_s2))

@@ -1,0 +1,63 @@
+"""Samples of a tool path: at most 1 mm and 1 degree apart, all alike far from each other."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.data.tool_paths import ToolPath
+
+__all__ = ["DISTANCE", "TURN", "Samples", "angles_between", "sampled"]
+
+DISTANCE = 0.001  # m, at most from one sample to the next
+TURN = float(np.deg2rad(1.0))  # rad, the same for the normal
+_ROOM = 0.999  # of both, for rounding
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Points of a tool path, in its order.
+
+    Attributes:
+        points: (k, 3) m.
+        normals: (k, 3) outward unit normals.
+        faces: (k,) a triangle that each point lies in.
+    """
+
+    points: Array
+    normals: Array
+    faces: Index
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+
+def angles_between(first: Array, second: Array) -> Array:
+    """Angles (k,) between unit vectors (k, 3), rad."""
+    chord = np.linalg.norm(first - second, axis=1)
+    return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
+
+
+def sampled(path: ToolPath) -> Samples:
+    """Points all along a path, both ends among them.
+
+    The way between neighbors is at most 1 mm long along the path, and the normal turns by at most
+    1 degree on it. By the larger share of the two all of them are equally far from each other.
+    Corners of the path are no samples: a chord cuts them by less than half a millimeter.
+    """
+    lengths = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
+    turns = angles_between(path.normals[:-1], path.normals[1:])
+    # A chord between unit normals is passed fastest, as an angle, in its middle.
+    fastest = 2 * np.tan(np.minimum(turns, np.pi / 2) / 2)
+    share = np.maximum(lengths / DISTANCE, fastest / TURN) / _ROOM
+    total = np.concatenate([[0.0], np.cumsum(share)])
+    count = max(int(np.ceil(total[-1])), 1)
+    place = np.linspace(0.0, total[-1], count + 1)
+    step = np.clip(np.searchsorted(total, place, side="right") - 1, 0, len(share) - 1)
+    part = ((place - total[step]) / np.where(share[step] > 0, share[step], 1.0))[:, None]
+    points = (1 - part) * path.points[step] + part * path.points[step + 1]
+    normals = (1 - part) * path.normals[step] + part * path.normals[step + 1]
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return Samples(points, normals, path.faces[step])

@@ -1,0 +1,192 @@
+"""The small triangles of a painted mesh, and what the arm can do at their corners.
+
+A triangle of the mesh falls into six: between each of its corners, the middles of its sides and
+its centroid. Numbers 6 f + 2 k and 6 f + 2 k + 1 are those at the corner k of the triangle f, and
+belong to the segment that this corner is in (``docs/motion.md``).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.candidate_table import VALID
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.trajectory import LeftOut
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.motion.following import CIRCLE
+from cellcolor.union_find import UnionFind
+
+__all__ = [
+    "JUMP",
+    "CornerStates",
+    "SmallTriangles",
+    "corner_states",
+    "left_out_parts",
+    "small_triangle_at",
+    "small_triangles",
+]
+
+JUMP = "discontinuity"
+"""The reason where configurations are valid and the branch jumps between them."""
+
+
+@dataclass(frozen=True)
+class SmallTriangles:
+    """The small triangles of a mesh of n vertices, k edges and m triangles.
+
+    Attributes:
+        points: (n + k + m, 3) vertices, middles of edges, centroids, m.
+        normals: (n + k + m, 3) outward unit normals there.
+        edges: (k, 2) vertices, the smaller one first, in lexicographic order.
+        corners: (6 m, 3) which points each small triangle has; the mesh's vertex first.
+        side: (6 m,) the edge of the mesh that it touches.
+        segment: (6 m,) -1 where the vertex has no color.
+        areas: (6 m,) m^2.
+    """
+
+    points: Array
+    normals: Array
+    edges: Index
+    corners: Index
+    side: Index
+    segment: Index
+    areas: Array
+
+
+@dataclass(frozen=True)
+class CornerStates:
+    """What the arm can do at the corners of small triangles, in the color of their segment.
+
+    Attributes:
+        joints: (6 m, 3, joints) in rad, those of the second and the third corner unwound from the
+            first; NaN without solution or segment.
+        reasons: (6 m,) codes of the judge: the first test that a corner fails.
+        wound: (6 m,) whether the angles do not come back on the way round: the branch jumps inside.
+    """
+
+    joints: Array
+    reasons: NDArray[np.uint8]
+    wound: Mask
+
+    def bad(self, names: tuple[str, ...]) -> dict[int, str]:
+        """The small triangles that no path may enter, and why; ``names`` are those of the codes."""
+        found = {int(at): JUMP for at in np.flatnonzero(self.wound)}
+        failed = np.flatnonzero(self.reasons != VALID)
+        return found | {int(at): names[self.reasons[at]] for at in failed}
+
+
+def small_triangles(
+    vertices: Array, faces: Index, normals: Array, segment_of: Index
+) -> SmallTriangles:
+    """Cut every triangle into six.
+
+    Args:
+        vertices: (n, 3) m.
+        faces: (m, 3).
+        normals: (n, 3) outward unit normals.
+        segment_of: (n,) the segment of each vertex, -1 without color.
+    """
+    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)  # (m, 3, 2), k to k + 1
+    edges, side = np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
+    side = side.reshape(-1, 3)
+    count, middles = len(vertices), len(edges)
+    centroids = count + middles + np.arange(len(faces))
+    corners = np.empty((len(faces), 3, 2, 3), dtype=np.int64)
+    touched = np.empty((len(faces), 3, 2), dtype=np.int64)
+    for k in range(3):
+        before = side[:, k - 1]
+        corners[:, k, 0] = np.column_stack([faces[:, k], count + side[:, k], centroids])
+        corners[:, k, 1] = np.column_stack([faces[:, k], centroids, count + before])
+        touched[:, k] = np.column_stack([side[:, k], before])
+
+    def everywhere(values: Array) -> Array:
+        return np.concatenate([values, values[edges].mean(axis=1), values[faces].mean(axis=1)])
+
+    turned = everywhere(normals)
+    lengths = np.linalg.norm(turned, axis=1, keepdims=True)
+    spans = vertices[faces[:, 1:]] - vertices[faces[:, :1]]
+    areas = np.linalg.norm(np.cross(spans[:, 0], spans[:, 1]), axis=1) / 12
+    return SmallTriangles(
+        everywhere(vertices),
+        turned / np.where(lengths > 0, lengths, 1.0),
+        edges,
+        corners.reshape(-1, 3),
+        touched.ravel(),
+        np.repeat(segment_of[faces].ravel(), 2),
+        np.repeat(areas, 6),
+    )
+
+
+def corner_states(
+    prepared: PreparedScene, small: SmallTriangles, branch_of: Index
+) -> CornerStates:
+    """Configurations at all corners of small triangles, judged.
+
+    Args:
+        branch_of: (segments,) the branch of each segment's color.
+
+    Raises:
+        OutOfTime: the deadline of the scene came first.
+    """
+    own = np.flatnonzero(small.segment >= 0)
+    branches = int(branch_of.max(initial=0)) + 1
+    pairs = small.corners[own] * branches + branch_of[small.segment[own]][:, None]
+    asked, place = np.unique(pairs, return_inverse=True)
+    corner, branch = asked // branches, asked % branches
+    found = prepared.follow(small.points[corner], -small.normals[corner], branch.astype(np.intp))
+    verdicts = prepared.judge(found)
+    place = place.reshape(-1, 3)
+    at_corners, failed = found[place], verdicts.reasons[place]
+    reasons = np.zeros(len(small.corners), dtype=np.uint8)
+    first = np.argmax(failed != VALID, axis=1)  # 0, which is valid then, if none has failed
+    reasons[own] = failed[np.arange(len(own)), first]
+    one, two, three = at_corners.swapaxes(0, 1)
+    out, across, back = nearest(one, two), nearest(two, three), nearest(three, one)
+    wound = np.zeros(len(small.corners), dtype=bool)
+    wound[own] = (np.abs(out + across + back) > CIRCLE / 2).any(axis=1)  # NaN is not
+    joints = np.full((len(small.corners), 3, found.shape[1]), np.nan)
+    joints[own] = np.stack([one, one + out, one - back], axis=1)
+    return CornerStates(joints, reasons, wound)
+
+
+def nearest(first: Array, second: Array) -> Array:
+    """From angles to others modulo full circles: the shorter way, rad."""
+    return np.asarray(np.remainder(second - first + np.pi, CIRCLE) - np.pi)
+
+
+def small_triangle_at(surface: LabelledSurface, face: int, point: Array) -> int:
+    """The number of the small triangle of a triangle that a point (3,) on it lies in."""
+    a, b, c = surface.vertices[surface.faces[face]]
+    first, second, off = b - a, c - a, point - a
+    gram = np.array([[first @ first, first @ second], [first @ second, second @ second]])
+    at_b, at_c = np.linalg.solve(gram, [first @ off, second @ off])
+    shares = [1.0 - at_b - at_c, at_b, at_c]
+    corner = int(np.argmax(shares))
+    return 6 * face + 2 * corner + int(shares[corner - 1] > shares[(corner + 1) % 3])
+
+
+def left_out_parts(small: SmallTriangles, reasons: dict[int, str]) -> tuple[LeftOut, ...]:
+    """What is left out, as parts that hang together and have one reason; large ones first.
+
+    Args:
+        reasons: of each small triangle that is left out.
+    """
+    together: UnionFind[int] = UnionFind()
+    at_corner: dict[tuple[int, int, str], int] = {}
+    for number, reason in reasons.items():
+        for corner in small.corners[number].tolist():
+            key = (corner, int(small.segment[number]), reason)
+            together.union(number, at_corner.setdefault(key, number))
+    parts = []
+    for group in together.sets():
+        members = sorted(group)
+        areas = small.areas[members]
+        largest = members[int(np.argmax(areas))]
+        x, y, z = small.points[small.corners[largest]].mean(axis=0).tolist()
+        segment, reason = int(small.segment[largest]), reasons[largest]
+        parts.append(LeftOut(segment, float(areas.sum()), reason, (x, y, z)))
+    return tuple(sorted(parts, key=lambda part: (-part.area_m2, part.segment, part.place)))

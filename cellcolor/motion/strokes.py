@@ -1,0 +1,181 @@
+"""Strokes: stretches in contact, as far as they can be moved along without lifting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.data.candidate_table import VALID
+from cellcolor.motion.following import CIRCLE, Followed, whole_turns
+from cellcolor.motion.samples import Samples
+
+__all__ = ["Parting", "Stroke", "cut_where_full", "trimmed"]
+
+_SAME = 1e-9  # m; ends of a path that are nearer are one point
+
+
+@dataclass(frozen=True)
+class Parting:
+    """Why a stroke is not one with another one of its segment.
+
+    Attributes:
+        reason: as of :class:`~cellcolor.data.trajectory.ExtraLiftOff`.
+        text: in a sentence.
+        place: (3,) where, m.
+    """
+
+    reason: str
+    text: str
+    place: tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """Samples in contact, one after the other.
+
+    Attributes:
+        segment: of the painting.
+        branch: of the arm.
+        points, normals: (k, 3) as of the samples.
+        joints: (k, joints) rad, unwound; whole turns of all of them together are still to be
+            chosen.
+        parting: why it is not one with an earlier stroke of its segment; None of the first one.
+    """
+
+    segment: int
+    branch: int
+    points: Array
+    normals: Array
+    joints: Array
+    parting: Parting | None = None
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    @property
+    def closed(self) -> bool:
+        """Whether it ends where it begins, in the same configuration but for whole turns."""
+        apart = float(np.linalg.norm(self.points[0] - self.points[-1]))
+        off = self.joints[-1] - self.joints[0]
+        turned = np.abs(off - CIRCLE * np.rint(off / CIRCLE)).max()
+        return apart < _SAME and bool(turned < _SAME / 1e-3)
+
+    def part(self, first: int, end: int) -> Stroke:
+        """The samples from the first one to the one before the end."""
+        rows = slice(first, end)
+        return replace(
+            self, points=self.points[rows], normals=self.normals[rows], joints=self.joints[rows]
+        )
+
+    def reversed(self) -> Stroke:
+        """The other way round."""
+        return replace(
+            self, points=self.points[::-1], normals=self.normals[::-1], joints=self.joints[::-1]
+        )
+
+    def begun_at(self, sample: int) -> Stroke:
+        """A closed stroke that begins and ends at another of its samples."""
+        if sample == 0:
+            return self
+        # What is passed after the old end goes on from there, by whole turns farther if it winds.
+        wound = CIRCLE * np.rint((self.joints[-1] - self.joints[0]) / CIRCLE)
+        return replace(
+            self,
+            points=np.concatenate([self.points[sample:], self.points[1 : sample + 1]]),
+            normals=np.concatenate([self.normals[sample:], self.normals[1 : sample + 1]]),
+            joints=np.concatenate([self.joints[sample:], self.joints[1 : sample + 1] + wound]),
+        )
+
+    def turned(self, circles: Index) -> Stroke:
+        """Every joint (joints,) turned by so many full circles all along."""
+        return replace(self, joints=self.joints + CIRCLE * circles)
+
+
+def trimmed(
+    segment: int,
+    branch: int,
+    samples: Samples,
+    followed: Followed,
+    shortest: float,
+    names: tuple[str, ...],
+) -> list[Stroke]:
+    """The stretches of a path whose samples are all valid and none torn from the next.
+
+    Args:
+        shortest: stretches that are shorter are left out, m.
+        names: of the codes of the judge.
+    """
+    good = followed.reasons == VALID
+    if not good.any():
+        return []
+    # A new stretch begins at a good sample that is the first, or after a bad one or a tear.
+    begins = good & np.insert(~good[:-1] | followed.torn, 0, True)
+    ends = good & np.append(~good[1:] | followed.torn, True)
+    found = []
+    for first, last in zip(np.flatnonzero(begins), np.flatnonzero(ends), strict=True):
+        rows = slice(int(first), int(last) + 1)
+        joints = np.unwrap(followed.joints[rows], axis=0)
+        points, normals = samples.points[rows], samples.normals[rows]
+        length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
+        if len(points) < 2 or (length < shortest and len(points) < len(samples)):
+            continue
+        parting = None
+        if found:
+            at = int(first) - 1
+            cause = "the branch jumps" if good[at] else f"samples fail: {names[followed.reasons[at]]}"
+            x, y, z = samples.points[at].tolist()
+            parting = Parting("trimmed", f"the path was cut where {cause}", (x, y, z))
+        found.append(Stroke(segment, branch, points, normals, joints, parting))
+    return found
+
+
+def cut_where_full(
+    stroke: Stroke, lower: Array, upper: Array, joint_names: tuple[str, ...]
+) -> list[Stroke]:
+    """Parts of a stroke that each fit into the joint limits; the stroke itself if it does.
+
+    Each goes as far as it can. Between two parts the tool is lifted off, and joints come back by
+    whole turns.
+    """
+    parts: list[Stroke] = []
+    first = 0
+    while first < len(stroke) - 1:
+        fits, too_far = first, len(stroke)  # how far it is known to fit, and not to
+        if whole_turns(stroke.joints[first:], lower, upper) is not None:
+            fits = too_far - 1
+        while too_far - fits > 1 and fits < len(stroke) - 1:
+            middle = (fits + too_far) // 2
+            if whole_turns(stroke.joints[first : middle + 1], lower, upper) is not None:
+                fits = middle
+            else:
+                too_far = middle
+        part = stroke.part(first, fits + 1)
+        if parts:
+            part = replace(part, parting=_full(stroke, parts[-1], first, lower, upper, joint_names))
+        parts.append(part)
+        first = fits
+        if len(part) < 2:  # not even one step fits, which the tests of the samples leave no room for
+            break
+    return parts
+
+
+def _full(
+    stroke: Stroke, before: Stroke, sample: int, lower: Array, upper: Array, names: tuple[str, ...]
+) -> Parting:
+    """Why a stroke was cut at a sample that the part before it still has."""
+    joints = np.concatenate([before.joints, stroke.joints[sample : sample + 2]])
+    joint = next(
+        (
+            number
+            for number in range(len(names))
+            if whole_turns(
+                joints[:, [number]], lower[[number]], upper[[number]]
+            )
+            is None
+        ),
+        0,
+    )
+    x, y, z = stroke.points[sample].tolist()
+    return Parting("winding", f"{names[joint]} would run out of its limits", (x, y, z))

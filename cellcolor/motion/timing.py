@@ -1,0 +1,132 @@
+"""When the arm is where: as fast as the tool's speed and the joints' limits allow (TOPP-RA).
+
+Pham and Pham, A new approach to time-optimal path parameterization based on reachability
+analysis, 2018. Between two samples every joint moves in proportion to time, so derivatives along
+the way are differences of samples, and limits hold for what is written down: velocities between
+samples, and their change from one step to the next over the time from middle to middle.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.errors import RefusedResult
+
+__all__ = ["Speeds", "timed"]
+
+_STEP = 0.01  # of the path's parameter, per sample; TOPP-RA's tolerances suit such a scale
+_FASTEST = 10.0  # s^-1, of the parameter; where neither tool nor joints move
+_ROUNDS = 4  # of TOPP-RA; then the whole motion is stretched
+_MARGIN = 0.97  # of the accelerations; differences of samples exceed the derivatives a little
+
+
+@dataclass(frozen=True)
+class Speeds:
+    """What limits the arm's speed.
+
+    Attributes:
+        velocities: (joints,) rad/s.
+        accelerations: (joints,) rad/s^2.
+    """
+
+    velocities: Array
+    accelerations: Array
+
+
+def timed(
+    joints: Array, speeds: Speeds, points: Array | None = None, tool_speed: float = np.inf
+) -> Array:
+    """Times (k,) of the samples of a motion from rest to rest, from 0 on, s.
+
+    Args:
+        joints: (k, joints) rad, unwound, neighbors near each other.
+        speeds: of the joints.
+        points: (k, 3) where the tip is, m; only with a speed of the tool.
+        tool_speed: the tool goes no faster, m/s.
+
+    Raises:
+        RefusedResult: no times were found, which for a motion from rest to rest is a fault here.
+    """
+    if len(joints) < 2:
+        return np.zeros(len(joints))
+    moved = np.abs(np.diff(joints, axis=0))
+    least = (moved / speeds.velocities).max(axis=1, initial=0.0)
+    if points is not None:
+        least = np.maximum(least, np.linalg.norm(np.diff(points, axis=0), axis=1) / tool_speed)
+    least = np.maximum(least, _STEP / _FASTEST)
+    if len(joints) < 3:  # no sample between rest and rest
+        return _kept(np.array([0.0, *least * 2]), joints, speeds)
+    fastest = _STEP / least
+    # At a sample the steps on both sides of it have to be possible.
+    cap = np.minimum(np.append(fastest, np.inf), np.insert(fastest, 0, np.inf))
+    for _ in range(_ROUNDS):
+        rates = _rates(joints, cap, speeds)
+        steps = np.maximum(2 * _STEP / (rates[1:] + rates[:-1]), least)
+        times = np.concatenate([[0.0], np.cumsum(steps)])
+        # In sharp bends the differences say more than the derivatives do: slower just there.
+        excess = (np.abs(accelerations(times, joints)) / speeds.accelerations).max(axis=1)
+        if excess.max() <= 1.0:
+            break
+        slower = np.sqrt(np.maximum(excess / _MARGIN, 1.0))
+        around = np.maximum(slower, np.maximum(np.append(slower[1:], 1), np.insert(slower[:-1], 0, 1)))
+        cap = np.where(around > 1.0, np.minimum(cap, rates / around), cap)
+    return _kept(times, joints, speeds)
+
+
+def accelerations(times: Array, joints: Array) -> Array:
+    """Changes (k, joints) of the velocity at the samples of a motion from rest to rest, rad/s^2."""
+    steps = np.diff(times)
+    velocity = np.diff(joints, axis=0) / steps[:, None]
+    rest = np.zeros((1, joints.shape[1]))
+    change = np.diff(np.concatenate([rest, velocity, rest]), axis=0)
+    around = np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
+    return np.asarray(change / (around / 2)[:, None])
+
+
+def _kept(times: Array, joints: Array, speeds: Speeds) -> Array:
+    """The times, stretched all alike where an acceleration is still too large."""
+    excess = float((np.abs(accelerations(times, joints)) / speeds.accelerations).max())
+    return np.asarray(times * max(1.0, np.sqrt(excess)))
+
+
+def _rates(joints: Array, cap: Array, speeds: Speeds) -> Array:
+    """How fast the path's parameter grows at each sample (k,), 1/s."""
+    import toppra
+    from toppra.constraint import DiscretizationType, JointAccelerationConstraint, LinearConstraint
+    from toppra.interpolator import AbstractGeometricPath
+
+    toppra.setup_logging("ERROR")
+    grid = _STEP * np.arange(len(joints))
+    steps = np.diff(joints, axis=0) / _STEP
+    before, after = np.insert(steps, 0, steps[0], axis=0), np.append(steps, steps[-1:], axis=0)
+    derivatives = {0: joints, 1: (before + after) / 2, 2: (after - before) / _STEP}
+
+    class Samples(AbstractGeometricPath):  # type: ignore[misc]
+        """The samples as a path that is only ever asked at its samples."""
+
+        dof = joints.shape[1]
+        path_interval = np.array([grid[0], grid[-1]])
+
+        def __call__(self, _positions: Array, order: int = 0) -> Array:
+            return derivatives[order]
+
+    class Cap(LinearConstraint):  # type: ignore[misc]
+        """No faster than the tool's speed and the joints' velocities allow."""
+
+        def compute_constraint_params(self, _path: Any, _grid: Array, *_: Any) -> tuple[Any, ...]:
+            bounds = np.column_stack([np.zeros(len(cap)), cap**2])
+            return None, None, None, None, None, None, bounds
+
+    limit = _MARGIN * np.column_stack([-speeds.accelerations, speeds.accelerations])
+    bend = JointAccelerationConstraint(limit, DiscretizationType.Collocation)
+    solver = toppra.algorithm.TOPPRA(
+        [Cap(), bend], Samples(), gridpoints=grid, solver_wrapper="seidel"
+    )
+    _, rates, _ = solver.compute_parameterization(0.0, 0.0)
+    if rates is None or np.isnan(rates).any():
+        raise RefusedResult("a motion from rest to rest was found to have no times")
+    return np.asarray(rates)

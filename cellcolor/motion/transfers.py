@@ -1,0 +1,161 @@
+"""From one stroke to the next: off the surface, through free space, and back to the surface."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import Deadline
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.motion.free_space import FreeSpace
+from cellcolor.motion.samples import DISTANCE, TURN, angles_between
+from cellcolor.motion.sampling_planner import sampled_way
+from cellcolor.motion.strokes import Stroke
+
+__all__ = ["Transfer", "Transfers"]
+
+_FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
+_ROOM = 0.999  # of the largest steps, for rounding
+
+
+@dataclass(frozen=True)
+class Transfer:
+    """A motion without contact, its first and last configuration included.
+
+    Attributes:
+        joints: (k, joints) rad, unwound.
+        gap: after which of them the way to the next one was not planned; None if all of it was.
+    """
+
+    joints: Array
+    gap: int | None
+
+
+class Transfers:
+    """Plans motions between strokes, for one scene."""
+
+    def __init__(self, prepared: PreparedScene, seed: int, deadline: Deadline) -> None:
+        """``seed`` is that of the sampling planner."""
+        motion = prepared.setup.motion
+        assert motion is not None  # asked where planning begins
+        self._prepared, self._seed, self._deadline = prepared, seed, deadline
+        self._height = motion.retract_m
+        self._leaving = FreeSpace(prepared, 0.0, leaving=True)
+        self._clear = FreeSpace(prepared, motion.clearance_m)
+
+    def _retreat(self, joints: Array, normal: Array, branch: int) -> Array:
+        """Off the surface along the normal, at most as high as the setup says.
+
+        The branch stays the same. The way ends at the greatest height that is clear of everything,
+        with nothing in the way below it; there may be none, and then it has no length.
+
+        Args:
+            joints: (joints,) in contact, rad, unwound.
+            normal: (3,) the surface's, outward.
+            branch: of the configuration.
+
+        Returns:
+            (k, joints) from the contact on, rad, unwound.
+        """
+        robot = self._prepared.robot
+        tip = forward(robot, joints[None]).tip[0]
+        count = int(np.ceil(self._height / (DISTANCE * _ROOM)))
+        heights = np.linspace(0.0, self._height, count + 1)[1:]
+        points = tip + heights[:, None] * normal
+        directions = np.tile(-normal, (count, 1))
+        found = self._prepared.follow(points, directions, np.full(count, branch, dtype=np.intp))
+        way = np.concatenate([joints[None], found])
+        solved = int(np.argmax(np.isnan(way[:, 0]))) or len(way)
+        way = way[:solved]
+        way = joints + np.unwrap(way - joints, axis=0)
+        steady = np.abs(np.diff(way, axis=0)).max(axis=1, initial=0.0) <= _FASTER
+        fine = steady & self._leaving(way[1:])
+        reached = int(np.argmin(fine)) if not fine.all() else len(fine)
+        clear = np.flatnonzero(self._clear(way[1 : reached + 1]))
+        return np.asarray(way[: clear[-1] + 2 if len(clear) else 1])
+
+    def between_strokes(self, strokes: Sequence[Stroke], home: Array | None) -> list[Transfer]:
+        """All motions without contact: to the first stroke, between strokes, from the last one.
+
+        Without a home position the first begins, and the last ends, where the tool is retracted.
+
+        Args:
+            strokes: in their order.
+            home: (joints,) rad, or None.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        onto, off = (
+            [self._retreat(one.joints[at], one.normals[at], one.branch) for one in strokes]
+            for at in (0, -1)
+        )
+        if home is None:
+            return [
+                Transfer(onto[0][::-1], None),
+                *(self._joined(*ways) for ways in zip(off[:-1], onto[1:], strict=True)),
+                Transfer(off[-1], None),
+            ]
+        return [
+            self._joined(*ways)
+            for ways in zip([home[None], *off], [*onto, home[None]], strict=True)
+        ]
+
+    def _joined(self, off: Array, onto: Array) -> Transfer:
+        """Along one retreat, freely to the end of another one, and back along that."""
+        if len(off) == 1 and len(onto) == 1:
+            off = np.concatenate([off, off])  # so that there is a sample without contact
+        between = self._between(off[-1], onto[-1])
+        joints = np.concatenate([off[:-1], between.joints, onto[:-1][::-1]])
+        return Transfer(joints, None if between.gap is None else len(off) - 1 + between.gap)
+
+    def _between(self, start: Array, end: Array) -> Transfer:
+        """Through free space: straight for the joints, or by a sampling planner, or not at all.
+
+        Args:
+            start, end: (joints,) rad, unwound.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        self._deadline.check()
+        straight = self._dense(np.array([start, end]))
+        if self._clear(straight).all():
+            return Transfer(straight, None)
+        if self._clear(np.array([start, end])).all():
+            lower, upper = self._clear.limits
+            corners = sampled_way(
+                start, end, lower, upper, self._clear, self._seed, self._deadline
+            )
+            if corners is not None:
+                way = self._dense(corners)
+                if self._clear(way).all():
+                    return Transfer(way, None)
+        self._deadline.check()
+        return Transfer(np.array([start, end]), 0)
+
+    def _dense(self, corners: Array) -> Array:
+        """Samples (k, joints) of straight ways for the joints through corners (c, joints).
+
+        From one to the next the tip moves at most 1 mm, and the tool's axis and every joint turn
+        by at most 1 degree.
+        """
+        parts = [corners[:1]]
+        for start, end in zip(corners[:-1], corners[1:], strict=True):
+            count = max(1, int(np.ceil(np.abs(end - start).max() / (TURN * _ROOM))))
+            while True:
+                share = np.linspace(0.0, 1.0, count + 1)[:, None]
+                way = start + share * (end - start)
+                poses = forward(self._prepared.robot, way)
+                moved = np.linalg.norm(np.diff(poses.tip, axis=0), axis=1) / DISTANCE
+                turned = angles_between(poses.tool_axis[:-1], poses.tool_axis[1:]) / TURN
+                excess = float(np.maximum(moved, turned).max())
+                if excess <= 1.0:
+                    break
+                count = int(np.ceil(count * excess / _ROOM))
+            parts.append(way[1:])
+        return np.concatenate(parts)
