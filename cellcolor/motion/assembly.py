@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
@@ -28,7 +29,7 @@ class _Rows:
     joints: list[Array] = field(default_factory=list)
     points: list[Array] = field(default_factory=list)
     normals: list[Array] = field(default_factory=list)
-    segments: list[Array] = field(default_factory=list)
+    segments: list[Index] = field(default_factory=list)
     count: int = 0
     now: float = 0.0
 
@@ -70,7 +71,9 @@ def assembled(
         OutOfTime: the deadline came first.
     """
     rows, unplanned = _Rows(), []
-    extra, last_of, partings = [], {}, _partings(strokes)
+    extra: list[ExtraLiftOff] = []
+    last_of: dict[int, int] = {}
+    partings = _partings(strokes)
     for number, transfer in enumerate(transfers):
         deadline.check()
         at_stroke = 1 if number else 0  # the first sample is the stroke's last one
@@ -135,7 +138,7 @@ def _add_transfer(
     pieces = [(0, count - 1)]
     if transfer.gap is not None:
         ends = [0, transfer.gap, transfer.gap + 1, count - 1]
-        pieces = [(a, b) for a, b in zip(ends[:-1], ends[1:], strict=True) if b > a]
+        pieces = [(a, b) for a, b in pairwise(ends) if b > a]
     times = np.zeros(count)
     for a, b in pieces:
         times[a : b + 1] = times[a] + timed(joints[a : b + 1], speeds)

@@ -87,7 +87,9 @@ def courses_of(
             courses.append(course)
         before = {_key(course.path): course for course in courses}
         failing = {
-            small_triangle_at(surface, int(course.samples.faces[at]), course.samples.points[at]): why
+            small_triangle_at(
+                surface, int(course.samples.faces[at]), course.samples.points[at]
+            ): why
             for course in courses
             for at, why in _failures(course.followed, prepared.judge.reason_names)
         }

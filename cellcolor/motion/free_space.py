@@ -43,21 +43,29 @@ class FreeSpace:
 
     def __call__(self, configurations: Array) -> Mask:
         """Which of configurations (k, joints) in rad, taken as they are, are free, (k,)."""
-        free = np.empty(len(configurations), dtype=bool)
-        for first in range(0, len(configurations), _AT_ONCE):
-            rows = slice(first, first + _AT_ONCE)
-            free[rows] = self._free(configurations[rows])
+        free = self.inside(configurations)
+        rows = np.flatnonzero(free)
+        free[rows] = self.clear(configurations[rows])
         return free
 
-    def _free(self, configurations: Array) -> Mask:
+    def inside(self, configurations: Array) -> Mask:
+        """Which of them are inside the joint limits, (k,)."""
         lower, upper = self.limits
-        free = ((configurations >= lower) & (configurations <= upper)).all(axis=1)
-        if not self._on or not free.any():
-            return np.asarray(free)
-        place, rows = self._place, np.flatnonzero(free)
-        poses = forward(self._robot, configurations[rows])
+        return np.asarray(((configurations >= lower) & (configurations <= upper)).all(axis=1))
+
+    def clear(self, configurations: Array) -> Mask:
+        """Which of them touch nothing, whatever the limits, (k,)."""
+        clear = np.ones(len(configurations), dtype=bool)
+        for first in range(0, len(configurations) if self._on else 0, _AT_ONCE):
+            rows = slice(first, first + _AT_ONCE)
+            clear[rows] = ~self._touching(configurations[rows])
+        return clear
+
+    def _touching(self, configurations: Array) -> Mask:
+        place = self._place
+        poses = forward(self._robot, configurations)
         ends = body_ends(self._around, poses)
-        hit = np.zeros(len(rows), dtype=bool)
+        hit = np.zeros(len(configurations), dtype=bool)
         if place.ground is not None:
             exempt = place.setup.robot.may_touch_ground
             hit |= hits_ground(self._around, ends, place.ground, exempt)
@@ -67,8 +75,7 @@ class FreeSpace:
             hit[~hit] = solid.hits(self._around, ends[:, :, ~hit])
         halves = body_ends(self._half, poses)
         hit[~hit] = hits_itself(self._half, halves[:, :, ~hit])
-        free[rows] = ~hit
-        return np.asarray(free)
+        return hit
 
 
 def _with_tip(robot: Robot, tip: Body) -> Robot:

@@ -26,6 +26,7 @@ from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.transfers import Transfers
 from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.cover import Covered, cover
+from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
 __all__ = ["MotionPlan", "plan_motion"]
 
@@ -53,7 +54,7 @@ def plan_motion(
     painted: Painted,
     normals: Array,
     *,
-    pattern: str = "contour",
+    pattern: str = DEFAULT_PATTERN,
     seed: int = 0,
     deadline: Deadline = NEVER,
     progress: Progress | None = None,
@@ -110,7 +111,8 @@ def plan_motion(
         limits = joint_limits(prepared)
         strokes = ordered(strokes, limits, speeds.velocities, home, deadline)
     with clock.timed("transfers"):
-        transfers = Transfers(prepared, seed, deadline).between_strokes(strokes, home)
+        planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
+        strokes, transfers = planner.between_strokes(strokes, home)
     with clock.timed("times"):
         trajectory = assembled(
             surface.name,
@@ -130,9 +132,7 @@ def plan_motion(
 def _colors(painted: Painted) -> list[int]:
     """The color of each segment, 0 for numbers that no vertex has."""
     colors = [0] * (int(painted.segment_of.max(initial=-1)) + 1)
-    for segment, color in zip(
-        painted.segment_of.tolist(), painted.plan.vertex_colors, strict=True
-    ):
+    for segment, color in zip(painted.segment_of.tolist(), painted.plan.vertex_colors, strict=True):
         if segment >= 0 and color is not None:
             colors[segment] = color
     return colors

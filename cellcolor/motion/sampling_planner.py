@@ -15,9 +15,9 @@ from cellcolor.deadline import Deadline
 
 __all__ = ["sampled_way"]
 
-_LONGEST = 0.02  # rad, between two tested configurations; who asks tests the way found more finely
+_LONGEST = 0.04  # rad, between two tested configurations; who asks tests the way found more finely
 _BRANCH = 1.0  # rad, the longest new branch of a tree
-_ATTEMPTS = 20_000  # rounds of the planner; a number, so that the time it takes decides nothing
+_ATTEMPTS = 2_000  # rounds of the planner; a number, so that the time it takes decides nothing
 
 
 def sampled_way(

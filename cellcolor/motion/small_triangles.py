@@ -121,9 +121,7 @@ def small_triangles(
     )
 
 
-def corner_states(
-    prepared: PreparedScene, small: SmallTriangles, branch_of: Index
-) -> CornerStates:
+def corner_states(prepared: PreparedScene, small: SmallTriangles, branch_of: Index) -> CornerStates:
     """Configurations at all corners of small triangles, judged.
 
     Args:

@@ -113,7 +113,7 @@ def trimmed(
     # A new stretch begins at a good sample that is the first, or after a bad one or a tear.
     begins = good & np.insert(~good[:-1] | followed.torn, 0, True)
     ends = good & np.append(~good[1:] | followed.torn, True)
-    found = []
+    found: list[Stroke] = []
     for first, last in zip(np.flatnonzero(begins), np.flatnonzero(ends), strict=True):
         rows = slice(int(first), int(last) + 1)
         joints = np.unwrap(followed.joints[rows], axis=0)
@@ -124,7 +124,9 @@ def trimmed(
         parting = None
         if found:
             at = int(first) - 1
-            cause = "the branch jumps" if good[at] else f"samples fail: {names[followed.reasons[at]]}"
+            cause = (
+                "the branch jumps" if good[at] else f"samples fail: {names[followed.reasons[at]]}"
+            )
             x, y, z = samples.points[at].tolist()
             parting = Parting("trimmed", f"the path was cut where {cause}", (x, y, z))
         found.append(Stroke(segment, branch, points, normals, joints, parting))
@@ -156,7 +158,9 @@ def cut_where_full(
             part = replace(part, parting=_full(stroke, parts[-1], first, lower, upper, joint_names))
         parts.append(part)
         first = fits
-        if len(part) < 2:  # not even one step fits, which the tests of the samples leave no room for
+        if (
+            len(part) < 2
+        ):  # not even one step fits, which the tests of the samples leave no room for
             break
     return parts
 
@@ -170,10 +174,7 @@ def _full(
         (
             number
             for number in range(len(names))
-            if whole_turns(
-                joints[:, [number]], lower[[number]], upper[[number]]
-            )
-            is None
+            if whole_turns(joints[:, [number]], lower[[number]], upper[[number]]) is None
         ),
         0,
     )

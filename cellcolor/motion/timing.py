@@ -72,7 +72,9 @@ def timed(
         if excess.max() <= 1.0:
             break
         slower = np.sqrt(np.maximum(excess / _MARGIN, 1.0))
-        around = np.maximum(slower, np.maximum(np.append(slower[1:], 1), np.insert(slower[:-1], 0, 1)))
+        around = np.maximum(
+            slower, np.maximum(np.append(slower[1:], 1), np.insert(slower[:-1], 0, 1))
+        )
         cap = np.where(around > 1.0, np.minimum(cap, rates / around), cap)
     return _kept(times, joints, speeds)
 

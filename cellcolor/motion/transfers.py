@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -11,14 +12,18 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.setup import Motion
+from cellcolor.motion.following import CIRCLE, whole_turns
 from cellcolor.motion.free_space import FreeSpace
 from cellcolor.motion.samples import DISTANCE, TURN, angles_between
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke
+from cellcolor.motion.turns import Visit, chosen_turns
 
 __all__ = ["Transfer", "Transfers"]
 
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
+_COARSE = 0.05  # rad, between samples of a straight move that is only tried
 _ROOM = 0.999  # of the largest steps, for rounding
 
 
@@ -38,14 +43,61 @@ class Transfer:
 class Transfers:
     """Plans motions between strokes, for one scene."""
 
-    def __init__(self, prepared: PreparedScene, seed: int, deadline: Deadline) -> None:
-        """``seed`` is that of the sampling planner."""
-        motion = prepared.setup.motion
-        assert motion is not None  # asked where planning begins
+    def __init__(
+        self,
+        prepared: PreparedScene,
+        motion: Motion,
+        velocities: Array,
+        seed: int,
+        deadline: Deadline,
+    ) -> None:
+        """``velocities`` (joints,) in rad/s; ``seed`` is that of the sampling planner."""
         self._prepared, self._seed, self._deadline = prepared, seed, deadline
-        self._height = motion.retract_m
+        self._height, self._velocities = motion.retract_m, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
         self._clear = FreeSpace(prepared, motion.clearance_m)
+
+    def between_strokes(
+        self, strokes: Sequence[Stroke], home: Array | None
+    ) -> tuple[list[Stroke], list[Transfer]]:
+        """The strokes with their joints turned for good, and all motions without contact.
+
+        These are the way to the first stroke, those between strokes, and the way from the last
+        one. Without a home position the first begins, and the last ends, where the tool is
+        retracted.
+
+        Args:
+            strokes: in their order.
+            home: (joints,) rad, or None.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        onto, off = (
+            [self._retreat(one.joints[at], one.normals[at], one.branch) for one in strokes]
+            for at in (0, -1)
+        )
+        limits = self._clear.limits
+        visits = []
+        for way_on, stroke, way_off in zip(onto, strokes, off, strict=True):
+            span = np.concatenate([way_on, stroke.joints, way_off])
+            if whole_turns(span, *limits) is None:
+                span = stroke.joints
+            visits.append(Visit(way_on[-1], way_off[-1], span))
+        circles = chosen_turns(visits, home, limits, self._velocities, self._blocked)
+        turned = [stroke.turned(own) for stroke, own in zip(strokes, circles, strict=True)]
+        onto, off = (
+            [self._high(way + CIRCLE * own) for way, own in zip(ways, circles, strict=True)]
+            for ways in (onto, off)
+        )
+        if home is None:
+            return turned, [
+                Transfer(onto[0][::-1], None),
+                *(self._joined(*ways) for ways in zip(off[:-1], onto[1:], strict=True)),
+                Transfer(off[-1], None),
+            ]
+        ways = zip([home[None], *off], [*onto, home[None]], strict=True)
+        return turned, [self._joined(*pair) for pair in ways]
 
     def _retreat(self, joints: Array, normal: Array, branch: int) -> Array:
         """Off the surface along the normal, at most as high as the setup says.
@@ -61,49 +113,29 @@ class Transfers:
         Returns:
             (k, joints) from the contact on, rad, unwound.
         """
-        robot = self._prepared.robot
-        tip = forward(robot, joints[None]).tip[0]
+        tip = forward(self._prepared.robot, joints[None]).tip[0]
         count = int(np.ceil(self._height / (DISTANCE * _ROOM)))
         heights = np.linspace(0.0, self._height, count + 1)[1:]
         points = tip + heights[:, None] * normal
         directions = np.tile(-normal, (count, 1))
         found = self._prepared.follow(points, directions, np.full(count, branch, dtype=np.intp))
-        way = np.concatenate([joints[None], found])
-        solved = int(np.argmax(np.isnan(way[:, 0]))) or len(way)
-        way = way[:solved]
-        way = joints + np.unwrap(way - joints, axis=0)
-        steady = np.abs(np.diff(way, axis=0)).max(axis=1, initial=0.0) <= _FASTER
-        fine = steady & self._leaving(way[1:])
-        reached = int(np.argmin(fine)) if not fine.all() else len(fine)
-        clear = np.flatnonzero(self._clear(way[1 : reached + 1]))
+        solved = ~np.isnan(found[:, 0])
+        found = found[: count if solved.all() else int(np.argmin(solved))]
+        way = joints + np.unwrap(np.concatenate([joints[None], found]) - joints, axis=0)
+        steady = np.abs(np.diff(way, axis=0)).max(axis=1) <= _FASTER
+        fine = np.append(steady & self._leaving.clear(way[1:]), False)
+        way = way[: int(np.argmin(fine)) + 1]
+        clear = np.flatnonzero(self._clear.clear(way[1:]))
         return np.asarray(way[: clear[-1] + 2 if len(clear) else 1])
 
-    def between_strokes(self, strokes: Sequence[Stroke], home: Array | None) -> list[Transfer]:
-        """All motions without contact: to the first stroke, between strokes, from the last one.
-
-        Without a home position the first begins, and the last ends, where the tool is retracted.
-
-        Args:
-            strokes: in their order.
-            home: (joints,) rad, or None.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
-        onto, off = (
-            [self._retreat(one.joints[at], one.normals[at], one.branch) for one in strokes]
-            for at in (0, -1)
-        )
-        if home is None:
-            return [
-                Transfer(onto[0][::-1], None),
-                *(self._joined(*ways) for ways in zip(off[:-1], onto[1:], strict=True)),
-                Transfer(off[-1], None),
-            ]
-        return [
-            self._joined(*ways)
-            for ways in zip([home[None], *off], [*onto, home[None]], strict=True)
-        ]
+    def _high(self, way: Array) -> Array:
+        """A retreat, cut where it leaves the limits, and there where it is still clear."""
+        inside = np.append(self._clear.inside(way), False)
+        if inside[:-1].all():
+            return way
+        way = way[: max(1, int(np.argmin(inside)))]
+        clear = np.flatnonzero(self._clear(way[1:]))
+        return np.asarray(way[: clear[-1] + 2 if len(clear) else 1])
 
     def _joined(self, off: Array, onto: Array) -> Transfer:
         """Along one retreat, freely to the end of another one, and back along that."""
@@ -113,29 +145,28 @@ class Transfers:
         joints = np.concatenate([off[:-1], between.joints, onto[:-1][::-1]])
         return Transfer(joints, None if between.gap is None else len(off) - 1 + between.gap)
 
+    def _blocked(self, start: Array, end: Array) -> float:
+        """What share of the samples of a straight move is not free."""
+        self._deadline.check()
+        count = max(1, int(np.ceil(np.abs(end - start).max() / _COARSE)))
+        share = np.linspace(0.0, 1.0, count + 1)[:, None]
+        return float(1.0 - self._clear(start + share * (end - start)).mean())
+
     def _between(self, start: Array, end: Array) -> Transfer:
-        """Through free space: straight for the joints, or by a sampling planner, or not at all.
-
-        Args:
-            start, end: (joints,) rad, unwound.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
+        """Through free space: straight for the joints, or by a sampling planner, or not at all."""
         self._deadline.check()
         straight = self._dense(np.array([start, end]))
         if self._clear(straight).all():
             return Transfer(straight, None)
         if self._clear(np.array([start, end])).all():
-            lower, upper = self._clear.limits
             corners = sampled_way(
-                start, end, lower, upper, self._clear, self._seed, self._deadline
+                start, end, *self._clear.limits, self._clear, self._seed, self._deadline
             )
+            self._deadline.check()
             if corners is not None:
                 way = self._dense(corners)
                 if self._clear(way).all():
                     return Transfer(way, None)
-        self._deadline.check()
         return Transfer(np.array([start, end]), 0)
 
     def _dense(self, corners: Array) -> Array:
@@ -145,7 +176,7 @@ class Transfers:
         by at most 1 degree.
         """
         parts = [corners[:1]]
-        for start, end in zip(corners[:-1], corners[1:], strict=True):
+        for start, end in pairwise(corners):
             count = max(1, int(np.ceil(np.abs(end - start).max() / (TURN * _ROOM))))
             while True:
                 share = np.linspace(0.0, 1.0, count + 1)[:, None]

@@ -37,9 +37,7 @@ class Tip:
             if body.joint == robot.joints
         ]
         length = max(min(behind, default=0.0), 0.0)
-        self.body = Body(
-            "tool tip", robot.joints, point, point - length * axis, radius, flat=False
-        )
+        self.body = Body("tool tip", robot.joints, point, point - length * axis, radius, flat=False)
         self._obstacles, self._ground = obstacles, ground
 
     @property

@@ -1,0 +1,121 @@
+"""By how many whole turns the joints stand on each stroke, so that moves between are short."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise, product
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.motion.following import CIRCLE, whole_turns
+
+__all__ = ["Visit", "chosen_turns"]
+
+_PER_JOINT = 3  # turns of one joint that are tried, those next to the middle of its limits
+_ASIDE = 0.01  # s per rad; of two ways as quick as each other that nearer to the middle is taken
+_BLOCKED = 5.0  # s; by so much longer a straight move counts that is blocked somewhere
+_DEEP = 30.0  # s; and by so much, times the share of it that is
+_CHECKS = 200  # straight moves that are tested at most
+
+
+@dataclass(frozen=True)
+class Visit:
+    """Where a stroke is come to and left from, and all angles in between; rad.
+
+    Attributes:
+        start, end: (joints,).
+        span: (k, joints) what has to be inside the limits, whatever the turns.
+    """
+
+    start: Array
+    end: Array
+    span: Array
+
+
+def chosen_turns(
+    visits: Sequence[Visit],
+    home: Array | None,
+    limits: tuple[Array, Array],
+    velocities: Array,
+    blocked: Callable[[Array, Array], float],
+) -> list[Index]:
+    """For each visit the full circles (joints,) by which its joints are turned.
+
+    The moves between the visits are to be quick, and free if they are straight. Whether one is
+    free is only asked of those on the best way, and then that is looked for again.
+
+    Args:
+        visits: in their order; each fits into the limits.
+        home: (joints,) where the arm begins and ends, rad; None if that does not matter.
+        limits: lower and upper (joints,), rad.
+        velocities: (joints,) the greatest, rad/s.
+        blocked: what share of the straight move from one configuration (joints,) to another is
+            not free.
+    """
+    middle = np.where(np.isfinite(limits[0] + limits[1]), (limits[0] + limits[1]) / 2, 0.0)
+    circles, starts, ends, aside = [], [], [], []
+    for visit in visits:
+        own = _choices(visit, limits, middle)
+        circles.append(own)
+        starts.append(visit.start + CIRCLE * own)
+        ends.append(visit.end + CIRCLE * own)
+        aside.append(_ASIDE * np.abs((starts[-1] + ends[-1]) / 2 - middle).sum(axis=1))
+    if home is not None:
+        at_home = home[None]
+        starts, ends = [at_home, *starts, at_home], [at_home, *ends, at_home]
+        aside = [np.zeros(1), *aside, np.zeros(1)]
+    moves = [
+        (np.abs(after[None] - before[:, None]) / velocities).max(axis=2)
+        for before, after in zip(ends[:-1], starts[1:], strict=True)
+    ]
+    known: set[tuple[int, int, int]] = set()
+    best = _quickest(moves, aside)
+    for _ in range(_CHECKS):
+        asked = next(
+            (
+                (layer, *pair)
+                for layer, pair in enumerate(pairwise(best))
+                if (layer, *pair) not in known
+            ),
+            None,
+        )
+        if asked is None:
+            break
+        known.add(asked)
+        layer, one, other = asked
+        share = blocked(ends[layer][one], starts[layer + 1][other])
+        if share > 0:
+            moves[layer][one, other] += _BLOCKED + _DEEP * share
+            best = _quickest(moves, aside)
+    of_visits = best if home is None else best[1:-1]
+    return [own[at] for own, at in zip(circles, of_visits, strict=True)]
+
+
+def _choices(visit: Visit, limits: tuple[Array, Array], middle: Array) -> Index:
+    """Full circles (c, joints) by which a visit can be turned."""
+    possible = whole_turns(visit.span, *limits)
+    assert possible is not None  # asked by who calls
+    at = (visit.span.min(axis=0) + visit.span.max(axis=0)) / 2
+    near = []
+    for joint, turns in enumerate(possible):
+        off = np.abs(at[joint] + CIRCLE * turns - middle[joint])
+        if visit.span[:, joint].min() == visit.span[:, joint].max():  # locked: it stays as it is
+            near.append(turns[[np.abs(turns).argmin()]])
+            continue
+        near.append(turns[np.argsort(off, kind="stable")[:_PER_JOINT]])
+    return np.array(list(product(*near)), dtype=np.int64)
+
+
+def _quickest(moves: Sequence[Array], aside: Sequence[Array]) -> list[int]:
+    """One choice of each layer, with the least time in all."""
+    total, came = aside[0], []
+    for move, own in zip(moves, aside[1:], strict=True):
+        whole = total[:, None] + move
+        came.append(whole.argmin(axis=0))
+        total = whole.min(axis=0) + own
+    best = [int(total.argmin())]
+    for back in reversed(came):
+        best.append(int(back[best[-1]]))
+    return best[::-1]

@@ -1,0 +1,134 @@
+"""Planned motions, held against Pinocchio and against differences of samples."""
+
+from __future__ import annotations
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from motions import Planned, planned
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array
+from cellcolor.data.candidate_table import VALID
+
+NAMES = ("wok", "half_pipe", "square", "hemisphere_flat", "hemisphere_tilted", "wok_obstacle")
+
+
+@pytest.fixture(scope="module", params=["half_pipe", "wok_obstacle"])
+def motion(request: pytest.FixtureRequest) -> Planned:
+    """A motion with one lift-off, and one with two around an obstacle."""
+    return planned(request.param, 500)
+
+
+def tip_poses(motion: Planned, joints: Array) -> tuple[Array, Array]:
+    """Where the tip is and where the tool points, by Pinocchio on the robot's own model."""
+    model = motion.prepared.robot.model
+    data, frame = model.createData(), model.getFrameId("tool_tip")
+    points, axes = [], []
+    for configuration in joints:
+        pin.forwardKinematics(model, data, configuration)
+        pose = pin.updateFramePlacement(model, data, frame)
+        points.append(pose.translation.copy())
+        axes.append(pose.rotation[:, 2].copy())
+    return np.array(points), np.array(axes)
+
+
+def test_the_tip_is_where_the_trajectory_says_and_the_tool_goes_against_the_normal(
+    motion: Planned,
+) -> None:
+    trajectory = motion.plan.trajectory
+    points, axes = tip_poses(motion, trajectory.joints)
+    assert np.abs(points - trajectory.points).max() < 1e-6
+    assert np.abs(axes + trajectory.normals).max() < 1e-6
+
+
+def test_in_contact_the_tip_is_on_the_tool_path(motion: Planned) -> None:
+    trajectory, paths = motion.plan.trajectory, motion.plan.paths.paths
+    for first, end in trajectory.strokes:
+        path = next(p for p in paths if p.segment == trajectory.segment[first])
+        # The path as points 0.1 mm apart: a sample that lies on it has one within half of that.
+        lengths = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
+        total = np.concatenate([[0.0], np.cumsum(lengths)])
+        at = np.append(np.arange(0.0, total[-1], 1e-4), total[-1])
+        dense = np.column_stack([np.interp(at, total, path.points[:, axis]) for axis in range(3)])
+        assert cKDTree(dense).query(trajectory.points[first:end])[0].max() < 0.6e-4
+        # And the whole path is passed: a sample for each of its points within half a step.
+        away, _ = cKDTree(trajectory.points[first:end]).query(dense)
+        assert away.max() < 0.6e-3
+
+
+def test_samples_are_a_millimeter_and_a_degree_apart_at_most(motion: Planned) -> None:
+    trajectory = motion.plan.trajectory
+    steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
+    cosines = (trajectory.normals[:-1] * trajectory.normals[1:]).sum(axis=1)
+    assert steps.max() <= 1e-3 + 1e-9
+    assert np.rad2deg(np.arccos(np.clip(cosines, -1, 1))).max() <= 1 + 1e-6
+
+
+def test_every_sample_in_contact_is_valid_in_the_color_of_its_segment(motion: Planned) -> None:
+    trajectory = motion.plan.trajectory
+    verdicts = motion.prepared.judge(trajectory.joints[trajectory.contact])
+    assert (verdicts.reasons == VALID).all()
+    branch_of = motion.built.stages.cleaned.coloring.branch
+    for first, end in trajectory.strokes:
+        segment = trajectory.segment[first]
+        vertex = int(np.flatnonzero(motion.painted.segment_of == segment)[0])
+        color = motion.painted.plan.vertex_colors[vertex]
+        assert color is not None
+        branches = np.full(end - first, branch_of[color])
+        rows = slice(first, end)
+        found = motion.prepared.follow(trajectory.points[rows], -trajectory.normals[rows], branches)
+        off = np.remainder(trajectory.joints[rows] - found + np.pi, 2 * np.pi) - np.pi
+        assert np.abs(off).max() < 1e-9
+
+
+def test_joints_stay_in_their_limits_and_do_not_jump(motion: Planned) -> None:
+    trajectory, robot = motion.plan.trajectory, motion.prepared.robot
+    assert (trajectory.joints >= robot.lower).all()
+    assert (trajectory.joints <= robot.upper).all()
+    assert np.abs(np.diff(trajectory.joints, axis=0)).max() < 0.2
+
+
+def test_velocities_and_accelerations_are_kept_and_the_tool_is_no_faster_than_asked(
+    motion: Planned,
+) -> None:
+    trajectory, asked = motion.plan.trajectory, motion.prepared.setup.motion
+    assert asked is not None
+    steps = np.diff(trajectory.times)
+    assert steps.min() > 0
+    velocity = np.diff(trajectory.joints, axis=0) / steps[:, None]
+    assert (np.abs(velocity) <= motion.prepared.robot.model.velocityLimit * (1 + 1e-9)).all()
+    change = np.diff(velocity, axis=0) / ((steps[1:] + steps[:-1]) / 2)[:, None]
+    limit = np.array(asked.joint_accelerations_rad_per_s2)
+    assert (np.abs(change) <= limit * (1 + 1e-9)).all()
+    both = trajectory.contact[1:] & trajectory.contact[:-1]
+    speed = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1) / steps
+    assert speed[both].max() <= asked.speed_m_per_s * (1 + 1e-9)
+    assert np.median(speed[both]) > 0.95 * asked.speed_m_per_s
+
+
+def test_lift_offs_are_the_proved_minimum_and_all_transfers_are_planned(motion: Planned) -> None:
+    trajectory = motion.plan.trajectory
+    assert trajectory.lift_offs == motion.lift_offs
+    assert trajectory.extra_lift_offs == ()
+    assert trajectory.unplanned == ()
+
+
+def test_the_arm_begins_and_ends_at_home(motion: Planned) -> None:
+    trajectory, asked = motion.plan.trajectory, motion.prepared.setup.motion
+    assert asked is not None
+    for sample in (0, -1):
+        assert trajectory.joints[sample] == pytest.approx(asked.home_rad)
+        assert not trajectory.contact[sample]
+        assert trajectory.segment[sample] == -1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_all_scenes_have_no_more_lift_offs_than_were_proved(name: str) -> None:
+    motion = planned(name, 1000)
+    trajectory = motion.plan.trajectory
+    assert trajectory.lift_offs == motion.lift_offs
+    assert trajectory.extra_lift_offs == trajectory.unplanned == ()
+    verdicts = motion.prepared.judge(trajectory.joints[trajectory.contact])
+    assert (verdicts.reasons == VALID).all()
