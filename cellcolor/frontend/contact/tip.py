@@ -43,7 +43,7 @@ class Tip:
     @property
     def length(self) -> float:
         """From the tip back to where the tool's body begins, m."""
-        return self._body.length
+        return self.body.length
 
     def blocked(self, points: Array, directions: Array) -> Mask:
         """Whether something is in the way, (k,).
