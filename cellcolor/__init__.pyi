@@ -22,6 +22,8 @@ from cellcolor.door.judging import judge as judge
 from cellcolor.door.judging import proven_range as proven_range
 from cellcolor.door.oracle import Oracle as Oracle
 from cellcolor.door.painting import paint as paint
+from cellcolor.door.planning import PlannedScene as PlannedScene
+from cellcolor.door.planning import plan as plan
 from cellcolor.door.reading import read as read
 from cellcolor.door.result import Result as Result
 from cellcolor.door.shipped import library as library

@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from cellcolor.cli.motion_options import motion_options
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
+from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS
 from cellcolor.version import __version__
 
 if TYPE_CHECKING:
@@ -265,6 +267,48 @@ def paint(
 
     deadline = Deadline.after(time_limit, begun)
     return paint_files(source, claim, output, tool_radius, deadline)
+
+
+@cellcolor.command()
+@click.argument("scene", metavar="SCENE.toml", type=_INPUT)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    required=True,
+    type=_PATH,
+    help="For all files; it is made if it does not exist.",
+)
+@click.option(
+    "--pattern",
+    metavar="NAME",
+    default=DEFAULT_PATTERN,
+    show_default=True,
+    help=f"Of the tool paths: {', '.join(PATTERNS)}, or what another package registers.",
+)
+@click.option(
+    "--time-limit",
+    metavar="S",
+    type=_SECONDS,
+    help="Seconds for all of it.  [default: as long as it takes]",
+)
+@motion_options
+def plan(
+    scene: Path, output: Path, pattern: str, time_limit: float | None, **motion: object
+) -> int:
+    """Plan a motion over a scene's object with the fewest lift-offs, and have it judged.
+
+    FOLDER gets the proof, the painted surface, tool paths, the trajectory, the verdict on it, files
+    for other programs, and report.html to look at. The options below --time-limit replace keys of
+    the setup's table [motion].
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.plan import plan_scene
+    from cellcolor.deadline import Deadline
+
+    given = {key: value for key, value in motion.items() if value is not None}
+    return plan_scene(scene, output, pattern, given, Deadline.after(time_limit, begun))
 
 
 @cellcolor.command()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from cellcolor.cli.interrupts import INTERRUPTS
-from cellcolor.cli.progress import build_progress_of
+from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain
 from cellcolor.data import plan as plan_file
 from cellcolor.data.instance import Instance
@@ -25,7 +25,7 @@ def open_file(path: Path, deadline: Deadline = NEVER) -> Subject:
         OutOfTime: the deadline came before there was a surface.
     """
     INTERRUPTS.check()
-    with build_progress_of(path) as report_stage:
+    with stages_of(path, "building") as report_stage:
         subject = open_subject(path, deadline, report_stage)
     INTERRUPTS.check()
     return subject

@@ -41,13 +41,13 @@ def scheme_progress_of(file: Path) -> Iterator[Callable[[int], None] | None]:
 
 
 @contextmanager
-def build_progress_of(file: Path) -> Iterator[Callable[[str], None]]:
+def stages_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
     """A line with the time spent and what is being done, if there is a terminal.
 
     Libraries that catch everything can swallow a signal; it is raised at the next stage.
     """
     name = shown(file.name)
-    with _line(f"{name}: building") as show:
+    with _line(f"{name}: {work}") as show:
 
         def report(stage: str) -> None:
             INTERRUPTS.check()

@@ -21,6 +21,9 @@ _EXTRAS = {
     "pinocchio": "frontend",
     "scipy": "frontend",
     "trimesh": "frontend",
+    "ompl": "motion",
+    "potpourri3d": "motion",
+    "toppra": "motion",
 }
 
 

@@ -17,10 +17,7 @@ from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.spurs import with_spurs
 
-__all__ = ["ASKED_FOR", "Covered", "cover"]
-
-ASKED_FOR = "left out as asked for"
-"""The cause of what is uncovered because it must not be entered."""
+__all__ = ["Covered", "cover"]
 
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
 
@@ -137,7 +134,7 @@ def _left_out(
         if segment < 0:
             continue
         place = _point(surface.vertices[corners[own][areas[own].argmax()]])
-        found.append(Uncovered(segment, float(areas[own].sum()), place, ASKED_FOR))
+        found.append(Uncovered(segment, float(areas[own].sum()), place, "left out as asked for"))
     return found
 
 

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from cellcolor.errors import InputError
 from cellcolor.registered import find, known_names, load
-from cellcolor.tool_paths.interface import Pattern
+
+if TYPE_CHECKING:
+    from cellcolor.tool_paths.interface import Pattern
 
 __all__ = ["DEFAULT_PATTERN", "PATTERNS", "find_pattern", "pattern_names"]
 

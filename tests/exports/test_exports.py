@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,6 +22,7 @@ from stand_in import stand_in
 
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_csv import read_trajectory_csv
 from cellcolor.errors import InputError
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.registry import EXPORTS
@@ -75,6 +77,15 @@ def test_poses_stand_on_the_surface_and_look_ahead(planned: PlannedMotion) -> No
             assert np.allclose(turns.as_matrix()[:, :, 2], path.normals, atol=1e-7)
             ahead = np.sum(turns.as_matrix()[:-1, :, 0] * np.diff(path.points, axis=0), axis=1)
             assert (ahead > 0).all()
+
+
+def test_the_judge_reads_the_table_of_joints(planned: PlannedMotion, tmp_path: Path) -> None:
+    (tmp_path / "joints.csv").write_bytes(content("joints.csv", planned))
+    table, trajectory = read_trajectory_csv(tmp_path / "joints.csv"), planned.trajectory
+    assert np.allclose(table.joints, trajectory.joints, atol=1e-9)
+    assert np.allclose(table.times, trajectory.times, atol=1e-9)
+    assert np.array_equal(table.contact, trajectory.contact)
+    assert np.array_equal(table.segment, trajectory.segment)
 
 
 @given(

@@ -33,7 +33,8 @@ def render_page(report: MotionReport) -> bytes:
     samples = len(trajectory.times)
     note = (
         "Red, dashed: limits. Orange: moves between strokes. A click goes to that moment. "
-        "Of the measures of conditioning the least value up to the next frame is drawn."
+        "Of the measures of conditioning the least value up to the next frame is drawn; their "
+        "limits are for contact."
     )
     if samples > MOST_FRAMES:
         note += f" Shown are about {MOST_FRAMES} of {samples} samples."

@@ -1,0 +1,66 @@
+"""The options of ``cellcolor plan`` that stand for keys of a setup's table ``[motion]``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+__all__ = ["motion_options"]
+
+
+class _Number(click.ParamType):  # type: ignore[type-arg]
+    """A finite number."""
+
+    name = "number"
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> float:
+        try:
+            number = float(value)
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            self.fail(f"{value!r} is no number.", param, ctx)
+        return number
+
+
+class _Numbers(_Number):
+    """A number for each joint, from base to tool, with commas between."""
+
+    name = "numbers"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        if isinstance(value, tuple):
+            return value
+        return tuple(_Number.convert(self, part, param, ctx) for part in value.split(","))
+
+
+_KEYS = {
+    "tool_radius_m": "Of the tool's footprint, m.",
+    "spacing_m": "Between neighboring passes, m.",
+    "speed_m_per_s": "Of the tool on the surface, m/s; slower where joints limit it.",
+    "joint_velocities_rad_per_s": "Where they are to be below those of the URDF, rad/s.",
+    "joint_accelerations_rad_per_s2": "What a URDF does not have, rad/s².",
+    "retract_m": "Along the normal, before a move to another stroke, m.",
+    "clearance_m": "To everything, between strokes, m.",
+    "home_rad": "Where the arm begins and ends, rad.",
+}
+"""What each key means. The setup says what may be left out, and checks the numbers."""
+
+
+def motion_options(command: Callable[..., int]) -> Callable[..., int]:
+    """Give a command one option for each key; those left out are None."""
+    for key, meaning in reversed(_KEYS.items()):
+        several = key.startswith("joint") or key == "home_rad"
+        command = click.option(
+            f"--{key.replace('_', '-')}",
+            key,
+            metavar="N,N,…" if several else "N",
+            type=_Numbers() if several else _Number(),
+            help=meaning,
+        )(command)
+    return command

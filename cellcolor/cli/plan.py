@@ -1,0 +1,62 @@
+"""``cellcolor plan``: from a scene to a judged motion, its files and its page."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from cellcolor.cli.exits import Exit
+from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.progress import stages_of
+from cellcolor.cli.terminal import complain, say
+from cellcolor.data.wording import count
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.plan_files import KINDS, check_folder
+from cellcolor.errors import InputError
+
+_SHOWN = 5  # faults
+
+
+def plan_scene(
+    scene: Path, folder: Path, pattern: str, motion: Mapping[str, Any], deadline: Deadline
+) -> Exit:
+    """Plan, judge and write everything to a folder.
+
+    Args:
+        scene: the scene's file.
+        folder: where all files go; made where it does not exist.
+        pattern: of the tool paths.
+        motion: keys of the setup's table ``[motion]``, which they replace.
+        deadline: when to give up.
+    """
+    check_folder(folder, [scene])
+
+    from cellcolor.door.planning import plan_by
+
+    INTERRUPTS.check()
+    try:
+        with stages_of(scene, "planning") as report:
+            planned = plan_by(scene, pattern, motion, deadline, report)
+            report("writing")
+            planned.save(folder)
+    except OutOfTime:
+        complain(f"{scene}: not planned: the time limit came first; nothing is written")
+        return Exit.STOPPED
+    except InputError as error:
+        raise error if error.file else error.in_file(str(scene)) from error
+    INTERRUPTS.check()
+    for warning in planned.subject.warnings:
+        complain(f"{scene}: warning: {warning}")
+    for line in str(planned).split("\n"):
+        say(line)
+    verdict = planned.verdict
+    for fault in verdict.faults[:_SHOWN]:
+        say(f"  {fault}")
+    spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in planned.seconds.items())
+    say(f"seconds  {sum(planned.seconds.values()):.2f}: {spent}")
+    say(f"wrote {count(len(KINDS), 'file')} to {folder}: look at {folder / 'report.html'}")
+    if set(verdict.fault_counts) - {"unplanned"}:
+        return Exit.INVALID
+    proved = planned.solution.status == "optimal"
+    return Exit.DONE if verdict.valid and proved else Exit.STOPPED

@@ -1,0 +1,120 @@
+"""The files of a plan's folder (docs/plan.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cellcolor.data import instance as instance_file
+from cellcolor.data import plan as plan_file
+from cellcolor.data import solution as solution_file
+from cellcolor.data import surface as surface_file
+from cellcolor.data import tool_paths as tool_paths_file
+from cellcolor.data import trajectory as trajectory_file
+from cellcolor.data import trajectory_verdict as verdict_file
+from cellcolor.data.instance import SurfaceReference
+from cellcolor.errors import InputError
+from cellcolor.exports.registry import EXPORTS
+from cellcolor.files.writing import (
+    HTML,
+    SIDE_FILE,
+    FileKind,
+    Output,
+    check_output,
+    is_folder_or_nothing,
+    kind_of_format,
+)
+
+if TYPE_CHECKING:
+    from cellcolor.door.planning import PlannedScene
+
+__all__ = ["KINDS", "check_folder", "make_folder", "outputs"]
+
+_SIDE, _SURFACE = "instance.reasons.npz", "instance.surface.json"
+
+KINDS: dict[str, FileKind] = {
+    _SIDE: SIDE_FILE,
+    _SURFACE: kind_of_format(surface_file.FORMAT),
+    "instance.json": kind_of_format(instance_file.FORMAT),
+    "solution.json": kind_of_format(solution_file.FORMAT),
+    "painted.plan.json": kind_of_format(plan_file.FORMAT),
+    "painted.surface.json": kind_of_format(surface_file.FORMAT),
+    "paths.json": kind_of_format(tool_paths_file.FORMAT),
+    "trajectory.json": kind_of_format(trajectory_file.FORMAT),
+    "verdict.json": kind_of_format(verdict_file.FORMAT),
+    **{name: export.kind for name, export in EXPORTS.items()},
+    "report.html": HTML,
+}
+"""Every file by name; one that refers to others comes after them."""
+
+
+def check_folder(folder: Path, inputs: list[Path]) -> None:
+    """Refuse a folder where writing would destroy something, or cannot succeed.
+
+    Raises:
+        InputError: with the reason.
+    """
+    if is_folder_or_nothing(folder):
+        for name, kind in KINDS.items():
+            check_output(folder / name, kind, inputs)
+
+
+@contextmanager
+def make_folder(folder: Path) -> Iterator[None]:
+    """A folder, which is taken away again if nothing could be written to it.
+
+    Raises:
+        InputError: it cannot be made.
+    """
+    made = [place for place in (folder, *folder.parents) if not place.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        yield
+    except BaseException as error:
+        for place in made:
+            if place.is_dir() and not any(place.iterdir()):
+                place.rmdir()
+        if isinstance(error, OSError):
+            raise InputError(str(folder), None, error.strerror or "cannot be made") from error
+        raise
+
+
+def outputs(planned: PlannedScene, folder: Path) -> list[Output]:
+    """All files of a plan, ready to be written."""
+    from cellcolor.exports.interface import PlannedMotion
+    from cellcolor.pictures.report_page.surface_modes import segment_fills
+
+    surface = planned.built.surface
+    surface = replace(surface, meta=surface.meta | {"side_file": _SIDE})
+    painted = planned.painted
+    motion = PlannedMotion(
+        painted.surface,
+        painted.segment_of,
+        segment_fills(painted),
+        planned.paths,
+        planned.trajectory,
+    )
+    content = {
+        _SIDE: planned.built.candidates.to_bytes(),
+        _SURFACE: surface.to_json().encode(),
+        "instance.json": _named(planned).encode(),
+        "solution.json": planned.solution.to_json().encode(),
+        "painted.plan.json": painted.plan.to_json().encode(),
+        "painted.surface.json": painted.surface.to_json().encode(),
+        "paths.json": planned.paths.to_json().encode(),
+        "trajectory.json": planned.trajectory.to_json().encode(),
+        "verdict.json": planned.verdict.to_json().encode(),
+        **{name: export.content(motion) for name, export in EXPORTS.items()},
+        "report.html": planned.page(),
+    }
+    return [Output(folder / name, kind, [content[name]]) for name, kind in KINDS.items()]
+
+
+def _named(planned: PlannedScene) -> str:
+    """The instance, which names the surface's file beside it."""
+    decomposition, sha256 = planned.subject.decomposition, planned.built.surface.sha256
+    reference = SurfaceReference(_SURFACE, tuple(decomposition.vertex_cell), sha256)
+    return replace(decomposition.instance, surface=reference).to_json()

@@ -1,0 +1,286 @@
+"""``cellcolor.plan``: from a scene to a judged motion, with all that leads to it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Solution
+from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.wording import count
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.extras import extras_for
+from cellcolor.door.result import Result
+from cellcolor.door.shipped import find_file
+from cellcolor.door.solving import deadline_after, solve
+from cellcolor.door.subject import Subject, is_made_by, is_scene
+from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
+from cellcolor.files.writing import write
+from cellcolor.painting.paint import Painted
+from cellcolor.solvers.bounds.witness import witness
+
+if TYPE_CHECKING:
+    from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+    from cellcolor.frontend import BuildResult, Scene
+    from cellcolor.frontend.prepared import PreparedScene
+    from cellcolor.frontend.stage_clock import StageClock
+    from cellcolor.tool_paths.measures import PathMeasures
+
+__all__ = ["PlannedScene", "plan", "plan_by"]
+
+_FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class PlannedScene:
+    """A scene with its fewest lift-offs, a motion that has them, and what a judge says of it.
+
+    Attributes:
+        subject: the scene, built and decomposed.
+        prepared: the scene, in place, with the motion's keys.
+        result: the fewest segments, and what is proved about them.
+        painted: the segments on the surface.
+        paths: where the tool goes.
+        measures: of each of these paths.
+        trajectory: how the arm moves.
+        verdict: an independent judge's.
+        minima: the segments of each surface that was solved: several if the scene refused a
+            painting, and the surface was refined and solved again.
+        seconds: wall time of each stage.
+    """
+
+    subject: Subject
+    prepared: PreparedScene
+    result: Result
+    painted: Painted
+    paths: ToolPaths
+    measures: tuple[PathMeasures, ...]
+    trajectory: Trajectory
+    verdict: TrajectoryVerdict
+    minima: tuple[int, ...]
+    seconds: Mapping[str, float]
+
+    @property
+    def built(self) -> BuildResult:
+        """Which colors reach each point."""
+        return self.subject.build()
+
+    @property
+    def instance(self) -> Instance:
+        """The topological graph."""
+        return self.subject.graph()
+
+    @property
+    def solution(self) -> Solution:
+        """The solver's answer, which the checker has passed."""
+        return self.result.solution
+
+    def page(self) -> bytes:
+        """``report.html``, complete in itself."""
+        from cellcolor.pictures.report_page.content import MotionReport
+        from cellcolor.pictures.report_page.page import render_page
+
+        return render_page(
+            MotionReport(
+                self.prepared,
+                self.built,
+                self.subject.decomposition,
+                self.solution,
+                self.result.witness,
+                self.painted,
+                self.trajectory,
+                self.measures,
+                self.verdict,
+            )
+        )
+
+    def save(self, folder: str | PathLike[str]) -> None:
+        """Write all files of a plan to a folder (docs/plan.md), all of them or none.
+
+        Raises:
+            InputError: something else is there, or it cannot be written.
+        """
+        from cellcolor.door.plan_files import make_folder, outputs
+
+        place = path_of(folder)
+        with make_folder(place):
+            write(outputs(self, place))
+
+    def __str__(self) -> str:
+        extra = len(self.trajectory.extra_lift_offs)
+        said = [f"{self.built.surface.name}: {self.result}", str(self.paths)]
+        if len(self.minima) > 1:
+            earlier = ", ".join(map(str, self.minima[:-1]))
+            said.insert(1, f"refined where the scene refused a painting; {earlier} segments before")
+        said += [str(self.trajectory) + (f", {extra} beyond the minimum" if extra else "")]
+        if self.trajectory.unplanned:
+            moves = count(len(self.trajectory.unplanned), "move")
+            said.append(f"{moves} between strokes not planned: the arm must not drive there")
+        covered = self.verdict.covered
+        said.append(f"judge: {self.verdict}" + ("" if covered is None else f"; {covered}"))
+        return "\n".join(said)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.trajectory}>"
+
+
+def plan(
+    scene: str | PathLike[str] | Scene,
+    *,
+    pattern: str | None = None,
+    time_limit: float | None = None,
+    progress: Callable[[str], None] | None = None,
+    **motion: Any,
+) -> PlannedScene:
+    """Plan a motion over a scene's object, with the fewest lift-offs, and have it judged.
+
+    Needs the extra ``motion``.
+
+    Args:
+        scene: its file, its shipped name, or the value.
+        pattern: how tool paths are laid out, such as ``contour``; None for the usual one.
+        time_limit: seconds for all of it, None for as long as it takes.
+        progress: told the name of each stage as it begins.
+        **motion: keys of the setup's table ``[motion]``, which they replace, such as
+            ``spacing_m`` or ``speed_m_per_s`` (docs/plan.md).
+
+    Raises:
+        InputError: the scene or a key cannot be used, no point of the object can be covered, or
+            the setup has no table ``[motion]`` and not all that is needed of it is given.
+        OutOfTime: the time limit came first.
+    """
+    return plan_by(scene, pattern, motion, deadline_after(time_limit), progress)
+
+
+def plan_by(
+    scene: str | PathLike[str] | Scene,
+    pattern: str | None,
+    motion: Mapping[str, Any],
+    deadline: Deadline,
+    progress: Callable[[str], None] | None = None,
+) -> PlannedScene:
+    """The same by a moment that may have passed already: :func:`plan`."""
+    from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
+
+    path = None
+    if not is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
+        path = find_file(scene)  # type: ignore[arg-type]
+        if not is_scene(path):
+            raise InputError(str(path), None, "is no scene: a scene is a file .toml")
+    with extras_for("planning a motion"):
+        find_pattern(pattern or DEFAULT_PATTERN)
+        from cellcolor.frontend.prepared import prepare
+        from cellcolor.frontend.scene import Scene
+        from cellcolor.frontend.stage_clock import StageClock
+        from cellcolor.motion.limits import motion_of
+        from cellcolor.motion.plan import plan_motion
+        from cellcolor.motion.scene_painting import paint_scene
+        from cellcolor.trajectory_checker.check import check_trajectory
+
+        clock = StageClock(deadline, progress)
+        given = Scene.read(path) if path is not None else scene
+        with clock.timed("preparation"):
+            prepared = prepare(_with_motion(given, motion), deadline)  # type: ignore[arg-type]
+            motion_of(prepared)  # refuses what is wrong with it before the long work begins
+        with clock.timed("colors"):
+            prepared, subject = _built(prepared, path, StageClock(deadline, progress))
+        with clock.timed("fewest segments"):
+            result = _solved(subject, deadline)
+        with clock.timed("painting"):
+            painting = paint_scene(
+                prepared,
+                subject.build(),
+                subject.decomposition,
+                result.solution,
+                deadline=deadline,
+                progress=progress,
+            )
+        if len(painting.minima) > 1:  # the surface was refined and solved again
+            subject = Subject(path, painting.built, painting.built.surface)
+            result = Result(painting.solution, subject, witness(painting.solution))
+        with clock.timed("motion"):
+            planned = plan_motion(
+                prepared,
+                subject.build(),
+                painting.painted,
+                painting.normals,
+                pattern=pattern or DEFAULT_PATTERN,
+                deadline=deadline,
+                progress=progress,
+            )
+        solution = result.solution
+        with clock.timed("judging"):
+            verdict = check_trajectory(
+                prepared,
+                subject.build(),
+                planned.trajectory,
+                minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
+                deadline=deadline,
+                progress=progress,
+            )
+    return PlannedScene(
+        subject,
+        prepared,
+        result,
+        painting.painted,
+        planned.paths,
+        planned.measures,
+        planned.trajectory,
+        verdict,
+        painting.minima,
+        clock.seconds,
+    )
+
+
+def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:
+    """The scene with some keys of its setup's table ``[motion]`` replaced."""
+    from cellcolor.frontend.tables import in_file
+
+    if not changes:
+        return scene
+    with in_file(scene.setup.file):
+        # Both keep the names of their files: the labelled surface says what it was built from.
+        setup = scene.setup.varied(motion=dict(changes), file=scene.setup.file)
+        return scene.varied(setup=setup, file=scene.file)
+
+
+def _built(
+    prepared: PreparedScene, path: Path | None, clock: StageClock
+) -> tuple[PreparedScene, Subject]:
+    """The scene with the surface that was built, refined where its setup asks for it, and that.
+
+    Raises:
+        InputError: no point of the object can be covered.
+    """
+    from cellcolor.frontend.build import result_of
+    from cellcolor.frontend.finer_borders import with_finer_borders
+    from cellcolor.frontend.tables import in_file
+
+    with in_file(prepared.scene.file):
+        prepared, stages = with_finer_borders(prepared, clock)
+        built = result_of(prepared, stages, clock)
+        subject = Subject(path, built, built.surface)
+        if subject.graph(prepared.deadline).nothing_to_cover:
+            message = "no point of the object can be covered: there is nothing to plan"
+            raise InputError(None, None, message)
+    return prepared, subject
+
+
+def _solved(subject: Subject, deadline: Deadline) -> Result:
+    """The fewest segments, with a share of the time that is left.
+
+    Raises:
+        OutOfTime: no division was found in that time.
+    """
+    seconds = deadline.share(_FOR_SOLVING).left
+    result = solve(subject, time_limit=None if math.isinf(seconds) else max(seconds, 1e-3))
+    if result.solution.cells is None:
+        raise OutOfTime("the time limit came before any division was known")
+    return result

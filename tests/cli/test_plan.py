@@ -1,0 +1,230 @@
+"""``cellcolor plan``: the folder, its files, what is said, and how it ends."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+pytest.importorskip("pinocchio")
+
+from commands import run
+from shipped import wok_file
+from stand_in import stand_in
+
+import cellcolor.motion.plan
+import cellcolor.trajectory_checker.check
+from cellcolor.data.instance import Instance
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.deadline import OutOfTime
+from cellcolor.door.plan_files import KINDS
+
+Capture = pytest.CaptureFixture[str]
+FILES = {
+    "instance.json": Instance,
+    "instance.surface.json": LabelledSurface,
+    "solution.json": Solution,
+    "painted.surface.json": LabelledSurface,
+    "painted.plan.json": Plan,
+    "paths.json": ToolPaths,
+    "trajectory.json": Trajectory,
+    "verdict.json": TrajectoryVerdict,
+}
+
+
+@pytest.fixture
+def scene(tmp_path: Path) -> Path:
+    (tmp_path / "scene").mkdir()
+    return wok_file(tmp_path / "scene", target_vertices=200)
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Motion and verdict are taken from a stand-in; what was asked for is kept."""
+    made, seen = stand_in(), {"verdict": None, "unplanned": ()}
+
+    def motion(prepared: Any, built: Any, *_: Any, **options: Any) -> Any:
+        seen.update(options, motion=prepared.setup.motion, built=built)
+        trajectory = replace(made.trajectory, unplanned=seen["unplanned"], extra_lift_offs=())
+        return SimpleNamespace(paths=made.paths, measures=made.measures, trajectory=trajectory)
+
+    def verdict(*_: Any, **options: Any) -> TrajectoryVerdict:
+        seen.update(options)
+        whole = replace(made.verdict, faults=(), fault_counts={})
+        return seen["verdict"] or whole
+
+    monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", motion)
+    monkeypatch.setattr(cellcolor.trajectory_checker.check, "check_trajectory", verdict)
+    return seen
+
+
+def test_all_files_are_there_and_belong_together(
+    scene: Path, tmp_path: Path, asked: dict[str, Any], capsys: Capture
+) -> None:
+    folder = tmp_path / "new" / "folder"
+    assert run("plan", scene, "-o", folder) == 0
+    assert {file.name for file in folder.iterdir()} == set(KINDS)
+    read = {name: kind.read(folder / name) for name, kind in FILES.items()}
+    assert read["paths.json"].surface_sha256 == read["painted.surface.json"].sha256
+    assert run("check", folder / "instance.json", folder / "solution.json") == 0
+    painted = [folder / "painted.surface.json", folder / "painted.plan.json"]
+    assert run("check", *painted) == 0
+    assert asked["minimum_lift_offs"] == read["solution.json"].lift_offs == 1
+    # The instance is what `build` would have made, its surface and side file beside it.
+    assert run("show", folder / "instance.json", "--reason", "-o", tmp_path / "reach.html") == 0
+    said = capsys.readouterr()
+    assert "2 segments, 1 lift-off, optimal" in said.out
+    assert "report.html" in said.out
+    assert "warning: the object's edges are up to" in said.err  # what `build` warns of
+
+
+@pytest.mark.usefixtures("asked")
+def test_a_second_time_the_files_are_replaced(scene: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "folder"
+    assert run("plan", scene, "-o", folder) == 0
+    first = {name: (folder / name).read_bytes() for name in KINDS}
+    assert run("plan", scene, "-o", folder) == 0
+    timed = {"instance.json", "instance.surface.json", "solution.json", "painted.surface.json"}
+    for name in set(KINDS) - timed:
+        assert (folder / name).read_bytes() == first[name], name
+
+
+def test_keys_of_the_setup_are_replaced(scene: Path, tmp_path: Path, asked: dict[str, Any]) -> None:
+    options = ["--spacing-m", "0.02", "--speed-m-per-s", "0.1", "--home-rad", "0,-1,1,-1,-1,0"]
+    assert run("plan", scene, "-o", tmp_path / "a", "--pattern", "contour", *options) == 0
+    motion = asked["motion"]
+    assert (motion.spacing_m, motion.speed_m_per_s) == (0.02, 0.1)
+    assert motion.home_rad == (0, -1, 1, -1, -1, 0)
+    assert motion.tool_radius_m == 0.015  # of the setup
+    assert asked["pattern"] == "contour"
+    # What the surface is does not depend on how the arm moves later.
+    assert run("plan", scene, "-o", tmp_path / "b") == 0
+    surfaces = [LabelledSurface.read(tmp_path / f / "instance.surface.json") for f in "ab"]
+    assert surfaces[0].sha256 == surfaces[1].sha256
+    for key in ("scene", "setup"):
+        assert surfaces[0].meta[key] == surfaces[1].meta[key]
+
+
+def without_motion(scene: Path) -> Path:
+    setup = scene.parent / "ur5_polishing.toml"
+    setup.write_text(re.sub(r"\[motion\].*", "", setup.read_text(), flags=re.DOTALL))
+    return scene
+
+
+def test_without_a_table_the_needed_key_is_named(
+    scene: Path, tmp_path: Path, asked: dict[str, Any], capsys: Capture
+) -> None:
+    without_motion(scene)
+    assert run("plan", scene, "-o", tmp_path / "a") == 2
+    assert "ur5_polishing.toml: motion: " in capsys.readouterr().err
+    assert run("plan", scene, "-o", tmp_path / "a", "--spacing-m", "0.02") == 2
+    assert "motion.joint_accelerations_rad_per_s2" in capsys.readouterr().err
+    assert not (tmp_path / "a").exists()
+    needed = ["--joint-accelerations-rad-per-s2", "8,8,8,8,8,8"]
+    assert run("plan", scene, "-o", tmp_path / "a", *needed) == 0
+    assert asked["motion"].spacing_m == 0.01
+
+
+@pytest.mark.parametrize(
+    ("options", "named"),
+    [
+        (["--spacing-m", "0"], "motion.spacing_m"),
+        (["--spacing-m", "wide"], "--spacing-m"),
+        (["--home-rad", "0,1"], "motion.home_rad"),
+        (["--home-rad", "0,1,x,0,0,0"], "--home-rad"),
+        (["--pattern", "zigzag"], "pattern"),
+        (["--time-limit", "-1"], "--time-limit"),
+    ],
+)
+def test_bad_options_are_one_line(
+    options: list[str], named: str, scene: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    assert run("plan", scene, "-o", tmp_path / "a", *options) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert named in line
+    assert not (tmp_path / "a").exists()
+
+
+@pytest.mark.usefixtures("asked")
+def test_what_is_no_plan_of_ours_is_kept(scene: Path, tmp_path: Path, capsys: Capture) -> None:
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    (folder / "joints.csv").write_text("a,b\n1,2\n")
+    assert run("plan", scene, "-o", folder) == 2
+    assert "joints.csv" in capsys.readouterr().err
+    assert [file.name for file in folder.iterdir()] == ["joints.csv"]
+    (folder / "joints.csv").unlink()
+    assert run("plan", scene, "-o", folder / "scene.txt" / "deeper") == 0
+    assert run("plan", scene, "-o", scene) == 2
+    surface = folder / "scene.txt" / "deeper" / "painted.surface.json"
+    assert run("plan", surface, "-o", folder) == 2
+    assert "is no scene" in capsys.readouterr().err
+
+
+def test_how_it_ends_is_what_the_judge_says(
+    scene: Path, tmp_path: Path, asked: dict[str, Any], capsys: Capture
+) -> None:
+    folder = tmp_path / "a"
+    found = stand_in().verdict
+    fault = found.faults[0]
+    unplanned = replace(fault, kind="unplanned", text="a move was not planned")
+    asked["unplanned"] = (3,)
+    asked["verdict"] = replace(found, faults=(unplanned,), fault_counts={"unplanned": 1})
+    assert run("plan", scene, "-o", folder) == 3
+    assert "must not drive" in capsys.readouterr().out
+    jump = replace(fault, kind="jump", text="turns by 360 degrees")
+    asked["verdict"] = replace(found, faults=(jump,), fault_counts={"jump": 1, "unplanned": 1})
+    assert run("plan", scene, "-o", folder) == 1
+    assert "turns by 360 degrees" in capsys.readouterr().out
+    assert json.loads((folder / "verdict.json").read_text())["valid"] is False
+    assert "must not drive" in (folder / "report.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("how", ["the time limit", "a signal"])
+def test_stopped_on_the_way_nothing_is_there(
+    how: str, scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:  # fmt: skip
+    def stopped(*_: Any, **__: Any) -> None:
+        if how == "a signal":
+            os.kill(os.getpid(), signal.SIGINT)
+        raise OutOfTime("the time limit came first")
+
+    monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", stopped)
+    assert run("plan", scene, "-o", tmp_path / "a") == 3
+    assert not (tmp_path / "a").exists()
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert ("interrupted" if how == "a signal" else "nothing is written") in said.err
+
+
+def test_a_time_limit_too_short_for_anything(scene: Path, tmp_path: Path, capsys: Capture) -> None:
+    assert run("plan", scene, "-o", tmp_path / "a", "--time-limit", "0.001") == 3
+    assert "time limit" in capsys.readouterr().err
+    assert not (tmp_path / "a").exists()
+
+
+@pytest.mark.usefixtures("asked")
+def test_what_cannot_be_written_leaves_nothing(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the last file fails, none of those before it is there, nor the folder."""
+    import cellcolor.door.planning
+
+    def fail(_: object) -> bytes:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(cellcolor.door.planning.PlannedScene, "page", fail)
+    assert run("plan", scene, "-o", tmp_path / "a" / "b") == 2
+    assert not (tmp_path / "a").exists()
