@@ -1,38 +1,39 @@
 """What planners pay that choose the path first and the branches of the arm along it.
 
-The count is optimistic: going from one point to the next in the same branch is taken for
-continuous, and passing what is out of reach costs nothing. So a planner that follows this path pays
-at least that much.
+The path is a raster (:mod:`cellcolor.lab.raster`). Two counts of lift-offs are made along it. The
+optimistic one takes going from one sample to the next in the same branch for continuous, and
+passing what is out of reach for free; no planner that follows this path pays less. The other one
+holds every step to what an arm can do.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from cellcolor.arrays import Index, Mask
-from cellcolor.data.surface import LabelledSurface
+from cellcolor.arrays import Array, Mask
+from cellcolor.lab.raster import Raster
 
-__all__ = ["fewest_lift_offs", "raster"]
+__all__ = ["Stroke", "fewest_lift_offs", "fewest_strokes"]
+
+_FULL = 2 * np.pi
 
 
-def raster(surface: LabelledSurface, angle: float) -> Index:
-    """The vertices in the order of a raster path.
+@dataclass(frozen=True)
+class Stroke:
+    """A stretch of a path in one branch without a lift-off.
 
-    Args:
-        surface: the surface. It is seen from where its normals point to on average.
-        angle: of the strips, in the plane of that view, rad. They are as wide as the vertices are
-            apart on average.
+    Attributes:
+        first, after: its first sample, and the one after its last.
+        branch: the branch's number.
+        joints: (after - first, joints) in rad, unwound, inside the limits.
     """
-    corners = surface.vertices[surface.faces]
-    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]).sum(axis=0)
-    # The two other right singular vectors of the normal are a basis of the plane.
-    plane = np.linalg.svd(normal[None])[2][1:]
-    x, y = plane @ (surface.vertices - surface.vertices.mean(axis=0)).T
-    along, across = x * np.cos(angle) + y * np.sin(angle), y * np.cos(angle) - x * np.sin(angle)
-    width = np.sqrt(surface.vertex_areas.sum() / len(surface.vertices))
-    # Strips without a vertex are not counted, so that every next one runs the other way.
-    strip = np.unique(np.floor((across - across.min()) / width), return_inverse=True)[1]
-    return np.lexsort((np.where(strip % 2, -along, along), strip))
+
+    first: int
+    after: int
+    branch: int
+    joints: Array
 
 
 def fewest_lift_offs(valid: Mask) -> int:
@@ -52,3 +53,65 @@ def fewest_lift_offs(valid: Mask) -> int:
             lift_offs += 1
             left = here
     return lift_offs
+
+
+def fewest_strokes(
+    path: Raster, configurations: Array, valid: Mask, lower: Array, upper: Array, jump: float
+) -> list[Stroke]:
+    """The fewest strokes along a path that an arm can follow.
+
+    In a stroke the branch is valid at every sample, no joint moves by more than ``jump`` from one
+    sample to the next, and the angles, unwound, fit into the limits with some start. What holds
+    for a stroke holds for each part of it, so staying as long as any branch lasts is best
+    here too. Samples that no branch reaches are passed over in the air.
+
+    Args:
+        path: its samples, n of them.
+        configurations: (n, branches, joints) in rad, modulo full circles; NaN without a solution.
+        valid: (n, branches).
+        lower, upper: (joints,) limits, rad.
+        jump: rad.
+    """
+    found: list[Stroke] = []
+    begins = np.zeros(len(valid), dtype=bool)
+    begins[path.starts] = True
+    sample = 0
+    while sample < len(valid):
+        if not valid[sample].any():
+            sample += 1
+            continue
+        after, branch = _longest(sample, begins, configurations, valid, lower, upper, jump)
+        joints = np.unwrap(configurations[sample:after, branch], axis=0)
+        turns = np.ceil((lower - joints.min(axis=0)) / _FULL)
+        found.append(Stroke(sample, after, branch, joints + _FULL * turns))
+        sample = after
+    return found
+
+
+def _longest(
+    first: int,
+    begins: Mask,
+    configurations: Array,
+    valid: Mask,
+    lower: Array,
+    upper: Array,
+    jump: float,
+) -> tuple[int, int]:
+    """The sample after the longest stroke from one on, and its branch."""
+    alive = valid[first]
+    here = np.nan_to_num(configurations[first])
+    least, most = here.copy(), here.copy()
+    after = first + 1
+    while after < len(valid) and not begins[after]:
+        step = configurations[after] - configurations[after - 1]
+        step = np.nan_to_num(step - _FULL * np.round(step / _FULL), nan=np.inf)
+        still = alive & valid[after] & (np.abs(step) <= jump).all(axis=1)
+        here = here + np.where(still[:, None], step, 0.0)
+        least, most = np.minimum(least, here), np.maximum(most, here)
+        turned = _FULL * np.ceil((lower - least) / _FULL)
+        still &= (most + turned <= upper).all(axis=1)
+        if not still.any():
+            break
+        alive = still
+        after += 1
+    return after, int(np.flatnonzero(alive)[0])
