@@ -28,7 +28,8 @@ def main(count: int) -> None:
     untouched = [rasters.cap(), rasters.square()]
     for prepared, built, trajectory in untouched:
         verdict = check_trajectory(prepared, built, trajectory)
-        print(f"untouched: {verdict}, {sum(verdict.fault_counts.values())} faults")
+        faults = sum(verdict.fault_counts.values())
+        print(f"untouched: {verdict}, {faults} faults", flush=True)
     planted_of, found_of = Counter[str](), Counter[str]()
     names = list(PLANTERS)
     for number in range(count):

@@ -18,7 +18,8 @@ __all__ = ["FineMesh", "Located", "refined"]
 
 _MOST = 2_000_000  # small triangles; some hundred bytes each
 _NEIGHBORS = 16  # small triangles that are asked at first which of them is nearest to a point
-_AT_ONCE = 4_000  # points; times neighbors a matter of memory
+_AT_ONCE = 64_000  # pairs of a point and a small triangle; a matter of memory
+_NEAR = 0.02  # m; for points farther off, a triangle that is nearly the nearest will do
 
 
 @dataclass(frozen=True)
@@ -110,6 +111,7 @@ class FineMesh:
         """The nearest points of the surface.
 
         Of a thin sheet, the side whose normals are less than 90 degrees off is meant, if one is.
+        Points farther off than 20 mm may get one that is only nearly the nearest.
 
         Args:
             points: (k, 3) in m.
@@ -118,18 +120,22 @@ class FineMesh:
         """
         triangle = np.zeros(len(points), dtype=np.int64)
         weights = np.zeros((len(points), 3))
-        for first in range(0, len(points), _AT_ONCE):
-            deadline.check()
-            rows = np.arange(first, min(first + _AT_ONCE, len(points)))
-            asked = min(_NEIGHBORS, len(self.triangles))
-            while len(rows):
-                reach, found, inside = self._nearest_of(points[rows], outward[rows], asked)
-                triangle[rows], weights[rows] = found[0], inside
+        rows, asked = np.arange(len(points)), min(_NEIGHBORS, len(self.triangles))
+        while len(rows):
+            unsure = []
+            for part in np.array_split(rows, 1 + len(rows) * asked // _AT_ONCE):
+                deadline.check()
+                apart, farthest, found, inside = self._nearest_of(
+                    points[part], outward[part], asked
+                )
+                triangle[part], weights[part] = found, inside
                 # A triangle that was not asked has its centroid farther off than all that were.
-                unsure = reach[0] > reach[1] - self._radius
-                if asked == len(self.triangles):
-                    break
-                rows, asked = rows[unsure], min(4 * asked, len(self.triangles))
+                open_ = (apart > farthest - self._radius) & (apart < _NEAR)
+                unsure.append(part[open_])
+            rows = np.concatenate(unsure)
+            if asked == len(self.triangles):
+                break
+            asked = min(4 * asked, len(self.triangles))
         at = np.einsum("kc,kcd->kd", weights, self.vertices[self.triangles[triangle]])
         within = np.einsum("kc,kcd->kd", weights, self.corners[triangle])
         faces = self.face[triangle]
@@ -139,8 +145,8 @@ class FineMesh:
 
     def _nearest_of(
         self, points: Array, outward: Array, asked: int
-    ) -> tuple[tuple[Array, Array], tuple[Index], Array]:
-        """Distances of the nearest and of the last asked, the nearest triangle, weights in it."""
+    ) -> tuple[Array, Array, Index, Array]:
+        """Of each point (k,): its distance, that of the last centroid asked, triangle, weights."""
         far, candidates = self._tree.query(points, k=asked)
         far, candidates = far.reshape(-1, asked), candidates.reshape(-1, asked)
         corners = self.vertices[self.triangles[candidates]]
@@ -152,7 +158,7 @@ class FineMesh:
         apart = np.where(facing | ~facing.any(axis=1, keepdims=True), apart, np.inf)
         best = np.argmin(apart, axis=1)
         k = np.arange(len(points))
-        return (apart[k, best], far[:, -1]), (candidates[k, best],), weights[k, best]
+        return apart[k, best], far[:, -1], candidates[k, best], weights[k, best]
 
     def _owners(self, faces: Index, within: Array) -> Index:
         owners: Index = self.surface.faces[faces, np.argmax(within, axis=1)]

@@ -8,12 +8,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
+from cellcolor.errors import TooLarge
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 
 __all__ = ["Repeated", "passes", "repeated_stretches"]
 
 _AT_ONCE = 20_000  # places of contact
+_MOST = 50_000_000  # pairs; some bytes each
 _ALONG = 0.9  # cosine of the angle up to which two passes run along each other
 
 
@@ -45,12 +47,8 @@ def passes(dense: Dense, rows: Index, located: Located, fine: FineMesh, within: 
     vertices, places = [], []
     for first in range(0, len(rows), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
-        near = tree.query_ball_point(located.points[part], within, return_sorted=False)
-        counts = np.fromiter(map(len, near), dtype=np.int64, count=len(near))
-        if not counts.sum():
-            continue
-        vertex = np.concatenate([np.asarray(own, dtype=np.int64) for own in near])
-        place = first + np.repeat(np.arange(len(near)), counts)
+        vertex, place = _near(tree, located.points[part], within)
+        place += first
         facing = np.einsum("ij,ij->i", fine.normals[vertex], located.normals[place]) > 0
         vertices.append(vertex[facing])
         places.append(place[facing])
@@ -110,13 +108,25 @@ def _pairs(points: Array, within: float) -> list[tuple[Index, Index]]:
     tree = cKDTree(points)
     found = []
     for first in range(0, len(points), _AT_ONCE):
-        near = tree.query_ball_point(points[first : first + _AT_ONCE], within, return_sorted=False)
-        counts = np.fromiter(map(len, near), dtype=np.int64, count=len(near))
-        other = first + np.repeat(np.arange(len(near)), counts)
-        one = np.concatenate([np.asarray(own, dtype=np.int64) for own in near])
+        one, other = _near(tree, points[first : first + _AT_ONCE], within)
+        other += first
         before = one < other
         found.append((one[before], other[before]))
     return found
+
+
+def _near(tree: cKDTree, points: Array, within: float) -> tuple[Index, Index]:
+    """Pairs of a point of the tree and one of the given points that are near each other.
+
+    Raises:
+        TooLarge: there are many millions, as where the tool stays in one place for hours.
+    """
+    if tree.query_ball_point(points, within, return_length=True).sum() > _MOST:
+        raise TooLarge("the trajectory comes by the same place too often to be measured")
+    near = tree.query_ball_point(points, within, return_sorted=False)
+    counts = np.fromiter(map(len, near), dtype=np.int64, count=len(near))
+    parts = [np.zeros(0, dtype=np.int64), *(np.asarray(own, dtype=np.int64) for own in near)]
+    return np.concatenate(parts), np.repeat(np.arange(len(near)), counts)
 
 
 def _ways(dense: Dense, rows: Index) -> Array:

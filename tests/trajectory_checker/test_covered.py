@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
+from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.trajectory_checker.covered import patches, reach
 from cellcolor.trajectory_checker.dense import Dense
@@ -169,6 +170,15 @@ def test_crossing_an_earlier_pass_is_no_repetition() -> None:
     assert not repeated_stretches(
         dense_along(points), np.arange(len(points)), located, 0.0025, 0.02
     )
+
+
+def test_what_stays_in_one_place_is_refused() -> None:
+    """Ten thousand places of contact in one square millimeter are a hundred million pairs."""
+    random = np.random.default_rng(0)
+    points = np.column_stack([random.uniform(0.05, 0.051, (10_000, 2)), np.zeros(10_000)])
+    located, rows = fine(FLAT).locate(points, up(points)), np.arange(len(points))
+    with pytest.raises(TooLarge, match="too often to be measured"):
+        repeated_stretches(dense_along(points), rows, located, 0.0025, 0.02)
 
 
 def test_patches_are_the_parts_and_their_areas() -> None:

@@ -79,6 +79,16 @@ def test_nearest_points_are_the_nearest() -> None:
         assert brute - 4e-4 <= distance <= brute + 1e-12
 
 
+def test_points_far_from_the_surface_take_no_more_time() -> None:
+    """Joints in exchanged columns put the tip anywhere; nearly the nearest point will do there."""
+    fine = refined(bumpy(2), 0.002, NEVER)
+    points = np.random.default_rng(0).normal(0, 1, (5_000, 3))
+    located = fine.locate(points, np.tile([0.0, 0.0, 1.0], (5_000, 1)))
+    apart = np.linalg.norm(located.points - points, axis=1)
+    nearest = np.linalg.norm(fine.vertices - points[:, None], axis=2).min(axis=1)
+    assert np.all(apart < nearest + 0.005)
+
+
 def test_of_a_thin_sheet_the_side_that_faces_the_tool_is_meant() -> None:
     """Two squares 0.1 mm apart, back to back."""
     flat = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) * 0.02
