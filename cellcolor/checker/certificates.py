@@ -1,26 +1,37 @@
-"""Lower bounds verified without a solver, from what their certificates say.
+"""Lower bounds verified without a solver, from what their certificates say (docs/bounds.md).
 
 The certificate of a ``cover`` or of ``strangers`` names some cells, and the claim is that fewer
-color regions than the bound says do not touch all of them. Whoever doubts it takes a cell that is
-not touched yet and tries each of the few regions that it lies in; that is what is done here, to the
-end or until the budget is used up.
+color regions than the bound says do not touch all of them. That of ``conflicts`` names, for each
+part of the surface, such cells as well, and pairs of segments that would have to cross. The color
+regions that another color can stand in for are left out before. What crosses is verified by
+:mod:`cellcolor.checker.crossing_segments`, and then every way to touch the cells is tried by
+:mod:`cellcolor.checker.plan_search`, to the end or until the budget is used up.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
+
+from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
 from cellcolor.checker.color_regions import ColorRegion
+from cellcolor.checker.crossing_segments import TwoRegions
+from cellcolor.checker.groups import Groups
+from cellcolor.checker.plan_search import BudgetExceeded, Conflict, PlanSearch
 from cellcolor.data.bound import Bound
+from cellcolor.data.instance import Instance
+from cellcolor.errors import InputError
+from cellcolor.files.documents import validate
 
 __all__ = ["BUDGET", "BoundVerdict", "verify_bound"]
 
 BUDGET = 200_000
-"""Choices of a region that are tried before a certificate is given up; some seconds."""
+"""Choices that are tried before a certificate is given up; some seconds."""
 
 Outcome = Literal["verified", "refused", "budget exceeded", "no certificate"]
+_STRICT = ConfigDict(extra="forbid", strict=True)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +44,7 @@ class BoundVerdict:
             ``budget exceeded``: not known. ``no certificate``: it is taken on trust, or of a kind
             that nothing here can verify.
         reason: why it was refused, a sentence; empty otherwise.
-        tried: how many choices of a region were tried.
+        tried: how many choices were tried.
     """
 
     bound: Bound
@@ -47,92 +58,207 @@ class BoundVerdict:
         return f"{self.bound}: {self.outcome}{tried}{reason}"
 
 
+@dataclass(frozen=True, slots=True)
+class _Crossing:
+    """Two segments that would have to cross.
+
+    Attributes:
+        colors: the first segment's color, and the second one's.
+        one: two sets of cells of which the first segment touches one each.
+        other: the same for the second segment.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    colors: tuple[int, int]
+    one: tuple[tuple[int, ...], tuple[int, ...]]
+    other: tuple[tuple[int, ...], tuple[int, ...]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """Cells that so many segments at least are needed to touch, and what they cannot do."""
+
+    __pydantic_config__ = _STRICT
+
+    value: NonNegativeInt
+    cells: tuple[int, ...]
+    conflicts: tuple[_Crossing, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Certificate:
+    """Of ``conflicts``; ``left_out`` has color, a cell of the region, and what stands in for it."""
+
+    __pydantic_config__ = _STRICT
+
+    parts: tuple[_Part, ...]
+    left_out: tuple[tuple[int, int, int], ...] = ()
+
+
+_CERTIFICATE = TypeAdapter(_Certificate)
+_CELLS = TypeAdapter(_Part)
+
+
+class _Refused(Exception):
+    """A certificate does not prove its bound; the text says why."""
+
+
 def verify_bound(
-    bound: Bound, regions: Sequence[frozenset[ColorRegion]], budget: int = BUDGET
+    instance: Instance,
+    bound: Bound,
+    regions: Sequence[frozenset[ColorRegion]],
+    budget: int = BUDGET,
 ) -> BoundVerdict:
     """Verify a lower bound of the number of segments by its certificate.
 
     Args:
-        bound: one of a solution.
+        instance: the topological graph.
+        bound: one of a solution of it.
         regions: the color regions that each cell lies in, see
             :mod:`cellcolor.checker.color_regions`.
         budget: how many choices may be tried.
     """
-    if bound.kind not in ("cover", "strangers") or bound.certificate is None:
+    if bound.kind not in ("cover", "strangers", "conflicts") or bound.certificate is None:
         return BoundVerdict(bound, "no certificate")
-    cells: Any = bound.certificate.get("cells")
-    if fault := _fault(cells, regions):
-        return BoundVerdict(bound, "refused", fault)
-    demands = [regions[cell] for cell in cells]
-    search = _Search(budget)
+    proof = _Proof(instance, list(regions), budget)
     try:
-        enough = search.touches_all(demands, bound.value - 1)
-    except _BudgetExceeded:
-        return BoundVerdict(bound, "budget exceeded", tried=search.tried)
-    if enough:
-        text = f"fewer than {bound.value} color regions touch all of the cells {cells}"
-        return BoundVerdict(bound, "refused", text, search.tried)
-    return BoundVerdict(bound, "verified", tried=search.tried)
+        if bound.kind == "conflicts":
+            certificate = validate(_CERTIFICATE, bound.certificate)
+            proof.leave_out(certificate.left_out)
+            proof.verify(certificate.parts, bound.value)
+        else:
+            part = validate(_CELLS, {"value": bound.value} | bound.certificate)
+            proof.verify((part,), bound.value)
+    except BudgetExceeded:
+        return BoundVerdict(bound, "budget exceeded", tried=proof.tried)
+    except InputError as error:
+        return BoundVerdict(bound, "refused", str(error), proof.tried)
+    except _Refused as error:
+        return BoundVerdict(bound, "refused", str(error), proof.tried)
+    return BoundVerdict(bound, "verified", tried=proof.tried)
 
 
-def _fault(cells: Any, regions: Sequence[frozenset[ColorRegion]]) -> str:
-    """What is wrong with a certificate before anything is counted; empty if nothing is."""
-    if not isinstance(cells, list) or not all(type(cell) is int for cell in cells):
-        return "cells must be a list of cells"
-    for cell in cells:
-        if not 0 <= cell < len(regions):
-            return f"there is no cell {cell}"
-        if not regions[cell]:
-            return f"no color reaches cell {cell}, so that it need not be touched"
-    return ""
-
-
-class _BudgetExceeded(Exception):
-    """More choices than were allowed."""
-
-
-class _Search:
-    """Every way to touch some places with a number of color regions.
+class _Proof:
+    """Verifies the steps of one certificate.
 
     Attributes:
-        tried: choices of a region so far.
+        tried: choices so far.
     """
 
-    def __init__(self, budget: int) -> None:
-        self._budget = budget
+    def __init__(
+        self, instance: Instance, regions: list[frozenset[ColorRegion]], budget: int
+    ) -> None:
         self.tried = 0
+        self._instance = instance
+        self._regions = regions
+        self._budget = budget
 
-    def touches_all(self, demands: Sequence[frozenset[ColorRegion]], regions: int) -> bool:
-        """Whether so many regions are enough to meet each demand by one of its own.
+    def leave_out(self, steps: Sequence[tuple[int, int, int]]) -> None:
+        """Leave out color regions that another color can stand in for, one after the other.
 
         Raises:
-            _BudgetExceeded: too many choices have been tried.
+            _Refused: it cannot.
         """
-        if not demands:
-            return True
-        apart = _pairwise_disjoint(demands)
-        if len(apart) > regions:
-            return False
-        # Whatever meets all demands meets this one, in one of these ways.
-        fewest = min(map(len, demands))
-        for region in sorted(next(demand for demand in demands if len(demand) == fewest)):
-            self.tried += 1
-            if self.tried > self._budget:
-                raise _BudgetExceeded
-            left = [demand for demand in demands if region not in demand]
-            if self.touches_all(left, regions - 1):
-                return True
-        return False
+        for color, cell, stand_in in steps:
+            region = self._region(color, cell)
+            cells = self._cells_of(region)
+            inside = frozenset(cells)
+            for own in cells:
+                if not any(other[0] == stand_in for other in self._regions[own]):
+                    raise _Refused(f"color {stand_in} cannot stand in for color {color} in {own}")
+                for dart in (dart for loop in self._instance.cells[own].loops for dart in loop):
+                    joinable = self._instance.joinable(abs(dart))
+                    edge = self._instance.edge(abs(dart))
+                    within = edge.left in inside and edge.right in inside
+                    if within and color in joinable and stand_in not in joinable:
+                        text = f"color {stand_in} does not continue across edge {abs(dart)}"
+                        raise _Refused(f"{text}, where color {color} does")
+            if stand_in == color:
+                raise _Refused(f"color {color} cannot stand in for itself")
+            for own in cells:
+                self._regions[own] -= {region}
 
+    def verify(self, parts: Sequence[_Part], value: int) -> None:
+        """Verify that the parts need so many segments together.
 
-def _pairwise_disjoint(
-    demands: Sequence[frozenset[ColorRegion]],
-) -> list[frozenset[ColorRegion]]:
-    """Demands that no region meets two of: each needs a region of its own."""
-    found: list[frozenset[ColorRegion]] = []
-    used: set[ColorRegion] = set()
-    for demand in sorted(demands, key=len):
-        if used.isdisjoint(demand):
-            found.append(demand)
-            used |= demand
-    return found
+        Raises:
+            _Refused: they do not.
+            BudgetExceeded: too many choices have been tried.
+        """
+        if sum(part.value for part in parts) < value:
+            raise _Refused(f"the parts need fewer than {value} segments")
+        used: set[ColorRegion] = set()
+        for part in parts:
+            demands = {cell: self._regions_of(cell) for cell in part.cells}
+            own = frozenset[ColorRegion]().union(*demands.values())
+            if not used.isdisjoint(own):
+                raise _Refused("one color region lies in two parts")
+            used |= own
+            search = PlanSearch(demands, list(self._conflicts(part)), self._budget - self.tried)
+            try:
+                possible = search.is_possible(part.value - 1)
+            finally:
+                self.tried += search.tried
+            if possible:
+                least = f"fewer than {part.value}"
+                what = "segments" if part.conflicts else "color regions"
+                raise _Refused(f"{least} {what} touch all of the cells {sorted(set(part.cells))}")
+
+    def _conflicts(self, part: _Part) -> Iterator[Conflict]:
+        two_regions: dict[tuple[ColorRegion, ColorRegion], TwoRegions] = {}
+        for crossing in part.conflicts:
+            ends = [frozenset(cells) for cells in (*crossing.one, *crossing.other)]
+            if not all(ends):
+                raise _Refused("a conflict names no cells")
+            first = self._region(crossing.colors[0], min(ends[0]))
+            second = self._region(crossing.colors[1], min(ends[2]))
+            for cells in ends[:2]:
+                self._one_area(cells, first, second)
+            for cells in ends[2:]:
+                self._one_area(cells, second, first)
+            if (first, second) not in two_regions:
+                cells_of = frozenset(self._cells_of(first)), frozenset(self._cells_of(second))
+                two_regions[first, second] = TwoRegions(self._instance, crossing.colors, cells_of)
+            two = two_regions[first, second]
+            one, other, far, farther = (min(cells) for cells in ends)
+            if not two.must_cross((one, other), (far, farther)):
+                text = f"segments that connect cells {one} and {other}, and {far} and {farther}"
+                raise _Refused(f"{text}, need not cross")
+            yield Conflict((first, second), (ends[0], ends[1], ends[2], ends[3]))
+
+    def _one_area(self, cells: frozenset[int], region: ColorRegion, other: ColorRegion) -> None:
+        """Hold cells of one region to be connected in its color, and outside of the other region.
+
+        What touches one of them can then be grown over all of them: the other segment is in none.
+        """
+        together: Groups[int] = Groups()
+        for cell in cells:
+            if region not in self._regions_of(cell):
+                raise _Refused(f"cell {cell} is not in the color region of cell {min(cells)}")
+            if other in self._regions_of(cell):
+                raise _Refused(f"cell {cell} is in the color regions of both segments")
+            together.find(cell)
+            for dart in (dart for loop in self._instance.cells[cell].loops for dart in loop):
+                edge = self._instance.edge(abs(dart))
+                within = edge.left in cells and edge.right in cells
+                if within and region[0] in self._instance.joinable(abs(dart)):
+                    together.join(edge.left, edge.right)
+        if len(together.sets()) > 1:
+            raise _Refused(f"the cells {sorted(cells)} are not connected in color {region[0]}")
+
+    def _region(self, color: int, cell: int) -> ColorRegion:
+        for region in self._regions_of(cell):
+            if region[0] == color:
+                return region
+        raise _Refused(f"color {color} is not available in cell {cell}, or is left out there")
+
+    def _regions_of(self, cell: int) -> frozenset[ColorRegion]:
+        if not 0 <= cell < len(self._regions):
+            raise _Refused(f"there is no cell {cell}")
+        if not self._regions[cell]:
+            raise _Refused(f"no color reaches cell {cell}, so that it need not be touched")
+        return self._regions[cell]
+
+    def _cells_of(self, region: ColorRegion) -> list[int]:
+        return [cell for cell, own in enumerate(self._regions) if region in own]

@@ -177,7 +177,9 @@ def check_solution(
     if solution.search_space == "paper" and solution.strands != 1:
         problems.append("strands: must be 1 in search space 'paper'")
     regions = regions_of_cells(instance) if regions is None else regions
-    verdicts = tuple(verify_bound(bound, regions, budget) for bound in solution.bounds or ())
+    verdicts = tuple(
+        verify_bound(instance, bound, regions, budget) for bound in solution.bounds or ()
+    )
     refused = [
         f"bounds[{number}].certificate: {verdict.reason}"
         for number, verdict in enumerate(verdicts)

@@ -6,6 +6,8 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 
+from cellcolor.checker.certificates import verify_bound
+from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
@@ -208,10 +210,14 @@ def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
 
 def _certified(instance: Instance, bound: Bound, deadline: Deadline) -> Bound:
     """The bound with what a checker without a solver can verify, where that is known in time."""
-    if bound.kind not in ("cover", "strangers") or bound.holds_for != "surface":
+    if bound.kind in ("cover", "strangers") and bound.holds_for == "surface":
+        cells = hard_cells(instance, bound.value, deadline)
+        return bound if cells is None else replace(bound, certificate={"cells": cells})
+    if bound.certificate is None:
         return bound
-    cells = hard_cells(instance, bound.value, deadline)
-    return bound if cells is None else replace(bound, certificate={"cells": cells})
+    # What a solver hands in may be true and yet not prove it: conflicts on handles, say.
+    verdict = verify_bound(instance, bound, regions_of_cells(instance), FEW_STEPS)
+    return replace(bound, certificate=None) if verdict.outcome == "refused" else bound
 
 
 def _cuts(instance: Instance, answer: Answer) -> int | None:

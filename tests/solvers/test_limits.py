@@ -19,7 +19,7 @@ from cellcolor.lab.families import blobs, hub, planar_graph
 from cellcolor.lab.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds.conflicts import conflicts
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
-from cellcolor.solvers.bounds.domination import drop_dominated
+from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import search, windows
 from cellcolor.solvers.cpsat.cuts import fewest
@@ -105,8 +105,12 @@ def test_a_cover_without_time_is_a_cover_all_the_same(seed: int, cells: int, col
 
 def test_without_time_no_color_is_dropped() -> None:
     instance = planar_graph(3, 8, 12, 4)
-    assert drop_dominated(instance, OVER) == tuple(frozenset(c.colors) for c in instance.cells)
-    assert drop_dominated(instance) != drop_dominated(instance, OVER)
+    assert drop_dominated(instance, left_out(instance, OVER)) == tuple(
+        frozenset(c.colors) for c in instance.cells
+    )
+    assert drop_dominated(instance, left_out(instance)) != drop_dominated(
+        instance, left_out(instance, OVER)
+    )
 
 
 # --- deadlines ------------------------------------------------------------------------------------
@@ -260,7 +264,7 @@ def test_minima_of_parts_add_up(seeds: list[int], cells: int) -> None:
 @given(seed=SEEDS, cells=st.integers(2, 10), colors=st.integers(2, 4))
 def test_parts_are_what_live_edges_connect(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
-    left = drop_dominated(instance)
+    left = drop_dominated(instance, left_out(instance))
     parts = split(instance, left)
     assert sorted(cell for part in parts for cell in part.cells) == list(range(cells))
     part_of = {cell: number for number, part in enumerate(parts) for cell in part.cells}

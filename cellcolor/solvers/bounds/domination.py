@@ -2,15 +2,42 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+from dataclasses import dataclass
+
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.bounds.cover import color_regions
 
-__all__ = ["drop_dominated"]
+__all__ = ["LeftOut", "drop_dominated", "left_out"]
 
 
-def drop_dominated(instance: Instance, deadline: Deadline = NEVER) -> tuple[frozenset[int], ...]:
-    """The colors of each cell that are enough for a minimum (docs/semantics.md, section 6).
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """A color region that another color can stand in for.
+
+    Attributes:
+        color: the region's color.
+        cells: the region's cells.
+        stand_in: the other color.
+    """
+
+    color: int
+    cells: frozenset[int]
+    stand_in: int
+
+
+def drop_dominated(instance: Instance, dropped: Iterable[LeftOut]) -> tuple[frozenset[int], ...]:
+    """The colors of each cell that are left without some color regions."""
+    allowed = [set(cell.colors) for cell in instance.cells]
+    for region in dropped:
+        for cell in region.cells:
+            allowed[cell].discard(region.color)
+    return tuple(frozenset(colors) for colors in allowed)
+
+
+def left_out(instance: Instance, deadline: Deadline = NEVER) -> list[LeftOut]:
+    """Color regions that a minimum does not need (docs/semantics.md, section 6), in their order.
 
     A color's region may go when some other color is available in each of its cells and joinable
     across each edge that is joinable for it: whatever is painted in the one can be painted in the
@@ -18,6 +45,7 @@ def drop_dominated(instance: Instance, deadline: Deadline = NEVER) -> tuple[froz
     minimum of both search spaces, not the set of optimal schemes. After the deadline the regions
     that were not looked at stay.
     """
+    found: list[LeftOut] = []
     allowed = [set(cell.colors) for cell in instance.cells]
     joinable = {edge.id: set(instance.joinable(edge.id)) for edge in instance.edges}
     for color, cells in sorted(color_regions(instance), key=lambda region: len(region[1])):
@@ -37,8 +65,9 @@ def drop_dominated(instance: Instance, deadline: Deadline = NEVER) -> tuple[froz
                 break
             others &= joinable[edge]
         if others:
+            found.append(LeftOut(color, cells, min(others)))
             for cell in cells:
                 allowed[cell].discard(color)
             for edge in edges:
                 joinable[edge].discard(color)
-    return tuple(frozenset(colors) for colors in allowed)
+    return found

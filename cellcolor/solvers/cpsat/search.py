@@ -72,8 +72,10 @@ class PartSearch:
         bound: no division in the search space has fewer segments.
         surface_bound: no division of the surface has fewer.
         best: the best division, on its dart graph.
+        instance: the part's, in the colors that are left of each cell.
         cells: the cell of the whole instance that each cell of the part is.
         cover_bound: the size of a smallest cover, or what is proved of it.
+        planner: what has planned its segments; None before.
         notes: what was left out and why, a sentence each.
     """
 
@@ -81,7 +83,7 @@ class PartSearch:
         self, part: ConnectedPart, options: Options, runner: Runner, report: Callable[[], None]
     ) -> None:
         self._part = part
-        self._instance = part.instance
+        self.instance = part.instance
         self._options = options
         self._runner = runner
         self._report = report
@@ -91,6 +93,7 @@ class PartSearch:
         self.bound = self.surface_bound = len(greedy_strangers(part.instance))
         self.cells = part.cells
         self.cover_bound = self.bound
+        self.planner: Planner | None = None
         self.notes: list[str] = []
         self._running: int | None = None
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
@@ -119,19 +122,19 @@ class PartSearch:
 
     def cover(self, deadline: Deadline) -> None:
         """The first bound, and a division that follows from a smallest cover."""
-        self._regions = color_regions(self._instance)
-        found = set_cover(self._instance, None, deadline)
+        self._regions = color_regions(self.instance)
+        found = set_cover(self.instance, None, deadline)
         self.cover_bound = max(self.bound, found.bound)
         self._planned = found.regions
         self._raise(found.bound)
         color_of = {cell: color for color, cells in found.regions for cell in cells}
-        whole: Painting = [[Block(color_of[c.id], set())] for c in self._instance.cells]
+        whole: Painting = [[Block(color_of[c.id], set())] for c in self.instance.cells]
         self._offer(self.best[0], whole)
 
     def route_plans(self, deadline: Deadline) -> None:
         """Divisions by routing what is planned; where nothing can be planned the bound rises."""
-        planner = Planner(
-            self._instance, self._regions, self.cover_bound, self._solve_plan, deadline
+        self.planner = planner = Planner(
+            self.instance, self._regions, self.cover_bound, self._solve_plan, deadline
         )
         with suppress(Undecided):
             for attempt in range(ATTEMPTS):
@@ -195,7 +198,7 @@ class PartSearch:
         """The full model in the colors of the last plan only."""
         colors = tuple(
             frozenset(color for color, cells in self._planned if cell.id in cells)
-            for cell in self._instance.cells
+            for cell in self.instance.cells
         )
         if all(colors) and colors != self._colors:
             seams = self._seams(self._once, FEW_STRANDS)
@@ -252,13 +255,13 @@ class PartSearch:
         """Solve one model; only the final one, the widest, proves a bound of its own."""
         if not self._fits(seams_size(seams)):
             return
-        graph = dart_graph(self._instance, colors, strands, seams, self._part.loops)
+        graph = dart_graph(self.instance, colors, strands, seams, self._part.loops)
         size = model_size(graph)
         if not self._fits(size):
             return
         if size * SECONDS_A_TERM > deadline.left:
             raise OutOfTime("building the model would take longer than there is time")
-        built = full_model(graph, color_regions(self._instance, colors), deadline=deadline)
+        built = full_model(graph, color_regions(self.instance, colors), deadline=deadline)
         self._hint(built, graph)
         solver = self._runner.solver(None if final else TRIAL_EFFORT, deadline)
         if final:
@@ -290,11 +293,11 @@ class PartSearch:
             add_hint(built, graph, canonical(graph, moved(known, painting, graph)))
 
     def _graph(self, strands: dict[int, int], seams: tuple[Seam, ...]) -> DartGraph:
-        return dart_graph(self._instance, self._colors, strands, seams, self._part.loops)
+        return dart_graph(self.instance, self._colors, strands, seams, self._part.loops)
 
     def _seams(self, strands: dict[int, int], most: int | None) -> tuple[Seam, ...]:
         part = self._part
-        return widened(self._instance, self._colors, strands, part.loops, part.seams, most)
+        return widened(self.instance, self._colors, strands, part.loops, part.seams, most)
 
     def _offer(self, graph: DartGraph, painting: Painting) -> None:
         painting = canonical(graph, painting)

@@ -14,7 +14,8 @@ from cellcolor.data.solution import Division, Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
-from cellcolor.solvers.bounds.domination import drop_dominated
+from cellcolor.solvers.bounds.domination import LeftOut, drop_dominated, left_out
+from cellcolor.solvers.cpsat.conflict_certificate import conflict_certificate
 from cellcolor.solvers.cpsat.cuts.fewest import FewestCuts
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.model.painting import (
@@ -98,6 +99,7 @@ class _Search:
         self._whole: tuple[DartGraph, Painting] | None = None
         self._parts: list[PartSearch] = []
         self._fewest: FewestCuts | None = None
+        self._left_out: list[LeftOut] = []
 
     def run(self) -> None:
         """Solve until the best division is proved, or there is no time left.
@@ -114,7 +116,8 @@ class _Search:
         if options.start is not None:
             self._begin_with(options.start)
         deadline.check()
-        colors = drop_dominated(self._instance, deadline)
+        self._left_out = left_out(self._instance, deadline)
+        colors = drop_dominated(self._instance, self._left_out)
         deadline.check()
         self._parts = [
             PartSearch(part, options, self._runner, self._report)
@@ -229,7 +232,12 @@ class _Search:
             return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
         return (
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
-            Bound("conflicts", sum(part.surface_bound for part in self._parts), "surface"),
+            Bound(
+                "conflicts",
+                sum(part.surface_bound for part in self._parts),
+                "surface",
+                conflict_certificate(self._left_out, self._parts),
+            ),
             Bound("crossings", sum(part.proved_for_surface for part in self._parts), "surface"),
             Bound("model", sum(part.bound for part in self._parts), "strands"),
         )

@@ -16,7 +16,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
-from cellcolor.solvers.bounds.domination import drop_dominated
+from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.bounds.merged_cells import merge_cells
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
@@ -44,7 +44,7 @@ def test_set_cover_splits_colors_into_regions() -> None:
 @given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 4))
 def test_dropping_dominated_colors_keeps_the_minimum(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
-    reduced = drop_dominated(instance)
+    reduced = drop_dominated(instance, left_out(instance))
     assert all(own <= set(cell.colors) for own, cell in zip(reduced, instance.cells, strict=True))
     assert minimum(with_colors(instance, reduced)) == minimum(instance)
 
@@ -120,7 +120,7 @@ def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:
 def test_a_crack_keeps_a_color_from_being_dominated() -> None:
     # Blue is everywhere where red is, but only red passes the one edge.
     instance = Instance.read(PAPER / "dominated-by-crack.json")
-    assert drop_dominated(instance) == (frozenset({RED}), frozenset({RED}))
+    assert drop_dominated(instance, left_out(instance)) == (frozenset({RED}), frozenset({RED}))
     assert solve(instance, Options()).segments == 1
 
 
@@ -145,7 +145,9 @@ def test_a_ring_of_cells_that_share_two_colors_bounds_no_crossings() -> None:
 def test_more_crossings_than_enough_gain_nothing(seed: int, cells: int, colors: int) -> None:
     """Against the reference solver, which knows nothing of this, with one strand more."""
     instance = planar_graph(seed, cells, cells + 2, colors)
-    enough = max(enough_crossings(instance, drop_dominated(instance)).values(), default=1)
+    enough = max(
+        enough_crossings(instance, drop_dominated(instance, left_out(instance))).values(), default=1
+    )
     assume(enough <= 2)
     strands = int(enough)
     found = solve(instance, Options(search_space="surface", strands=strands))

@@ -134,6 +134,13 @@ class Planner:
             raise Undecided
         return self._read(solver, touched)
 
+    @property
+    def partings(self) -> Iterator[tuple[Region, Region, Parting]]:
+        """All partings found so far: of whose segments which two regions, and the parting."""
+        for (one, other), partings in self._partings.items():
+            for parting in partings:
+                yield self._regions[one], self._regions[other], parting
+
     def find_partings(self, plan: SegmentPlan) -> bool:
         """Look for segments of a plan that would cross; whether there are any.
 

@@ -1,0 +1,230 @@
+"""Segments that would have to cross: held against all colorings of small meshes, and forged."""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import random
+from typing import Any
+
+import networkx as nx
+import pytest
+from exhaustive_minima import minimum
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import INSTANCES
+from meshes import drawn
+
+import cellcolor
+from cellcolor.checker.certificates import BoundVerdict, verify_bound
+from cellcolor.checker.color_regions import regions_of_cells
+from cellcolor.checker.crossing_segments import TwoRegions
+from cellcolor.data.bound import Bound
+from cellcolor.data.instance import Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decomposition_of
+from cellcolor.lab.families import blobs, planar_graph
+
+RED, BLUE = 0, 1
+LABELS = {"R": [RED], "B": [BLUE], "M": [RED, BLUE], ".": []}
+# Red above and below, blue to the left and to the right of a middle that has both.
+CROSS = drawn(".R. BMB .R.", LABELS)
+
+
+def verdict(instance: Instance, bound: Bound) -> BoundVerdict:
+    return verify_bound(instance, bound, regions_of_cells(instance))
+
+
+def two_regions(surface: LabelledSurface) -> list[tuple[TwoRegions, tuple[int, ...]]]:
+    """Each pair of a red region and a blue one, with the cell of every vertex."""
+    made = decomposition_of(surface, None)
+    regions = regions_of_cells(made.instance)
+    every = sorted(set().union(*regions))
+    cells = {r: frozenset(c for c, own in enumerate(regions) if r in own) for r in every}
+    return [
+        (TwoRegions(made.instance, (RED, BLUE), (cells[a], cells[b])), made.vertex_cell)
+        for a, b in itertools.product(every, every)
+        if a[0] == RED and b[0] == BLUE
+    ]
+
+
+def together(
+    surface: LabelledSurface, colors: tuple[int | None, ...], color: int
+) -> list[set[int]]:
+    """The vertices of each segment of a color, by networkx."""
+    graph = nx.Graph()
+    graph.add_nodes_from(v for v, own in enumerate(colors) if own == color)
+    graph.add_edges_from(
+        (a, b)
+        for a, b in surface.left_of
+        if colors[a] == colors[b] == color and color not in surface.cracked(a, b)
+    )
+    return list(nx.connected_components(graph))
+
+
+@settings(max_examples=120, deadline=None)
+@given(st.data())
+def test_what_must_cross_is_connected_by_no_coloring(data: st.DataObject) -> None:
+    """All colorings of the vertices that have both colors, at most eight of them."""
+    rows = data.draw(st.integers(3, 4))
+    letters = data.draw(st.lists(st.sampled_from("RRBBM."), min_size=4 * rows, max_size=4 * rows))
+    shared = [place for place, letter in enumerate(letters) if letter == "M"]
+    for place in shared[8:]:
+        letters[place] = "R"
+    surface = drawn(" ".join("".join(letters[4 * r : 4 * r + 4]) for r in range(rows)), LABELS)
+    claims = []
+    for two, cell_of in two_regions(surface):
+        red, blue = (sorted(own - other) for own, other in (two.cells, two.cells[::-1]))
+        pairs = itertools.product(itertools.combinations(red, 2), itertools.combinations(blue, 2))
+        claims += [(*ends, cell_of) for ends in pairs if two.must_cross(*ends)]
+    if not claims:
+        return
+    choices = [own or (None,) for own in surface.vertex_colors]
+    for colors in itertools.product(*choices):
+        segments = [together(surface, colors, color) for color in (RED, BLUE)]
+        for one, other, cell_of in claims:
+            joined = [
+                any(set(pair) <= {cell_of[v] for v in segment} for segment in found)
+                for pair, found in zip((one, other), segments, strict=True)
+            ]
+            assert not all(joined)
+
+
+def test_four_areas_around_a_hub() -> None:
+    ((two, cell_of),) = two_regions(CROSS)
+    above, left, right, below = (cell_of[v] for v in (1, 3, 5, 7))
+    assert two.must_cross((above, below), (left, right))
+    # Neighbors need not cross, and a cell with both colors is no end.
+    assert not two.must_cross((above, above), (left, right))
+    assert not two.must_cross((above, cell_of[4]), (left, right))
+    assert not two.must_cross((left, right), (above, below))
+
+
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 10**6), cells=st.integers(3, 8), colors=st.integers(2, 4))
+def test_every_bound_by_conflicts_is_verified(seed: int, cells: int, colors: int) -> None:
+    instance = planar_graph(seed, cells, cells + 4, colors)
+    for bound in cellcolor.solve(instance, workers=1).solution.bounds or ():
+        if bound.kind in ("cover", "conflicts"):
+            assert verdict(instance, bound).outcome == "verified"
+
+
+@pytest.mark.parametrize("seed", [5, 22])
+def test_cells_that_the_other_segment_would_have_to_pass(seed: int) -> None:
+    """Thin bands: some ways cross evenly, but only through cells that cannot be passed."""
+    instance = cellcolor.decompose(blobs(seed, size=20, thin=True))
+    solution = cellcolor.solve(instance).solution
+    (bound,) = [b for b in solution.bounds or () if b.kind == "conflicts"]
+    assert bound.value == solution.segments
+    assert verdict(instance, bound).outcome == "verified"
+
+
+def conflicts_of(name: str) -> tuple[Instance, Bound]:
+    instance = Instance.read(INSTANCES / name)
+    solution = cellcolor.solve(instance).solution
+    return instance, next(b for b in solution.bounds or () if b.kind == "conflicts")
+
+
+NAMES = ["paper/annulus.json", "paper/figeasycell4.json", "parts/machined-part.json"]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_higher_number_is_refused(name: str) -> None:
+    instance, bound = conflicts_of(name)
+    assert verdict(instance, bound).outcome == "verified" and bound.certificate is not None
+    higher = copy.deepcopy(bound.certificate)
+    higher["parts"][-1]["value"] += 1
+    for certificate in (bound.certificate, higher):
+        forged = Bound("conflicts", bound.value + 1, "surface", certificate)
+        assert verdict(instance, forged).outcome == "refused"
+
+
+def forged(certificate: dict[str, Any], cells: int, colors: int, seed: int) -> dict[str, Any]:
+    """One thing changed: a cell, a color, a set of cells, a conflict more, a region left out."""
+    chance = random.Random(seed)
+    changed = copy.deepcopy(certificate)
+    part = chance.choice(changed["parts"])
+    conflicts = part["conflicts"]
+    match chance.randrange(6):
+        case 0 if part["cells"]:
+            part["cells"][chance.randrange(len(part["cells"]))] = chance.randrange(-1, cells + 1)
+        case 1 if conflicts:
+            ends = chance.choice(conflicts)[chance.choice(["one", "other"])]
+            ends[chance.randrange(2)] = [chance.randrange(cells)]
+        case 2 if conflicts:
+            chance.choice(conflicts)["colors"][chance.randrange(2)] = chance.randrange(colors)
+        case 3 if conflicts:
+            conflict = copy.deepcopy(chance.choice(conflicts))
+            conflict["one"], conflict["other"] = conflict["other"], conflict["one"]
+            conflicts.append(conflict)
+        case 4:
+            step = [chance.randrange(colors), chance.randrange(cells), chance.randrange(colors)]
+            changed["left_out"] = [*changed["left_out"], step]
+        case _:
+            part["value"] += 1
+    return changed
+
+
+@pytest.mark.parametrize("name", NAMES[:2])
+def test_whatever_is_changed_nothing_false_is_verified(name: str) -> None:
+    """A changed certificate may still prove its number, but none above a division that exists."""
+    instance, bound = conflicts_of(name)
+    assert bound.certificate is not None
+    fewest = cellcolor.solve(instance).segments
+    assert fewest is not None
+    outcomes = []
+    for seed in range(150):
+        certificate = forged(bound.certificate, len(instance.cells), len(instance.colors), seed)
+        for value in (bound.value, bound.value + 1):
+            found = verdict(instance, Bound("conflicts", value, "surface", certificate))
+            outcomes.append(found.outcome)
+            assert found.outcome == "refused" or value <= fewest
+    assert outcomes.count("refused") > 150
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 10**6), change=st.integers(0, 10**6))
+def test_nothing_false_is_verified_on_random_graphs(seed: int, change: int) -> None:
+    """Made-up conflicts and regions left out, against the minimum by trying all divisions."""
+    instance = planar_graph(seed, 4, 8, 3)
+    chance = random.Random(change)
+    crossings = [
+        {
+            "colors": chance.sample(range(3), 2),
+            "one": [[chance.randrange(4)], [chance.randrange(4)]],
+            "other": [[chance.randrange(4)], [chance.randrange(4)]],
+        }
+        for _ in range(chance.randrange(4))
+    ]
+    left_out = [[chance.randrange(3), chance.randrange(4), chance.randrange(3)]]
+    fewest = minimum(instance)
+    for steps, conflicts in itertools.product(([], left_out), ([], crossings)):
+        part = {"value": fewest + 1, "cells": [0, 1, 2, 3], "conflicts": conflicts}
+        certificate = {"left_out": steps, "parts": [part]}
+        claim = Bound("conflicts", fewest + 1, "surface", certificate)
+        assert verdict(instance, claim).outcome == "refused"
+
+
+@pytest.mark.parametrize(
+    ("change", "reason"),
+    [
+        ({"left_out": [[0, 0, 0]]}, "cannot stand in for itself"),
+        ({"left_out": [[7, 0, 0]]}, "color 7 is not available in cell 0"),
+        ({"parts": []}, "the parts need fewer than 3 segments"),
+        ({"parts": "none"}, "parts: Input should be a valid array"),
+    ],
+)
+def test_faults_have_names(change: dict[str, Any], reason: str) -> None:
+    instance, bound = conflicts_of("paper/figeasycell4.json")
+    assert bound.certificate is not None
+    claim = Bound("conflicts", bound.value, "surface", bound.certificate | change)
+    assert reason in verdict(instance, claim).reason
+
+
+def test_one_region_in_two_parts_is_refused() -> None:
+    """The same cells twice would count the same segments twice."""
+    instance, bound = conflicts_of("paper/figeasycell4.json")
+    assert bound.certificate is not None
+    twice = bound.certificate | {"parts": bound.certificate["parts"] * 2}
+    claim = Bound("conflicts", 2 * bound.value, "surface", twice)
+    assert verdict(instance, claim).reason == "one color region lies in two parts"
