@@ -12,10 +12,13 @@ from cellcolor.data.solution import Solution as Solution
 from cellcolor.data.solution import SubCell as SubCell
 from cellcolor.data.surface import Crack as Crack
 from cellcolor.data.surface import LabelledSurface as LabelledSurface
+from cellcolor.data.tool_paths import ToolPath as ToolPath
+from cellcolor.data.tool_paths import ToolPaths as ToolPaths
 from cellcolor.data.trajectory import Trajectory as Trajectory
 from cellcolor.data.trajectory_verdict import Fault as Fault
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict as TrajectoryVerdict
 from cellcolor.deadline import OutOfTime as OutOfTime
+from cellcolor.door.covering import cover as cover
 from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.judging import check as check
 from cellcolor.door.judging import judge as judge
@@ -38,4 +41,5 @@ from cellcolor.errors import TooLarge as TooLarge
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
 from cellcolor.painting.paint import Painted as Painted
+from cellcolor.tool_paths.cover import Covered as Covered
 from cellcolor.version import __version__ as __version__

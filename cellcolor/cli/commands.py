@@ -12,31 +12,40 @@ import click
 from cellcolor.cli.motion_options import motion_options
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
-from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS
+from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
 from cellcolor.version import __version__
 
 if TYPE_CHECKING:
     from cellcolor.data.solution import SearchSpace
 
 
-class _Seconds(click.FloatRange):
-    """A positive, finite number of seconds."""
+class _Positive(click.FloatRange):
+    """A positive, finite number of some unit."""
 
-    def __init__(self) -> None:
+    def __init__(self, units: str) -> None:
         super().__init__(min=0, min_open=True)
+        self.units = units
 
     def convert(
         self, value: Any, param: click.Parameter | None, ctx: click.Context | None
     ) -> float:
-        seconds = float(super().convert(value, param, ctx))
-        if not math.isfinite(seconds):
-            self.fail(f"{value} is not a number of seconds.", param, ctx)
-        return seconds
+        number = float(super().convert(value, param, ctx))
+        if not math.isfinite(number):
+            self.fail(f"{value} is not a number of {self.units}.", param, ctx)
+        return number
 
 
 def _solver_name(_context: click.Context, _option: click.Parameter, value: str) -> str:
     """Refuse a solver that nobody has registered; none is imported for that."""
     known = solver_names()
+    if value not in known:
+        raise click.BadParameter(f"{value!r} is not one of {', '.join(known)}.")
+    return value
+
+
+def _pattern_name(_context: click.Context, _option: click.Parameter, value: str) -> str:
+    """Refuse a pattern that nobody has registered; none is imported for that."""
+    known = pattern_names()
     if value not in known:
         raise click.BadParameter(f"{value!r} is not one of {', '.join(known)}.")
     return value
@@ -65,7 +74,8 @@ class _Input(click.Path):
 
 _PATH = click.Path(path_type=Path)
 _INPUT = _Input()
-_SECONDS = _Seconds()
+_SECONDS = _Positive("seconds")
+_METRES = _Positive("metres")
 _SEED = click.option(
     "--seed",
     metavar="N",
@@ -309,6 +319,56 @@ def plan(
 
     given = {key: value for key, value in motion.items() if value is not None}
     return plan_scene(scene, output, pattern, given, Deadline.after(time_limit, begun))
+
+
+@cellcolor.command()
+@click.argument("source", metavar="SURFACE.json", type=_INPUT)
+@click.argument("plan", metavar="PLAN.json", type=_PATH)
+@click.option(
+    "--pattern",
+    metavar="NAME",
+    callback=_pattern_name,
+    default=DEFAULT_PATTERN,
+    show_default=True,
+    help=f"{', '.join(PATTERNS)}, or what another package registers.",
+)
+@click.option(
+    "--spacing-m",
+    metavar="M",
+    required=True,
+    type=_METRES,
+    help="Wanted distance between neighboring passes.",
+)
+@click.option(
+    "--tool-radius-m", metavar="M", required=True, type=_METRES, help="Of the tool's footprint."
+)
+@click.option("-o", "--output", metavar="PATHS.json", required=True, type=_PATH, help="The paths.")
+@click.option(
+    "--time-limit",
+    metavar="S",
+    type=_SECONDS,
+    help="Seconds, reading included.  [default: as long as it takes]",
+)
+def cover(
+    source: Path,
+    plan: Path,
+    pattern: str,
+    spacing_m: float,
+    tool_radius_m: float,
+    output: Path,
+    time_limit: float | None,
+) -> int:
+    """Lay a tool path on every segment of a painted surface, without a robot.
+
+    SURFACE.json and PLAN.json are what paint writes. Each segment is covered without lifting off.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.cover import cover_files
+    from cellcolor.deadline import Deadline
+
+    deadline = Deadline.after(time_limit, begun)
+    return cover_files(source, plan, output, pattern, spacing_m, tool_radius_m, deadline)
 
 
 @cellcolor.command()

@@ -202,6 +202,21 @@ class LabelledSurface:
         return areas
 
     @cached_property
+    def vertex_normals(self) -> NDArray[np.float64]:
+        """Outward unit normals (n, 3) of the mesh: of the triangles around, weighed by area.
+
+        A vertex without triangles, or with triangles that cancel out, has (0, 0, 1).
+        """
+        corners = self.vertices[self.faces]
+        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals = np.zeros_like(self.vertices)
+        np.add.at(normals, self.faces, doubled[:, None, :])
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        normals = np.where(lengths > 0, normals / np.where(lengths > 0, lengths, 1.0), [0, 0, 1])
+        normals.setflags(write=False)
+        return normals
+
+    @cached_property
     def crack_colors(self) -> dict[tuple[int, int], frozenset[int]]:
         """``{(i, j): colors}`` with i < j: what is not continuous along each mesh edge's crack."""
         return {(crack.i, crack.j): frozenset(crack.colors) for crack in self.cracks}

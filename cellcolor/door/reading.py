@@ -11,12 +11,14 @@ from cellcolor.data import instance as instance_file
 from cellcolor.data import plan as plan_file
 from cellcolor.data import solution as solution_file
 from cellcolor.data import surface as surface_file
+from cellcolor.data import tool_paths as tool_paths_file
 from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data import trajectory_verdict as verdict_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.door.extras import extras_for
@@ -30,12 +32,15 @@ if TYPE_CHECKING:
 
 __all__ = ["read"]
 
-_Value: TypeAlias = LabelledSurface | Instance | Solution | Plan | Trajectory | TrajectoryVerdict
+_Value: TypeAlias = (
+    LabelledSurface | Instance | Solution | Plan | ToolPaths | Trajectory | TrajectoryVerdict
+)
 _KINDS: dict[str, type[_Value]] = {
     surface_file.FORMAT: LabelledSurface,
     instance_file.FORMAT: Instance,
     solution_file.FORMAT: Solution,
     plan_file.FORMAT: Plan,
+    tool_paths_file.FORMAT: ToolPaths,
     trajectory_file.FORMAT: Trajectory,
     verdict_file.FORMAT: TrajectoryVerdict,
 }
@@ -44,7 +49,7 @@ _SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
 
 
 def read(source: str | PathLike[str]) -> Any:
-    """The value in a file: scene, setup, surface, instance, solution, plan, trajectory or verdict.
+    """The value in a file: scene, setup, surface, solution, plan, tool paths, trajectory, …
 
     Scenes and setups are told by their suffix, ``.toml``, all else by its ``format``. Of a file of
     optimal schemes it is the solution in the first line. Type checkers are told ``Any``: whoever

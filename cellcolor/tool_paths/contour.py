@@ -17,6 +17,7 @@ __all__ = ["FINEST", "lay_contours", "lay_loops"]
 
 FINEST = 0.5
 """Longest edge of the meshes that level lines are drawn on, in spacings."""
+_NARROWEST, _WIDEST = 0.85, 1.05  # between which spacings are made to fit, in wanted spacings
 _CORE = 0.7  # where a core reaches so far, in spacings, inside the last loop, there is one more
 
 
@@ -47,6 +48,7 @@ def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadl
         deadline: when to give up.
     """
     deadline.check()
+    spacing = _fitting(float(distances.max()), spacing)
     levels = spacing * (0.5 + np.arange(int(distances.max() / spacing) + 1))
     levels = levels[levels < distances.max()]
     sliced = slice_along(mesh, distances, levels)
@@ -59,6 +61,17 @@ def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadl
     rows += [line.vertices for line in level_lines(cores) if len(line.vertices) > 2]
     deadline.check()
     return Laid(cores.mesh, join_loops(cores.mesh, rows, spacing))
+
+
+def _fitting(farthest: float, spacing: float) -> float:
+    """A spacing near the wanted one with which the innermost lines leave half of it inside.
+
+    Args:
+        farthest: from the border, m.
+        spacing: the wanted one, m; it is kept where none that fits is near.
+    """
+    fitting = farthest / np.ceil(farthest / (_WIDEST * spacing))
+    return float(fitting) if fitting >= _NARROWEST * spacing else spacing
 
 
 def _heights_of_cores(sliced: Sliced, levels: Array) -> Array:

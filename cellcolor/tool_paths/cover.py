@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
 from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
@@ -19,6 +21,8 @@ from cellcolor.tool_paths.spurs import with_spurs
 
 __all__ = ["Covered", "cover"]
 
+_TRIANGLES = 24  # for each square of the spacing, about
+_MOST_TRIANGLES = 4_000_000
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
 
 
@@ -39,7 +43,8 @@ class Covered:
     uncovered: tuple[Uncovered, ...]
 
     def __str__(self) -> str:
-        return f"{self.paths}; {self.in_all}"
+        visits = f"{self.in_all.mean_visits:.2f} visits"
+        return f"{self.paths}, {100 * self.in_all.covered:.2f} % covered, {visits}"
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self}>"
@@ -75,10 +80,12 @@ def cover(
         progress: told in a few words what is being done.
 
     Raises:
-        InputError: there is no such pattern.
+        InputError: there is no such pattern, a length is not positive, or the spacing is so small
+            that the meshes would not fit into memory.
         OutOfTime: the deadline came first.
     """
     lay = find_pattern(pattern)
+    _check_lengths(surface, spacing_m, tool_radius_m)
     paths, measures, uncovered = [], [], []
     regions = regions_of(surface, segment_of, colors, normals, walls, left_out)
     for number, region in enumerate(regions):
@@ -104,6 +111,17 @@ def cover(
         in_all(measures, spacing_m),
         tuple(uncovered),
     )
+
+
+def _check_lengths(surface: LabelledSurface, spacing_m: float, tool_radius_m: float) -> None:
+    for name, length in (("spacing_m", spacing_m), ("tool_radius_m", tool_radius_m)):
+        if not (math.isfinite(length) and length > 0):
+            raise InputError(None, name, f"must be positive and finite, is {length}")
+    area = float(surface.vertex_areas.sum())
+    needed = area / spacing_m**2 * _TRIANGLES
+    if needed > _MOST_TRIANGLES:
+        text = f"needs about {needed:.2g} triangles, at most {_MOST_TRIANGLES:,} fit"
+        raise InputError(None, "spacing_m", text)
 
 
 def _path(region: Region, laid: Laid) -> ToolPath:

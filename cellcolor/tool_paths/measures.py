@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
 from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.triangles import Triangles
 
 __all__ = ["PathMeasures", "Uncovered", "measure"]
 
@@ -33,6 +34,11 @@ class Uncovered:
     area_m2: float
     place: tuple[float, float, float]
     cause: str
+
+    def __str__(self) -> str:
+        place = ", ".join(f"{value:.3f}" for value in self.place)
+        area = f"{self.area_m2 * 1e6:.1f} mm²"
+        return f"{area} of segment {self.segment} at ({place}): {self.cause}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +70,10 @@ class PathMeasures:
     longest_step_m: float
     border_m: float
 
+    def __str__(self) -> str:
+        visits = f"{self.mean_visits:.2f} visits ({self.most_visits} at most)"
+        return f"{self.length_m:.2f} m, {100 * self.covered:.2f} % covered, {visits}"
+
 
 def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, list[Uncovered]]:
     """Measure a path, and find what it leaves uncovered."""
@@ -80,8 +90,8 @@ def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, lis
     measures = PathMeasures(
         area,
         float(lengths.sum()),
-        float(areas[distances <= 1.5 * spacing].sum() / area),
-        float(areas[distances <= 0.75 * spacing].sum() / area),
+        share_within(mesh, distances, 1.5 * spacing),
+        share_within(mesh, distances, 0.75 * spacing),
         float(visits.mean()),
         int(visits.max()),
         float(lengths.sum() * spacing / area),
@@ -106,6 +116,17 @@ def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, lis
             )
         )
     return measures, left
+
+
+def share_within(mesh: Triangles, distances: Array, most: float) -> float:
+    """Share of a mesh where a field, linear in each triangle, is no greater than a value."""
+    low, middle, high = np.sort(distances[mesh.corners], axis=1).T
+    with np.errstate(divide="ignore", invalid="ignore"):
+        below = (most - low) ** 2 / ((middle - low) * (high - low))
+        above = 1.0 - (high - most) ** 2 / ((high - low) * (high - middle))
+    share = np.where(most < middle, below, above)
+    share = np.where(most <= low, 0.0, np.where(most >= high, 1.0, share))
+    return min(1.0, float(np.average(share, weights=mesh.areas)))
 
 
 def sharp_turns(steps: Array) -> float:

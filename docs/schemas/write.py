@@ -26,6 +26,7 @@ from cellcolor.data import (
     plan,
     solution,
     surface,
+    tool_paths,
     trajectory,
     trajectory_verdict,
 )
@@ -33,7 +34,17 @@ from cellcolor.data import (
 FOLDER = Path(__file__).parent
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
-MODULES = (bound, coverage, instance, plan, solution, surface, trajectory, trajectory_verdict)
+MODULES = (
+    bound,
+    coverage,
+    instance,
+    plan,
+    solution,
+    surface,
+    tool_paths,
+    trajectory,
+    trajectory_verdict,
+)
 """Where the classes are that the schemas have definitions of."""
 
 
@@ -63,6 +74,7 @@ FORMATS = {
         solution.SCHEME_FORMAT, None, solution._SCHEME_ADAPTER, solution._SchemeLine
     ),
     "plan-1": Format(plan.FORMAT, 1, plan._ADAPTER, plan.Plan),
+    "tool-paths-1": Format(tool_paths.FORMAT, 1, tool_paths._ADAPTER, tool_paths.ToolPaths),
     "trajectory-1": Format(trajectory.FORMAT, 1, trajectory._ADAPTER, trajectory.Trajectory),
     "trajectory-verdict-1": Format(
         trajectory_verdict.FORMAT,

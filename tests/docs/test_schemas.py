@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from documents import TRAJECTORY, VERDICT
+from documents import TOOL_PATHS, TRAJECTORY, VERDICT
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -22,6 +22,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import decompose
@@ -69,7 +70,7 @@ def written() -> list[Document]:
     plan = Plan(tuple(min(colors, default=None) for colors in surface.vertex_colors))
     texts = [surface.to_json(), decompose(surface, "x.json").to_json(), instance.to_json()]
     texts += [paper.to_json(), strands.to_json(), scheme_line(next(schemes)), plan.to_json()]
-    return [*(json.loads(text) for text in texts), TRAJECTORY, VERDICT]
+    return [*(json.loads(text) for text in texts), TOOL_PATHS, TRAJECTORY, VERDICT]
 
 
 WRITTEN = written()
@@ -127,6 +128,7 @@ def read(document: Document) -> None:
         "cellcolor/instance": Instance.from_document,
         "cellcolor/solution": Solution.from_document,
         "cellcolor/plan": Plan.from_document,
+        "cellcolor/tool-paths": ToolPaths.from_document,
         "cellcolor/trajectory": Trajectory.from_document,
         "cellcolor/trajectory-verdict": TrajectoryVerdict.from_document,
     }

@@ -177,3 +177,23 @@ def drop(*path: str | int) -> Change:
         del place[path[-1]]
 
     return change
+
+
+TOOL_PATHS: dict[str, Any] = {
+    "format": "cellcolor/tool-paths",
+    "version": 1,
+    "name": "triangle",
+    "pattern": "contour",
+    "spacing_m": 0.01,
+    "tool_radius_m": 0.015,
+    "surface_sha256": "0" * 64,
+    "paths": [
+        {
+            "segment": 0,
+            "color": 1,
+            "points": [[0.0, 0.0, 0.0], [0.3, 0.0, 0.0], [0.3, 0.4, 0.0]],
+            "normals": [[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]],
+            "faces": [0, 0],
+        }
+    ],
+}

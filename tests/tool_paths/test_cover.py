@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
+from flat import one_segment, slit, square, whole
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from painted_at_random import SHAPES, Painting, painted_at_random
 from path_checker import PathChecker
 
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.tool_paths.cover import Covered, cover
-from cellcolor.tool_paths.region import small_triangle_areas
-from cellcolor.tool_paths.registry import PATTERNS
+from cellcolor.tool_paths.region import regions_of, small_triangle_areas
+from cellcolor.tool_paths.registry import PATTERNS, pattern_names
 
 
 def covered(painting: Painting, pattern: str, spacing: float, **options: object) -> Covered:
@@ -19,9 +26,24 @@ def covered(painting: Painting, pattern: str, spacing: float, **options: object)
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
-@given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.sampled_from([0.1, 0.25]))
-@settings(max_examples=5, deadline=None)
-def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str, spacing: float) -> None:
+@given(st.integers(0, 10**6), st.sampled_from(SHAPES))
+@settings(max_examples=4, deadline=None)
+def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str) -> None:
+    assert_on_segments(pattern, seed, shape, 0.25)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("pattern", PATTERNS)
+@given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.sampled_from([0.04, 0.1, 0.25]))
+@settings(max_examples=100, deadline=None)
+def test_many_paths_stay_on_their_segments(
+    pattern: str, seed: int, shape: str, spacing: float
+) -> None:
+    assert_on_segments(pattern, seed, shape, spacing)
+
+
+def assert_on_segments(pattern: str, seed: int, shape: str, spacing: float) -> None:
+    """Paths on a random painting are one a segment, and the checker finds nothing."""
     painting = painted_at_random(seed, shape)
     found = covered(painting, pattern, spacing)
     checker = PathChecker(painting.surface, painting.segment_of)
@@ -36,3 +58,130 @@ def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str, spaci
     segments = [path.segment for path in found.paths.paths]
     assert len(segments) == len(set(segments))
     assert set(segments) == set(np.flatnonzero(areas >= spacing**2 / 4).tolist())
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.parametrize("shape", ["disc", "annulus", "sphere", "torus", "double torus"])
+def test_whole_shapes_are_covered_nearly_once(pattern: str, shape: str) -> None:
+    painting = whole(shape, 12)
+    # Some fifteen passes across each of them.
+    spacing = float(np.sqrt(painting.surface.vertex_areas.sum()) / 15)
+    found = covered(painting, pattern, spacing)
+    checker = PathChecker(painting.surface, painting.segment_of)
+    (path,) = found.paths.paths
+    assert not checker.problems(path)
+    assert found.in_all.covered_wide >= 0.99 and found.in_all.covered >= 0.97
+    assert found.in_all.mean_visits <= 1.3
+
+
+@given(st.integers(0, 10**6), st.sampled_from(sorted(PATTERNS)), st.data())
+@settings(max_examples=8, deadline=None)
+def test_walls_and_what_is_left_out_are_kept_off(
+    seed: int, pattern: str, data: st.DataObject
+) -> None:
+    painting = square(8)
+    rng = np.random.default_rng(seed)
+    edges = sorted({(min(a, b), max(a, b)) for a, b in painting.surface.left_of})
+    walls = [edges[k] for k in rng.choice(len(edges), data.draw(st.integers(0, 25)))]
+    left_out = rng.choice(6 * len(painting.surface.faces), data.draw(st.integers(0, 40)))
+    found = covered(painting, pattern, 0.1, walls=walls, left_out=left_out)
+    checker = PathChecker(painting.surface, painting.segment_of, walls, left_out)
+    for path in found.paths.paths:
+        assert not checker.problems(path)
+    # Every part that is large enough has a path, all else is listed.
+    regions = regions_of(*painting, walls, left_out)
+    large = [region for region in regions if region.mesh.areas.sum() >= 0.1**2 / 4]
+    assert len(found.paths.paths) == len(large)
+    areas = small_triangle_areas(painting.surface)
+    listed = sum(place.area_m2 for place in found.uncovered if place.cause.startswith("left out"))
+    assert listed == pytest.approx(areas[np.unique(left_out)].sum())
+    small = [place for place in found.uncovered if place.cause.startswith("a part smaller")]
+    assert len(small) == len(regions) - len(large)
+
+
+def test_the_checker_finds_what_is_wrong() -> None:
+    """A path moved off the surface, into another triangle, over a crack, out of its segment."""
+    painting = square(8)
+    checker = PathChecker(painting.surface, painting.segment_of)
+    (path,) = covered(painting, "contour", 0.2).paths.paths
+    assert not checker.problems(path)
+    lifted = path.points.copy()
+    lifted[5, 2] += 0.01
+    assert "not in triangle" in checker.problems(replace(path, points=lifted))[0]
+    faces = path.faces.copy()
+    faces[7] = (faces[7] + 60) % len(painting.surface.faces)
+    assert "not in triangle" in checker.problems(replace(path, faces=faces))[0]
+    cut = square(8, slit(8, 3, range(2, 6)))
+    assert "leaves" in PathChecker(cut.surface, cut.segment_of).problems(path)[0]
+    walled = PathChecker(painting.surface, painting.segment_of, slit(8, 3, range(2, 6)))
+    assert "leaves" in walled.problems(path)[0]
+    other = painting.segment_of.copy()
+    other[27] = 1
+    assert "leaves" in PathChecker(painting.surface, other).problems(path)[0]
+    on_path = 6 * int(path.faces[20])
+    left_out = PathChecker(
+        painting.surface, painting.segment_of, left_out=range(on_path, on_path + 6)
+    )
+    assert "leaves" in left_out.problems(path)[0]
+
+
+def test_a_path_goes_round_a_slit() -> None:
+    """A crack through all but one row: the path has to take the way round its end."""
+    size = 12
+    top = (size - 1) * size + 5
+    cut = square(size, (*slit(size, 5, range(1, size - 1)), (top, top + 1)))
+    checker = PathChecker(cut.surface, cut.segment_of)
+    for pattern in PATTERNS:
+        (path,) = covered(cut, pattern, 0.12).paths.paths
+        assert not checker.problems(path)
+        assert {True, False} == set((path.points[:, 0] > 0.6).tolist())
+
+
+def test_a_band_narrower_than_the_spacing_is_walked_along() -> None:
+    points = np.array([[x, y, 0.0] for y in (0.0, 0.02) for x in np.linspace(0, 1, 21)])
+    painting = one_segment(points, grid_faces(2, 21))
+    for pattern in PATTERNS:
+        found = covered(painting, pattern, 0.1)
+        (path,) = found.paths.paths
+        # There and back would be twice as long.
+        assert 0.8 < path.length < 1.5
+        assert found.in_all.covered == 1.0
+
+
+def test_what_another_distribution_registers_is_used(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    (tmp_path / "one_line.py").write_text(
+        "from cellcolor.tool_paths.interface import Laid\n"
+        "def lay(mesh, spacing, deadline):\n"
+        "    return Laid(mesh, mesh.corners[0, [0, 1]].tolist())\n"
+    )
+    info = tmp_path / "one_line-1.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: one-line\nVersion: 1\n")
+    (info / "entry_points.txt").write_text(
+        "[cellcolor.patterns]\none-line = one_line:lay\nbroken = one_line:nothing\n"
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert pattern_names()[-2:] == ("broken", "one-line")
+    painting = square(6)
+    found = covered(painting, "one-line", 0.5)
+    # What it leaves uncovered is reached by spurs.
+    assert found.paths.pattern == "one-line" and found.in_all.covered_wide == 1.0
+    with pytest.raises(InputError, match="'broken', registered as"):
+        covered(painting, "broken", 0.5)
+
+
+def test_the_deadline_and_progress() -> None:
+    told: list[str] = []
+    covered(square(6), "contour", 0.2, progress=told.append)
+    assert told == ["covering part 1 of 1"]
+    with pytest.raises(OutOfTime):
+        covered(square(6), "contour", 0.2, deadline=Deadline.after(0.0))
+
+
+def test_nothing_to_cover() -> None:
+    painting = square(3)
+    none = np.full(9, -1)
+    found = cover(painting.surface, none, [], painting.normals, spacing_m=0.1, tool_radius_m=0.1)
+    assert found.paths.paths == () and found.in_all.area_m2 == 0 and found.uncovered == ()

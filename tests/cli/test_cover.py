@@ -1,0 +1,105 @@
+"""``cellcolor cover``: the file of paths, and what is refused."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from commands import run
+from library import PAPER
+
+import cellcolor
+
+RING = PAPER / "ring.surface.json"
+LENGTHS = ("--spacing-m", 0.05, "--tool-radius-m", 0.05)
+
+
+@pytest.fixture
+def painted(tmp_path: Path) -> tuple[Path, Path]:
+    solution = tmp_path / "solution.json"
+    assert run("solve", RING, "-o", solution) == 0
+    assert run("paint", RING, solution, "-o", tmp_path / "p.surface.json") == 0
+    return tmp_path / "p.surface.json", tmp_path / "p.plan.json"
+
+
+def test_the_paths_are_written_and_read(
+    painted: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "paths.json"
+    capsys.readouterr()
+    assert run("cover", *painted, *LENGTHS, "--pattern", "tree", "-o", output) == 0
+    said = capsys.readouterr().out
+    assert said.startswith(f"wrote {output}: ") and "segment 0:" in said
+    paths = cellcolor.read(output)
+    surface = cellcolor.read(painted[0])
+    assert paths.surface_sha256 == surface.sha256 and paths.pattern == "tree"
+    # The same in Python, from files and from values.
+    again = cellcolor.cover(*painted, pattern="tree", spacing_m=0.05, tool_radius_m=0.05)
+    assert again.paths == paths
+    values = cellcolor.cover(
+        surface, cellcolor.read(painted[1]), pattern="tree", spacing_m=0.05, tool_radius_m=0.05
+    )
+    assert values.paths == paths
+
+
+def test_a_painting_is_covered_with_its_own_normals() -> None:
+    painting = cellcolor.paint("ring.surface.json", cellcolor.solve("ring.surface.json"))
+    down = np.tile([0.0, 0.0, -2.0], (len(painting.surface.vertices), 1))
+    found = cellcolor.cover(painting, spacing_m=0.1, tool_radius_m=0.1, normals=down)
+    assert len(found.paths.paths) == painting.segments
+    assert all((path.normals == [0, 0, -1]).all() for path in found.paths.paths)
+    assert "% covered" in str(found)
+
+
+def test_wrong_input_is_refused(
+    painted: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    surface, plan = painted
+    output = tmp_path / "paths.json"
+    other = tmp_path / "other.plan.json"
+    document = json.loads(plan.read_text())
+    document["vertex_colors"].pop()
+    other.write_text(json.dumps(document))
+    capsys.readouterr()
+    cases = [
+        ((surface, other, *LENGTHS, "-o", output), "other.plan.json: the plan is not valid"),
+        ((surface, surface, *LENGTHS, "-o", output), "p.surface.json: format"),
+        ((surface, plan, *LENGTHS, "-o", plan), "is an input"),
+        ((surface, plan, *LENGTHS, "-o", output, "--pattern", "zigzag"), "zigzag"),
+        ((surface, plan, "--spacing-m", 0, "--tool-radius-m", 1, "-o", output), "spacing-m"),
+        ((surface, plan, "--spacing-m", 1e-6, "--tool-radius-m", 1, "-o", output), "spacing_m"),
+        ((surface, plan, "--spacing-m", "inf", "--tool-radius-m", 1, "-o", output), "metres"),
+    ]
+    for arguments, complaint in cases:
+        assert run("cover", *arguments) == 2
+        assert complaint in capsys.readouterr().err
+    assert not output.exists()
+
+
+def test_out_of_time_nothing_is_written(
+    painted: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "paths.json"
+    capsys.readouterr()
+    assert run("cover", *painted, *LENGTHS, "-o", output, "--time-limit", 1e-6) == 3
+    assert "not covered" in capsys.readouterr().err
+    assert not output.exists()
+
+
+def test_python_refuses_what_does_not_fit() -> None:
+    painting = cellcolor.paint("ring.surface.json", cellcolor.solve("ring.surface.json"))
+    lengths = {"spacing_m": 0.1, "tool_radius_m": 0.1}
+    with pytest.raises(cellcolor.InputError, match="plan: is given already"):
+        cellcolor.cover(painting, painting.plan, **lengths)
+    with pytest.raises(cellcolor.InputError, match="plan: is missing"):
+        cellcolor.cover(painting.surface, **lengths)
+    with pytest.raises(cellcolor.InputError, match="normals: has 1 entries"):
+        cellcolor.cover(painting, normals=[[0, 0, 1]], **lengths)
+    with pytest.raises(cellcolor.InputError, match=r"normals\[0\]: has no direction"):
+        cellcolor.cover(painting, normals=0 * painting.surface.vertices, **lengths)
+    with pytest.raises(cellcolor.InputError, match="tool_radius_m: must be positive"):
+        cellcolor.cover(painting, spacing_m=0.1, tool_radius_m=-1.0)
+    with pytest.raises(cellcolor.InputError, match="there is no 'zigzag'; there are contour"):
+        cellcolor.cover(painting, pattern="zigzag", **lengths)

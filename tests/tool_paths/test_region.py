@@ -1,0 +1,118 @@
+"""The mesh of a segment: its area, its borders, and what it is cut along."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from flat import one_segment, slit, square, whole
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from painted_at_random import SHAPES, painted_at_random
+
+from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
+
+
+def euler(region: Region) -> int:
+    """Vertices minus edges plus triangles."""
+    mesh = region.mesh
+    return len(mesh.points) - len(mesh.edges) + len(mesh.corners)
+
+
+@pytest.mark.parametrize(("shape", "characteristic"), [("sphere", 2), ("torus", 0)])
+def test_a_closed_segment_has_no_border(shape: str, characteristic: int) -> None:
+    (region,) = regions_of(*whole(shape))
+    assert region.border_loops == () and euler(region) == characteristic
+
+
+def test_a_disc_and_an_annulus() -> None:
+    (disc,) = regions_of(*square(5))
+    assert len(disc.border_loops) == 1 and euler(disc) == 1
+    assert disc.mesh.areas.sum() == pytest.approx(1.0)
+    # Without the middle vertex an annulus, whose inner border runs around that vertex's part.
+    painting = square(5)
+    segment_of = painting.segment_of.copy()
+    segment_of[12] = -1
+    (annulus,) = regions_of(painting.surface, segment_of, [0], painting.normals)
+    assert len(annulus.border_loops) == 2 and euler(annulus) == 0
+
+
+def test_a_segment_of_one_vertex_is_its_fan() -> None:
+    painting = square(5)
+    segment_of = painting.segment_of.copy()
+    segment_of[12] = 1
+    regions = regions_of(painting.surface, segment_of, [0, 0], painting.normals)
+    own = regions[-1]
+    assert own.segment == 1 and euler(own) == 1 and len(own.mesh.corners) == 2 * 6
+    assert own.mesh.areas.sum() == pytest.approx(painting.surface.vertex_areas[12])
+
+
+def test_a_slit_is_a_border_that_parts_nothing() -> None:
+    # From row 2 to row 5 of 9: two ends inside, so it makes a hole without area.
+    painting = square(9, slit(9, 4, range(2, 6)))
+    (region,) = regions_of(*painting)
+    assert len(region.border_loops) == 2 and euler(region) == 0
+    assert region.mesh.areas.sum() == pytest.approx(1.0)
+    # Every point on it is there twice, but for the two ends.
+    inner = max(region.border_loops, key=lambda loop: -len(loop))
+    places = np.round(region.mesh.points[inner], 9)
+    assert len(np.unique(places, axis=0)) == len(inner) // 2 + 1
+
+
+def test_walls_part_a_segment_like_cracks_and_what_is_left_out_is_gone() -> None:
+    painting = square(5)
+    through = [*slit(5, 1, range(4)), (21, 22)]
+    parts = regions_of(*painting, walls=through)
+    assert len(parts) == 2
+    assert sum(part.mesh.areas.sum() for part in parts) == pytest.approx(1.0)
+    assert parts[0].mesh.areas.sum() > parts[1].mesh.areas.sum()
+    cracked = regions_of(*square(5, tuple(through)))
+    assert [part.small.tolist() for part in cracked] == [part.small.tolist() for part in parts]
+    left_out = parts[1].small
+    (rest,) = regions_of(*painting, left_out=left_out)
+    assert not set(rest.small.tolist()) & set(left_out.tolist())
+    assert rest.mesh.areas.sum() == pytest.approx(parts[0].mesh.areas.sum())
+
+
+def test_normals_lie_between_those_of_the_corners() -> None:
+    painting = one_segment(*[np.array(rows) for rows in (
+        [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0, 1, 2]],
+    )])  # fmt: skip
+    normals = np.array([[0.6, 0.0, 0.8], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]])
+    (region,) = regions_of(painting.surface, painting.segment_of, [0], normals)
+    at = int(np.argmin(np.linalg.norm(region.mesh.points - [0.5, 0.0, 0.0], axis=1)))
+    between = normals[0] + normals[1]
+    assert region.mesh.normals[at] == pytest.approx(between / np.linalg.norm(between))
+
+
+@given(st.integers(0, 10**6), st.sampled_from(SHAPES))
+@settings(max_examples=15, deadline=None)
+def test_parts_have_the_area_of_their_vertices(seed: int, shape: str) -> None:
+    painting = painted_at_random(seed, shape)
+    regions = regions_of(*painting)
+    for segment in range(len(painting.colors)):
+        own = [region for region in regions if region.segment == segment]
+        area = sum(region.mesh.areas.sum() for region in own)
+        mine = painting.surface.vertex_areas[painting.segment_of == segment].sum()
+        assert area == pytest.approx(mine)
+    areas = small_triangle_areas(painting.surface)
+    for region in regions:
+        assert region.mesh.areas == pytest.approx(areas[region.small])
+        assert (region.mesh.faces == region.small // 6).all()
+        # A border is left by the way it is entered: the mesh is a manifold.
+        border = np.concatenate([*region.border_loops, np.zeros(0, dtype=np.int64)])
+        assert len(border) == len(np.unique(border)) == region.mesh.border.sum()
+
+
+@given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.floats(0.02, 0.2))
+@settings(max_examples=15, deadline=None)
+def test_refining_keeps_area_shape_and_place(seed: int, shape: str, longest: float) -> None:
+    for region in regions_of(*painted_at_random(seed, shape))[:3]:
+        fine = region.mesh.refined(longest)
+        assert fine.lengths.max() <= longest
+        assert (fine.areas > 0).all()
+        for face in np.unique(region.mesh.faces)[:20]:
+            before = region.mesh.areas[region.mesh.faces == face].sum()
+            assert fine.areas[fine.faces == face].sum() == pytest.approx(before)
+        shape_of = Region(region.segment, region.color, fine, region.small)
+        assert euler(shape_of) == euler(region)
+        assert len(shape_of.border_loops) == len(region.border_loops)
