@@ -13,7 +13,7 @@ from library import PAPER
 import cellcolor
 
 RING = PAPER / "ring.surface.json"
-LENGTHS = ("--spacing-m", 0.05, "--tool-radius-m", 0.05)
+LENGTHS = ("--spacing-m", 0.5, "--tool-radius-m", 0.5)
 
 
 @pytest.fixture
@@ -36,10 +36,10 @@ def test_the_paths_are_written_and_read(
     surface = cellcolor.read(painted[0])
     assert paths.surface_sha256 == surface.sha256 and paths.pattern == "tree"
     # The same in Python, from files and from values.
-    again = cellcolor.cover(*painted, pattern="tree", spacing_m=0.05, tool_radius_m=0.05)
+    again = cellcolor.cover(*painted, pattern="tree", spacing_m=0.5, tool_radius_m=0.5)
     assert again.paths == paths
     values = cellcolor.cover(
-        surface, cellcolor.read(painted[1]), pattern="tree", spacing_m=0.05, tool_radius_m=0.05
+        surface, cellcolor.read(painted[1]), pattern="tree", spacing_m=0.5, tool_radius_m=0.5
     )
     assert values.paths == paths
 
@@ -47,7 +47,7 @@ def test_the_paths_are_written_and_read(
 def test_a_painting_is_covered_with_its_own_normals() -> None:
     painting = cellcolor.paint("ring.surface.json", cellcolor.solve("ring.surface.json"))
     down = np.tile([0.0, 0.0, -2.0], (len(painting.surface.vertices), 1))
-    found = cellcolor.cover(painting, spacing_m=0.1, tool_radius_m=0.1, normals=down)
+    found = cellcolor.cover(painting, spacing_m=0.5, tool_radius_m=0.5, normals=down)
     assert len(found.paths.paths) == painting.segments
     assert all((path.normals == [0, 0, -1]).all() for path in found.paths.paths)
     assert "% covered" in str(found)
@@ -90,7 +90,7 @@ def test_out_of_time_nothing_is_written(
 
 def test_python_refuses_what_does_not_fit() -> None:
     painting = cellcolor.paint("ring.surface.json", cellcolor.solve("ring.surface.json"))
-    lengths = {"spacing_m": 0.1, "tool_radius_m": 0.1}
+    lengths = {"spacing_m": 0.5, "tool_radius_m": 0.5}
     with pytest.raises(cellcolor.InputError, match="plan: is given already"):
         cellcolor.cover(painting, painting.plan, **lengths)
     with pytest.raises(cellcolor.InputError, match="plan: is missing"):
@@ -100,6 +100,6 @@ def test_python_refuses_what_does_not_fit() -> None:
     with pytest.raises(cellcolor.InputError, match=r"normals\[0\]: has no direction"):
         cellcolor.cover(painting, normals=0 * painting.surface.vertices, **lengths)
     with pytest.raises(cellcolor.InputError, match="tool_radius_m: must be positive"):
-        cellcolor.cover(painting, spacing_m=0.1, tool_radius_m=-1.0)
+        cellcolor.cover(painting, spacing_m=0.5, tool_radius_m=-1.0)
     with pytest.raises(cellcolor.InputError, match="there is no 'zigzag'; there are contour"):
         cellcolor.cover(painting, pattern="zigzag", **lengths)
