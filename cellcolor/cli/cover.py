@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.progress import build_progress_of
+from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain, say
 from cellcolor.data import tool_paths as tool_paths_file
 from cellcolor.data.plan import Plan
@@ -49,7 +49,7 @@ def cover_files(
     from cellcolor.door.covering import cover_by
 
     try:
-        with build_progress_of(source) as report:
+        with stages_of(source, "covering") as report:
             found = cover_by(
                 surface, colors, pattern, spacing_m, tool_radius_m, None, deadline, report
             )
