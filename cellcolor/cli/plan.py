@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -38,8 +39,10 @@ def plan_scene(
     try:
         with stages_of(scene, "planning") as report:
             planned = plan_by(scene, pattern, motion, deadline, report)
-            report("writing")
+            report("files and page")
+            begun = time.perf_counter()
             planned.save(folder)
+            stages = {**planned.seconds, "files and page": time.perf_counter() - begun}
     except OutOfTime:
         complain(f"{scene}: not planned: the time limit came first; nothing is written")
         return Exit.STOPPED
@@ -53,8 +56,8 @@ def plan_scene(
     verdict = planned.verdict
     for fault in verdict.faults[:_SHOWN]:
         say(f"  {fault}")
-    spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in planned.seconds.items())
-    say(f"seconds  {sum(planned.seconds.values()):.2f}: {spent}")
+    spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in stages.items())
+    say(f"seconds  {sum(stages.values()):.2f}: {spent}")
     say(f"wrote {count(len(KINDS), 'file')} to {folder}: look at {folder / 'report.html'}")
     if set(verdict.fault_counts) - {"unplanned"}:
         return Exit.INVALID

@@ -116,7 +116,7 @@ class Player {
       return row;
     };
     const classes = this.data.modes[number].classes.filter((own) => own.used);
-    this.find("legend").replaceChildren(...classes.map((own) => entry(own.rgb, own.name)));
+    this.find("legend").replaceChildren(...classes.map((own) => entry(own.rgb, own.name.replaceAll(" %", "\u00a0%"))));
   }
 
   play(on) {

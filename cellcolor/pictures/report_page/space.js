@@ -128,8 +128,10 @@ class Space {
     for (let k = 0; k < this.vertices.length; k += 3)
       points.push(Array.from(this.vertices.subarray(k, k + 3)));
     const joints = unpack(this.data.frames.joints), count = this.data.arm.axis.length;
+    const contact = unpack(this.data.frames.contact); // moves between swing far out of the picture
     const all = [...points];
-    for (let frame = 0; frame < joints.length / count; frame += 20)
+    for (let frame = 0; frame < contact.length; frame++) {
+      if (!contact[frame] || frame % 20) continue;
       for (const pose of armPoses(this.data.arm, joints.subarray(frame * count, frame * count + count)))
         for (const axis of [3, 7, 11])
           for (const thick of [-0.09, 0.09]) {
@@ -137,6 +139,7 @@ class Space {
             place[(axis - 3) / 4] += thick; // bodies are thicker than the frames' origins
             all.push(place);
           }
+    }
     this.sights = { part: points, whole: all };
     this.ballSize = 0.011 * this.camera.size(points);
   }
@@ -158,7 +161,7 @@ class Space {
       this.labels.push({ span, place, outward });
     };
     for (const { text, at, outward } of this.data.modes[number].texts) label("number", text, at, outward);
-    for (const { kind, text, place } of this.data.places) label(kind, text, place, null);
+    for (const { kind, text, place, outward } of this.data.places) label(kind, text, place, outward);
     this.dirty = true;
   }
 
@@ -201,7 +204,7 @@ class Space {
         const part = view.camera.slice(4 * row, 4 * row + 4);
         return part[0] * at[0] + part[1] * at[1] + part[2] * at[2] + part[3];
       });
-      span.hidden = outward !== null && dot(minus(view.eye, at), outward) <= 0;
+      span.hidden = dot(minus(view.eye, at), outward) <= 0;
       span.style.left = `${50 + (50 * seen[0]) / seen[2]}%`;
       span.style.top = `${50 - (50 * seen[1]) / seen[2]}%`;
     }

@@ -60,7 +60,7 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
         "frames": _frames(prepared, trajectory, frames),
         "limits": _limits(prepared),
         "joint_names": list(trajectory.joint_names),
-        "places": _places(trajectory),
+        "places": _places(trajectory, vertices, vertex_normals(vertices, faces)),
         "eye": _eye(vertices, faces).tolist(),
     }
 
@@ -179,8 +179,11 @@ def _limits(prepared: PreparedScene) -> dict[str, Any]:
     }
 
 
-def _places(trajectory: Trajectory) -> list[dict[str, Any]]:
-    """What is marked on the part: extra lift-offs and what is left out."""
+def _places(trajectory: Trajectory, vertices: Array, normals: Array) -> list[dict[str, Any]]:
+    """What is marked on the part: extra lift-offs and what is left out.
+
+    Marks that look away are hidden; a mark looks where the nearest vertex does.
+    """
     marks: list[dict[str, Any]] = [
         {
             "place": extra.place,
@@ -190,7 +193,11 @@ def _places(trajectory: Trajectory) -> list[dict[str, Any]]:
         for extra in trajectory.extra_lift_offs
     ]
     largest = sorted(trajectory.left_out, key=lambda part: -part.area_m2)[:_MOST_DOTS]
-    return marks + [{"place": part.place, "kind": "dot", "text": ""} for part in largest]
+    marks += [{"place": part.place, "kind": "dot", "text": ""} for part in largest]
+    for mark in marks:
+        nearest = np.argmin(np.linalg.norm(vertices - mark["place"], axis=1))
+        mark["outward"] = normals[nearest].tolist()
+    return marks
 
 
 def _edge(vertices: Array, faces: NDArray[np.int64]) -> float:
