@@ -26,8 +26,8 @@ SPACING, RADIUS = 0.010, 0.015  # m, as in the setup
 
 def main() -> None:
     """Print a row for each scene and pattern, and the worst segment of it."""
-    print("| scene | vertices | pattern | 1.5 s | 0.75 s | worst | visits | worst | most | density"
-          " | sharp | longest step | seconds |")  # fmt: skip
+    print("| scene | vertices | pattern | in 1.5 | in 0.75 | worst | visits | worst | most | length"
+          " | turns | step | s |")  # fmt: skip
     print("|---|--:|---|" + "--:|" * 10)
     for vertices in [int(text) for text in sys.argv[1:]] or [1000, 2000]:
         for file in sorted(SCENES.glob("*.toml")):
