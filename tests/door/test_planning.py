@@ -1,0 +1,50 @@
+"""``cellcolor.plan``, unmocked: a coarse part, from its scene to the folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("pinocchio")
+pytest.importorskip("ompl")
+pytest.importorskip("toppra")
+
+from shipped import shipped
+
+import cellcolor
+from cellcolor.door.plan_files import KINDS
+from cellcolor.errors import InputError
+
+
+def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
+    stages: list[str] = []
+    scene = shipped("square", 200)
+    planned = cellcolor.plan(scene, spacing_m=0.03, progress=stages.append)
+    assert planned.solution.segments == planned.painted.segments == 1
+    assert planned.trajectory.lift_offs == planned.solution.lift_offs == 0
+    assert planned.verdict.valid, planned.verdict.faults
+    assert planned.verdict.minimum_lift_offs == 0
+    assert planned.paths.spacing_m == planned.verdict.covered.spacing_m == 0.03
+    assert set(planned.seconds) <= set(stages)
+    said = str(planned)
+    assert "1 segment, 0 lift-offs, optimal" in said
+    assert "judge: square: valid" in said
+    # A judge that is asked anew, of the files alone, says the same.
+    planned.save(tmp_path / "folder")
+    assert {file.name for file in (tmp_path / "folder").iterdir()} == set(KINDS)
+    scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.03}))
+    again = cellcolor.check(scene, tmp_path / "folder" / "trajectory.json")
+    assert again.valid
+    assert again.covered == planned.verdict.covered
+
+
+def test_what_is_wrong_is_said_at_once() -> None:
+    with pytest.raises(InputError, match="is no scene"):
+        cellcolor.plan("wok.json")
+    with pytest.raises(InputError, match=r"motion\.wide"):
+        cellcolor.plan("wok", wide=0.1)
+    with pytest.raises(InputError, match="zigzag"):
+        cellcolor.plan("wok", pattern="zigzag")
+    with pytest.raises(InputError, match="time_limit"):
+        cellcolor.plan("wok", time_limit=-1)
