@@ -18,7 +18,9 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
+from cellcolor.motion.free_space import FreeSpace
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
@@ -116,6 +118,15 @@ def test_minima(name: str) -> None:
         assert solution.status == "optimal" and solution.proved_for_surface
         assert solution.segments == SEGMENTS[name]
     assert not covers(result.surface, SEGMENTS[name] - 1)
+
+
+@pytest.mark.parametrize("name", MESHES)
+def test_the_arm_is_free_at_home(name: str) -> None:
+    """A motion begins and ends there, as the setup has it."""
+    prepared = prepare(PARTS / f"{name}.toml")
+    motion = prepared.setup.motion
+    assert motion is not None and motion.home_rad is not None
+    assert FreeSpace(prepared, motion.clearance_m)(np.array([motion.home_rad])).all()
 
 
 def test_the_refused_torus() -> None:
