@@ -64,6 +64,24 @@ class LeftOut:
         settle(self)
 
 
+@dataclass(frozen=True, slots=True)
+class RepeatedStretch:
+    """Samples in contact that run along an earlier pass on purpose, and why.
+
+    Attributes:
+        sample: the first of them.
+        last_sample: the last of them.
+        reason: a short cause, such as ``narrow`` where there is no room for two passes.
+    """
+
+    sample: int
+    last_sample: int
+    reason: str
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
     """Joint angles over time.
@@ -84,6 +102,7 @@ class Trajectory:
             arm is not known to get there.
         extra_lift_offs: see :class:`ExtraLiftOff`.
         left_out: see :class:`LeftOut`.
+        repeated: see :class:`RepeatedStretch`.
         meta: free, JSON-able.
 
     Raises:
@@ -102,6 +121,7 @@ class Trajectory:
     unplanned: tuple[int, ...] = ()
     extra_lift_offs: tuple[ExtraLiftOff, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
+    repeated: tuple[RepeatedStretch, ...] = ()
     meta: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -182,9 +202,13 @@ class Trajectory:
             }
             for part in self.left_out
         ]
+        document["repeated"] = [
+            {"sample": part.sample, "last_sample": part.last_sample, "reason": part.reason}
+            for part in self.repeated
+        ]
         if self.meta:
             document["meta"] = self.meta
-        return dump_lines(document, frozenset({"extra_lift_offs", "left_out"}))
+        return dump_lines(document, frozenset({"extra_lift_offs", "left_out", "repeated"}))
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Trajectory:
@@ -223,6 +247,7 @@ class _TrajectoryFile:
     unplanned: tuple[int, ...] = ()
     extra_lift_offs: tuple[ExtraLiftOff, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
+    repeated: tuple[RepeatedStretch, ...] = ()
     meta: dict[str, Any] = field(default_factory=dict)
 
 

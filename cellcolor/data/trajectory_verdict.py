@@ -93,6 +93,7 @@ class CoveredArea:
         most_visits: of any place.
         visited_again_share: share of the area visited at all that is visited more than once.
         repeated_m: length of the passes that run along an earlier one.
+        stated_repeated_m: length of what of it the trajectory itself states.
         length_m: of all that is done in contact.
         length_times_spacing_per_area: 1 if passes lie side by side at just the spacing.
     """
@@ -107,6 +108,7 @@ class CoveredArea:
     most_visits: int
     visited_again_share: float
     repeated_m: float
+    stated_repeated_m: float
     length_m: float
     length_times_spacing_per_area: float
 
@@ -115,6 +117,7 @@ class CoveredArea:
 
     def __str__(self) -> str:
         again = f"{self.repeated_m:.3f} of {self.length_m:.2f} m along earlier passes"
+        again += f", {self.stated_repeated_m:.3f} m of it stated"
         return (
             f"covered {self.covered_share:.2%}, closely {self.closely_covered_share:.2%}, rightly "
             f"left out {self.left_out_share:.2%} of {self.reachable_m2:.4f} m²; visits "

@@ -13,9 +13,9 @@ from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.covered import excused, patches, reach, reachable_areas
 from cellcolor.trajectory_checker.dense import Dense
-from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
-from cellcolor.trajectory_checker.repeated import passes, repeated_stretches
+from cellcolor.trajectory_checker.repeated import Repeated, passes, repeated_stretches
 from cellcolor.trajectory_checker.tolerances import Limits
 
 __all__ = ["FAR", "NEAR", "judge_area", "thinned"]
@@ -70,6 +70,10 @@ def judge_area(
     visits = passes(dense, rows, located, fine, _VISIT * spacing)
     visited = (visits > 0) & (areas > 0)
     twice = repeated_stretches(dense, rows, located, _ALONG * spacing, _APART * spacing)
+    stated = np.zeros(len(rows), dtype=bool)
+    for stretch in trajectory.repeated:
+        sample = dense.sample[rows]
+        stated |= (sample >= stretch.sample) & (sample <= stretch.last_sample)
 
     def share(of: Mask) -> float:
         return float(areas[of].sum() / total) if total else 0.0
@@ -88,6 +92,7 @@ def judge_area(
         most_visits=int(visits[visited].max(initial=0)),
         visited_again_share=mean(visits > 1, visited),
         repeated_m=sum(stretch.length for stretch in twice),
+        stated_repeated_m=sum(_length(dense, rows[part]) for _, part in _parts(twice, stated)),
         length_m=length,
         length_times_spacing_per_area=length * spacing / total if total else 0.0,
     )
@@ -98,18 +103,7 @@ def judge_area(
             f"{limits.most_mean_visits:g}"
         )
         faults.add("repeated", text)
-    for stretch in twice:
-        if stretch.length <= limits.longest_repeated_spacings * spacing:
-            continue
-        first, last, begin, end = (
-            int(dense.sample[rows[row]])
-            for row in (stretch.first, stretch.last, stretch.earlier_first, stretch.earlier_last)
-        )
-        text = (
-            f"runs for {stretch.length:.4f} m along an earlier pass, samples {begin} to {end}, "
-            f"allowed are {limits.longest_repeated_spacings * spacing:.4f} m"
-        )
-        faults.add("repeated", text, first, last, place=dense.tips[rows[stretch.first]])
+    _note_repeated(dense, rows, twice, stated, limits.longest_repeated_spacings * spacing, faults)
     return covered
 
 
@@ -140,6 +134,34 @@ def _note_uncovered(
             )
             largest = patches(fine, areas, mask)[0]
             faults.add("uncovered", text, place=largest[1])
+
+
+def _note_repeated(
+    dense: Dense, rows: Index, twice: list[Repeated], stated: Mask, most: float, faults: FaultList
+) -> None:
+    """Note stretches along an earlier pass, without what the trajectory states of them."""
+    for stretch, part in _parts(twice, ~stated):
+        length = _length(dense, rows[part])
+        if length <= most:
+            continue
+        first, last, begin, end = (
+            int(dense.sample[rows[row]])
+            for row in (part[0], part[-1], stretch.earlier_first, stretch.earlier_last)
+        )
+        text = (
+            f"runs for {length:.4f} m along an earlier pass, samples {begin} to {end}, allowed are "
+            f"{most:.4f} m unless they are stated"
+        )
+        faults.add("repeated", text, first, last, place=dense.tips[rows[part[0]]])
+
+
+def _parts(twice: list[Repeated], of: Mask) -> list[tuple[Repeated, Index]]:
+    """The rows of each part of a repeated stretch in which something holds all along."""
+    return [
+        (stretch, np.arange(stretch.first + begin, stretch.first + after))
+        for stretch in twice
+        for begin, after in stretches(of[stretch.first : stretch.last + 1])
+    ]
 
 
 def _length(dense: Dense, rows: Index) -> float:

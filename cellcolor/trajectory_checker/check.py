@@ -127,7 +127,7 @@ def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:
     if trajectory.joint_names != names:
         message = f"must be {', '.join(names)}, are {', '.join(trajectory.joint_names)}"
         raise InputError(None, "joint_names", message)
-    for member in ("unplanned", "extra_lift_offs"):
+    for member in ("unplanned", "extra_lift_offs", "repeated"):
         for number, entry in enumerate(getattr(trajectory, member)):
             sample = entry if isinstance(entry, int) else entry.sample
             if not 0 <= sample < len(trajectory.times):

@@ -70,7 +70,7 @@ def _through_object(prepared: PreparedScene, tips: Array, axes: Array) -> NDArra
 
     The first millimeter from the tip is left out: the tip may lie on the object.
     """
-    length = prepared.workplace.tip.length
+    length = prepared.workplace.tip.body.length
     if length <= OFF_SURFACE:
         return np.zeros(len(tips), dtype=bool)
     body = Body("tool tip", 0, np.zeros(3), np.array([0, 0, length - OFF_SURFACE]), _THIN, False)

@@ -98,6 +98,7 @@ TRAJECTORY: Document = {
     "left_out": [
         {"segment": 0, "area_m2": 0.5, "reason": "torque", "place": [0.5, 0.0, 1.0]},
     ],
+    "repeated": [{"sample": 2, "last_sample": 2, "reason": "narrow"}],
     "meta": {"made": "by hand"},
 }
 
@@ -139,6 +140,7 @@ VERDICT: Document = {
         "most_visits": 2,
         "visited_again_share": 0.25,
         "repeated_m": 0.25,
+        "stated_repeated_m": 0.125,
         "length_m": 4.0,
         "length_times_spacing_per_area": 0.5,
     },

@@ -10,12 +10,14 @@ import numpy as np
 import pytest
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+pytest.importorskip("coal")
 
 import rasters
+from planted_faults import twice
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import Crack
-from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
+from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
 from cellcolor.trajectory_checker.check import check_trajectory
@@ -295,6 +297,25 @@ def test_what_is_rightly_left_out_is_not_uncovered() -> None:
     assert not verdict.of_kind("uncovered")
     unstated = check_trajectory(weak, built, replace(missing, left_out=()))
     assert unstated.of_kind("uncovered")
+
+
+def test_a_repeated_stretch_may_be_stated() -> None:
+    """All of it, or it is a fault as far as it is not stated."""
+    loose = Limits(most_mean_visits=2.0)
+    prepared, _, trajectory = rasters.cap()
+    planted = twice(prepared, trajectory, np.random.default_rng(5)).trajectory
+    (fault,) = judged(planted, limits=loose).of_kind("repeated")
+    assert fault.sample is not None
+    assert fault.last_sample is not None
+    whole = RepeatedStretch(fault.sample, fault.last_sample, "narrow")
+    verdict = judged(replace(planted, repeated=(whole,)), limits=loose)
+    assert verdict.valid
+    assert verdict.covered is not None
+    assert verdict.covered.stated_repeated_m == pytest.approx(verdict.covered.repeated_m, rel=0.01)
+    part = RepeatedStretch(fault.sample, fault.sample + 60, "narrow")
+    (rest,) = judged(replace(planted, repeated=(part,)), limits=loose).of_kind("repeated")
+    assert rest.sample == pytest.approx(fault.sample + 61, abs=2)
+    assert rest.last_sample == fault.last_sample
 
 
 def test_the_area_of_a_flat_raster() -> None:

@@ -40,11 +40,6 @@ class Tip:
         self.body = Body("tool tip", robot.joints, point, point - length * axis, radius, flat=False)
         self._obstacles, self._ground = obstacles, ground
 
-    @property
-    def length(self) -> float:
-        """From the tip back to where the tool's body begins, m."""
-        return self.body.length
-
     def blocked(self, points: Array, directions: Array) -> Mask:
         """Whether something is in the way, (k,).
 
