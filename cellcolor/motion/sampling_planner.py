@@ -15,7 +15,6 @@ from cellcolor.deadline import Deadline
 
 __all__ = ["sampled_way"]
 
-_LONGEST = 0.04  # rad, between two tested configurations; who asks tests the way found more finely
 _BRANCH = 1.0  # rad, the longest new branch of a tree
 _ATTEMPTS = 2_000  # rounds of the planner; a number, so that the time it takes decides nothing
 
@@ -26,6 +25,7 @@ def sampled_way(
     lower: Array,
     upper: Array,
     free: Callable[[Array], Mask],
+    step: float,
     seed: int,
     deadline: Deadline,
 ) -> Array | None:
@@ -35,6 +35,7 @@ def sampled_way(
         start, end: (joints,) rad, both free.
         lower, upper: (joints,) limits, rad.
         free: which of configurations (k, joints) are free, (k,).
+        step: between two tested configurations of a way a joint moves at most so far, rad.
         seed: the same way for the same seed.
         deadline: when to give up.
     """
@@ -52,7 +53,7 @@ def sampled_way(
 
         def checkMotion(self, first: Any, second: Any, *_: Any) -> bool:
             one, other = array(first), array(second)
-            count = max(1, int(np.ceil(np.abs(other - one).max() / _LONGEST)))
+            count = max(1, int(np.ceil(np.abs(other - one).max() / step)))
             way = one + np.linspace(0.0, 1.0, count + 1)[1:, None] * (other - one)
             return bool(free(way).all())
 

@@ -24,6 +24,7 @@ __all__ = ["Transfer", "Transfers"]
 
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
 _COARSE = 0.05  # rad, between samples of a straight move that is only tried
+_STEPS = (0.04, 0.01)  # rad; what a sampled way is tested at, more finely if that let a hit through
 _ROOM = 0.999  # of the largest steps, for rounding
 
 
@@ -159,11 +160,13 @@ class Transfers:
         if self._clear(straight).all():
             return Transfer(straight, None)
         if self._clear(np.array([start, end])).all():
-            corners = sampled_way(
-                start, end, *self._clear.limits, self._clear, self._seed, self._deadline
-            )
-            self._deadline.check()
-            if corners is not None:
+            for step in _STEPS:
+                corners = sampled_way(
+                    start, end, *self._clear.limits, self._clear, step, self._seed, self._deadline
+                )
+                self._deadline.check()
+                if corners is None:
+                    break
                 way = self._dense(corners)
                 if self._clear(way).all():
                     return Transfer(way, None)

@@ -1,0 +1,203 @@
+"""The steps of planning a motion, each by itself."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from cellcolor.data.tool_paths import ToolPath
+from cellcolor.deadline import NEVER
+from cellcolor.motion.following import Followed, whole_turns
+from cellcolor.motion.order import ordered
+from cellcolor.motion.samples import Samples, sampled
+from cellcolor.motion.sampling_planner import sampled_way
+from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
+from cellcolor.motion.timing import Speeds, timed
+from cellcolor.motion.turns import Visit, chosen_turns
+
+ANGLES = st.floats(-3.0, 3.0)
+UP = np.array([0.0, 0.0, 1.0])
+
+
+def stroke(joints: np.ndarray, segment: int = 0) -> Stroke:
+    """Samples on a line along x, with these joints."""
+    points = np.column_stack([np.arange(len(joints)) * 1e-3, np.zeros((len(joints), 2))])
+    return Stroke(segment, 0, points, np.tile(UP, (len(joints), 1)), joints)
+
+
+@given(st.lists(st.tuples(ANGLES, ANGLES), min_size=2, max_size=12, unique=True))
+def test_samples_lie_on_the_path_and_are_near_each_other(
+    corners: list[tuple[float, float]],
+) -> None:
+    points = np.array([[x * 0.01, y * 0.01, 0.0] for x, y in corners])
+    tilt = np.array([[0.3 * x, 0.3 * y, 1.0] for x, y in corners])
+    normals = tilt / np.linalg.norm(tilt, axis=1, keepdims=True)
+    path = ToolPath(0, 0, points, normals, np.zeros(len(points) - 1, dtype=np.int64))
+    samples = sampled(path)
+    assert np.abs(samples.points[[0, -1]] - points[[0, -1]]).max() < 1e-12
+    assert np.linalg.norm(np.diff(samples.points, axis=0), axis=1).max() <= 1e-3
+    dots = (samples.normals[1:] * samples.normals[:-1]).sum(axis=1)
+    assert np.rad2deg(np.arccos(np.clip(dots, -1, 1))).max() <= 1.0 + 1e-6
+    for point in samples.points:  # the distance from the nearest of the path's straight pieces
+        start, along = points[:-1], np.diff(points, axis=0)
+        squares = np.maximum((along**2).sum(axis=1), 1e-18)
+        part = np.clip(((point - start) * along).sum(axis=1) / squares, 0, 1)
+        off = np.linalg.norm(start + part[:, None] * along - point, axis=1)
+        assert off.min() < 1e-9
+
+
+@given(
+    st.lists(st.floats(-9.0, 9.0), min_size=1, max_size=5),
+    st.floats(-7.0, 0.0),
+    st.floats(0.0, 7.0),
+)
+def test_whole_turns_are_all_that_fit(angles: list[float], lower: float, upper: float) -> None:
+    joints = np.array(angles)[:, None]
+    found = whole_turns(joints, np.array([lower]), np.array([upper]))
+    fitting = [
+        turn
+        for turn in range(-10, 11)
+        if all(lower - 1e-9 <= angle + 2 * np.pi * turn <= upper + 1e-9 for angle in angles)
+    ]
+    assert (found is None and not fitting) or (found is not None and list(found[0]) == fitting)
+
+
+def test_a_bad_sample_and_a_jump_cut_a_path_and_are_named() -> None:
+    joints = np.zeros((30, 2))
+    joints[20:] += 2.0
+    reasons = np.zeros(30, dtype=np.uint8)
+    reasons[10] = 2
+    torn = np.zeros(29, dtype=bool)
+    torn[19] = True
+    points = np.column_stack([np.arange(30) * 1e-3, np.zeros((30, 2))])
+    samples = Samples(points, np.tile(UP, (30, 1)), np.zeros(30, dtype=np.int64))
+    names = ("valid", "no solution", "joint limits")
+    parts = trimmed(4, 0, samples, Followed(joints, reasons, torn), 0.0, names)
+    ends = [(round(part.points[0, 0] * 1e3), round(part.points[-1, 0] * 1e3)) for part in parts]
+    assert ends == [(0, 9), (11, 19), (20, 29)]
+    texts = [part.parting.text if part.parting else None for part in parts]
+    assert texts == [
+        None,
+        "the path was cut where samples fail: joint limits",
+        "the path was cut where the branch jumps",
+    ]
+    assert {part.parting.reason for part in parts if part.parting} == {"trimmed"}
+
+
+@settings(deadline=None)
+@given(st.floats(0.5, 30.0), st.floats(1.0, 6.0))
+def test_a_stroke_that_winds_is_cut_as_seldom_as_can_be(turned: float, room: float) -> None:
+    joints = np.linspace(0.3, 0.3 + turned, 400)[:, None]
+    # The range of the limits is a full circle and more, so that any angle is inside somehow.
+    lower, upper = np.array([-np.pi]), np.array([np.pi + room])
+    parts = cut_where_full(stroke(joints), lower, upper, ("pan",))
+    assert all(whole_turns(part.joints, lower, upper) is not None for part in parts)
+    assert np.array_equal(parts[0].joints[0], joints[0])
+    for before, after in pairwise(parts):
+        assert np.array_equal(before.joints[-1], after.joints[0])
+        assert after.parting is not None
+        assert after.parting.reason == "winding"
+        assert "pan" in after.parting.text
+        # With the next sample it would not have fitted any more.
+        longer = np.concatenate([before.joints, after.joints[1:2]])
+        assert whole_turns(longer, lower, upper) is None
+    assert parts[-1].joints[-1] == joints[-1]
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6), st.integers(2, 60))
+def test_times_keep_velocities_and_accelerations(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform(-0.3, 0.3, size=(4, 3))
+    at = np.linspace(0, 3, count)
+    joints = np.column_stack([np.interp(at, np.arange(4), corners[:, j]) for j in range(3)])
+    points = 0.4 * joints
+    speeds = Speeds(np.array([1.0, 0.5, 2.0]), np.array([8.0, 3.0, 5.0]))
+    times = timed(joints, speeds, points, 0.05)
+    steps = np.diff(times)
+    assert times[0] == 0
+    assert steps.min() > 0
+    velocity = np.diff(joints, axis=0) / steps[:, None]
+    assert (np.abs(velocity) <= speeds.velocities * (1 + 1e-9)).all()
+    assert (np.linalg.norm(np.diff(points, axis=0), axis=1) <= 0.05 * steps * (1 + 1e-9)).all()
+    # From rest to rest: before the first step and after the last one nothing moves.
+    whole = np.concatenate([np.zeros((1, 3)), velocity, np.zeros((1, 3))])
+    between = (np.append(steps, 0.0) + np.insert(steps, 0, 0.0)) / 2
+    change = np.diff(whole, axis=0) / between[:, None]
+    assert (np.abs(change) <= speeds.accelerations * (1 + 1e-9)).all()
+
+
+def test_a_straight_way_is_passed_at_the_speed_that_was_asked_for() -> None:
+    joints = np.linspace(0.0, 1.0, 1001)[:, None]
+    points = np.column_stack([joints[:, 0], np.zeros((1001, 2))])
+    times = timed(joints, Speeds(np.array([3.0]), np.array([8.0])), points, 0.05)
+    # 20 s, and 0.05 / 8 s more for speeding up and for slowing down, half of each lost.
+    assert times[-1] == pytest.approx(20 + 0.05 / 8, rel=2e-3)
+
+
+def wall(configurations: np.ndarray) -> np.ndarray:
+    """Free unless the first joint is near 1 and the second below 1."""
+    blocked = (np.abs(configurations[:, 0] - 1) < 0.2) & (configurations[:, 1] < 1)
+    return np.asarray(~blocked)
+
+
+def test_the_sampling_planner_finds_a_way_round_and_the_same_for_a_seed() -> None:
+    ends = np.array([0.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0])
+    limits = np.full(3, -3.0), np.full(3, 3.0)
+    ways = [sampled_way(*ends, *limits, wall, 0.01, seed, NEVER) for seed in (5, 5, 6)]
+    first, again, other = ways
+    assert first is not None
+    assert again is not None
+    assert other is not None
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, other)
+    assert np.array_equal(first[[0, -1]], np.array(ends))
+    for start, end in pairwise(first):
+        # What is not free lies between two tested configurations, 0.01 rad apart.
+        way = start + np.linspace(0, 1, 1000)[:, None] * (end - start)
+        assert (~wall(way)).mean() * np.abs(end - start).max() < 0.011
+
+
+def test_the_sampling_planner_says_if_it_finds_none() -> None:
+    def shut(configurations: np.ndarray) -> np.ndarray:
+        return np.asarray(np.abs(configurations[:, 0] - 1) > 0.2)
+
+    start, end = np.array([0.0, 0.0]), np.array([2.0, 0.0])
+    assert sampled_way(start, end, np.full(2, -3.0), np.full(2, 3.0), shut, 0.04, 0, NEVER) is None
+
+
+def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:
+    """A folded elbow: a joint that cannot pass pi has to come back through zero."""
+    visits = []
+    for angle in (2.5, 4.66):
+        at = np.array([angle])
+        visits.append(Visit(at, at, np.array([[angle], [angle + 1e-3]])))
+
+    def blocked(start: np.ndarray, end: np.ndarray) -> float:
+        way = np.linspace(start[0], end[0], 200)
+        return float((np.abs(np.abs(way) - np.pi) < 0.1).mean())
+
+    limits = np.array([-2 * np.pi]), np.array([2 * np.pi])
+    free = chosen_turns(visits, np.array([1.5]), limits, np.array([3.0]), blocked)
+    assert [int(own[0]) for own in free] == [0, -1]
+    near = chosen_turns(visits, None, limits, np.array([3.0]), lambda *_: 0.0)
+    assert int(near[0][0]) == int(near[1][0])
+
+
+def test_strokes_are_ordered_and_turned_round_so_that_transfers_are_short() -> None:
+    """Three strokes in a row on a line of angles, handed over out of order and reversed."""
+    spans = [(2.0, 2.9), (0.9, 0.1), (1.9, 1.0)]
+    strokes = [
+        stroke(np.linspace(a, b, 5)[:, None], segment) for segment, (a, b) in enumerate(spans)
+    ]
+    limits = np.array([-2 * np.pi]), np.array([2 * np.pi])
+    found = ordered(strokes, limits, np.array([1.0]), np.array([0.0]), NEVER)
+    # Home is at 0, and the way back from wherever the last one ends counts as well: the strokes
+    # are passed upwards, or all of them downwards.
+    way = [0.0, *(one.joints[at, 0] for one in found for at in (0, -1)), 0.0]
+    between = sum(abs(b - a) for a, b in zip(way[::2], way[1::2], strict=True))
+    assert between == pytest.approx(0.1 + 0.1 + 0.1 + 2.9)
