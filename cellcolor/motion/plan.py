@@ -112,7 +112,7 @@ def plan_motion(
         strokes = ordered(strokes, limits, speeds.velocities, home, deadline)
     with clock.timed("transfers"):
         planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
-        strokes, transfers = planner.between_strokes(strokes, home)
+        strokes, transfers = planner.between_strokes(strokes)
     with clock.timed("times"):
         trajectory = assembled(
             surface.name,

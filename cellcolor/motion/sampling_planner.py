@@ -16,7 +16,7 @@ from cellcolor.deadline import Deadline
 __all__ = ["sampled_way"]
 
 _BRANCH = 1.0  # rad, the longest new branch of a tree
-_ATTEMPTS = 2_000  # rounds of the planner; a number, so that the time it takes decides nothing
+_ATTEMPTS = 600  # rounds of the planner; a number, so that the time it takes decides nothing
 
 
 def sampled_way(

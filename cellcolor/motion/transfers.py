@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.following import CIRCLE, whole_turns
 from cellcolor.motion.free_space import FreeSpace
+from cellcolor.motion.limits import home_of
 from cellcolor.motion.samples import DISTANCE, TURN, angles_between
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke
@@ -23,8 +24,12 @@ from cellcolor.motion.turns import Visit, chosen_turns
 __all__ = ["Transfer", "Transfers"]
 
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
-_COARSE = 0.05  # rad, between samples of a straight move that is only tried
-_STEPS = (0.04, 0.01)  # rad; what a sampled way is tested at, more finely if that let a hit through
+_COARSE = 0.04  # rad, between samples of a move that is only tried
+_FINE = 0.01  # rad, the same where that let a hit through
+_SPARE = 0.005  # m, more than the clearance that is kept while a way is looked for
+_NEAR = 0.3  # rad; so near its ends it keeps no more than the clearance
+_BLOCKED = 10.0  # s; by so much longer a move counts that no simple way is known for
+_DEEP = 60.0  # s; and by so much, times the share of it that is not free
 _ROOM = 0.999  # of the largest steps, for rounding
 
 
@@ -57,10 +62,11 @@ class Transfers:
         self._height, self._velocities = motion.retract_m, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
         self._clear = FreeSpace(prepared, motion.clearance_m)
+        self._wide = FreeSpace(prepared, motion.clearance_m + _SPARE)
+        self._home = home_of(motion)
+        self._shares: dict[bytes, float] = {}
 
-    def between_strokes(
-        self, strokes: Sequence[Stroke], home: Array | None
-    ) -> tuple[list[Stroke], list[Transfer]]:
+    def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
         """The strokes with their joints turned for good, and all motions without contact.
 
         These are the way to the first stroke, those between strokes, and the way from the last
@@ -69,7 +75,6 @@ class Transfers:
 
         Args:
             strokes: in their order.
-            home: (joints,) rad, or None.
 
         Raises:
             OutOfTime: the deadline came first.
@@ -78,14 +83,14 @@ class Transfers:
             [self._retreat(one.joints[at], one.normals[at], one.branch) for one in strokes]
             for at in (0, -1)
         )
-        limits = self._clear.limits
+        limits, home = self._clear.limits, self._home
         visits = []
         for way_on, stroke, way_off in zip(onto, strokes, off, strict=True):
             span = np.concatenate([way_on, stroke.joints, way_off])
             if whole_turns(span, *limits) is None:
                 span = stroke.joints
             visits.append(Visit(way_on[-1], way_off[-1], span))
-        circles = chosen_turns(visits, home, limits, self._velocities, self._blocked)
+        circles = chosen_turns(visits, home, limits, self._velocities, self._detour)
         turned = [stroke.turned(own) for stroke, own in zip(strokes, circles, strict=True)]
         onto, off = (
             [self._high(way + CIRCLE * own) for way, own in zip(ways, circles, strict=True)]
@@ -148,29 +153,70 @@ class Transfers:
 
     def _blocked(self, start: Array, end: Array) -> float:
         """What share of the samples of a straight move is not free."""
-        self._deadline.check()
+        key = start.tobytes() + end.tobytes()
+        if key not in self._shares:
+            self._deadline.check()
+            self._shares[key] = self._share(start, end)
+        return self._shares[key]
+
+    def _detour(self, start: Array, end: Array) -> float:
+        """How much longer than a straight move the way will probably be, s; 0 if that is free."""
+        share = self._blocked(start, end)
+        if share == 0.0:
+            return 0.0
+        if self._home is not None:
+            legs = (start, self._home), (self._home, end)
+            if all(self._blocked(*leg) == 0.0 for leg in legs):
+                return sum(self._seconds(*leg) for leg in legs) - self._seconds(start, end)
+        return _BLOCKED + _DEEP * share
+
+    def _seconds(self, start: Array, end: Array) -> float:
+        return float((np.abs(end - start) / self._velocities).max())
+
+    def _share(self, start: Array, end: Array) -> float:
         count = max(1, int(np.ceil(np.abs(end - start).max() / _COARSE)))
         share = np.linspace(0.0, 1.0, count + 1)[:, None]
         return float(1.0 - self._clear(start + share * (end - start)).mean())
 
     def _between(self, start: Array, end: Array) -> Transfer:
-        """Through free space: straight for the joints, or by a sampling planner, or not at all."""
-        self._deadline.check()
-        straight = self._dense(np.array([start, end]))
-        if self._clear(straight).all():
-            return Transfer(straight, None)
+        """Straight for the joints, or over the home position, or as sampled, or not at all."""
+        tried = [np.array([start, end])]
+        if self._home is not None:
+            tried.append(np.array([start, self._home, end]))
+        for corners in tried:
+            self._deadline.check()
+            way = self._dense(corners)
+            if self._clear(way).all():
+                return Transfer(way, None)
         if self._clear(np.array([start, end])).all():
-            for step in _STEPS:
-                corners = sampled_way(
-                    start, end, *self._clear.limits, self._clear, step, self._seed, self._deadline
+            for free, step in ((self._roomy(start, end), _COARSE), (self._clear, _FINE)):
+                found = sampled_way(
+                    start, end, *self._clear.limits, free, step, self._seed, self._deadline
                 )
                 self._deadline.check()
-                if corners is None:
-                    break
-                way = self._dense(corners)
+                if found is None:
+                    continue
+                way = self._dense(found)
                 if self._clear(way).all():
                     return Transfer(way, None)
         return Transfer(np.array([start, end]), 0)
+
+    def _roomy(self, start: Array, end: Array) -> Callable[[Array], Mask]:
+        """Free with more room than needed, but near the ends, which need not have it.
+
+        With that a way that was tested at few configurations is free between them as well.
+        """
+
+        def free(configurations: Array) -> Mask:
+            found = self._wide(configurations)
+            off = np.minimum(
+                np.abs(configurations - start).max(axis=1), np.abs(configurations - end).max(axis=1)
+            )
+            doubtful = np.flatnonzero(~found & (off < _NEAR))
+            found[doubtful] = self._clear(configurations[doubtful])
+            return found
+
+        return free
 
     def _dense(self, corners: Array) -> Array:
         """Samples (k, joints) of straight ways for the joints through corners (c, joints).

@@ -15,9 +15,8 @@ __all__ = ["Visit", "chosen_turns"]
 
 _PER_JOINT = 3  # turns of one joint that are tried, those next to the middle of its limits
 _ASIDE = 0.01  # s per rad; of two ways as quick as each other that nearer to the middle is taken
-_BLOCKED = 5.0  # s; by so much longer a straight move counts that is blocked somewhere
-_DEEP = 30.0  # s; and by so much, times the share of it that is
-_CHECKS = 200  # straight moves that are tested at most
+_UNKNOWN = 1000.0  # s; by so much longer a move counts that there was no time to ask about
+_CHECKS = 400  # moves that are asked about at most
 
 
 @dataclass(frozen=True)
@@ -39,20 +38,20 @@ def chosen_turns(
     home: Array | None,
     limits: tuple[Array, Array],
     velocities: Array,
-    blocked: Callable[[Array, Array], float],
+    detour: Callable[[Array, Array], float],
 ) -> list[Index]:
     """For each visit the full circles (joints,) by which its joints are turned.
 
-    The moves between the visits are to be quick, and free if they are straight. Whether one is
-    free is only asked of those on the best way, and then that is looked for again.
+    The moves between the visits are to be quick. Whether a straight one is free is only asked of
+    those on the best way, and then that is looked for again.
 
     Args:
         visits: in their order; each fits into the limits.
         home: (joints,) where the arm begins and ends, rad; None if that does not matter.
         limits: lower and upper (joints,), rad.
         velocities: (joints,) the greatest, rad/s.
-        blocked: what share of the straight move from one configuration (joints,) to another is
-            not free.
+        detour: by how much longer than a straight move from one configuration (joints,) to
+            another the arm takes, s; 0 where that is free.
     """
     middle = np.where(np.isfinite(limits[0] + limits[1]), (limits[0] + limits[1]) / 2, 0.0)
     circles, starts, ends, aside = [], [], [], []
@@ -85,10 +84,17 @@ def chosen_turns(
             break
         known.add(asked)
         layer, one, other = asked
-        share = blocked(ends[layer][one], starts[layer + 1][other])
-        if share > 0:
-            moves[layer][one, other] += _BLOCKED + _DEEP * share
+        longer = detour(ends[layer][one], starts[layer + 1][other])
+        if longer > 0:
+            moves[layer][one, other] += longer
             best = _quickest(moves, aside)
+    else:  # what was not asked about is not to look better than what was
+        for layer, move in enumerate(moves):
+            unknown = np.ones(move.shape, dtype=bool)
+            asked_of = [(one, other) for at, one, other in known if at == layer]
+            unknown[tuple(np.array(asked_of, dtype=np.int64).reshape(-1, 2).T)] = False
+            move[unknown] += _UNKNOWN
+        best = _quickest(moves, aside)
     of_visits = best if home is None else best[1:-1]
     return [own[at] for own, at in zip(circles, of_visits, strict=True)]
 
