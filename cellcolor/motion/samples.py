@@ -50,7 +50,7 @@ def sampled(path: ToolPath) -> Samples:
     lengths = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
     turns = angles_between(path.normals[:-1], path.normals[1:])
     # A chord between unit normals is passed fastest, as an angle, in its middle.
-    fastest = 2 * np.tan(np.minimum(turns, np.pi / 2) / 2)
+    fastest = 2 * np.tan(np.minimum(turns, 0.99 * np.pi) / 2)
     share = np.maximum(lengths / DISTANCE, fastest / TURN) / _ROOM
     total = np.concatenate([[0.0], np.cumsum(share)])
     count = max(int(np.ceil(total[-1])), 1)

@@ -177,12 +177,12 @@ def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:
         at = np.array([angle])
         visits.append(Visit(at, at, np.array([[angle], [angle + 1e-3]])))
 
-    def blocked(start: np.ndarray, end: np.ndarray) -> float:
+    def detour(start: np.ndarray, end: np.ndarray) -> float:
         way = np.linspace(start[0], end[0], 200)
-        return float((np.abs(np.abs(way) - np.pi) < 0.1).mean())
+        return 100.0 if (np.abs(np.abs(way) - np.pi) < 0.1).any() else 0.0
 
     limits = np.array([-2 * np.pi]), np.array([2 * np.pi])
-    free = chosen_turns(visits, np.array([1.5]), limits, np.array([3.0]), blocked)
+    free = chosen_turns(visits, np.array([1.5]), limits, np.array([3.0]), detour)
     assert [int(own[0]) for own in free] == [0, -1]
     near = chosen_turns(visits, None, limits, np.array([3.0]), lambda *_: 0.0)
     assert int(near[0][0]) == int(near[1][0])
