@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,12 +17,9 @@ from cellcolor.motion.samples import Samples, sampled
 from cellcolor.motion.small_triangles import JUMP, small_triangle_at
 from cellcolor.tool_paths.cover import Covered
 
-__all__ = ["Course", "Courses", "Lay", "courses_of"]
+__all__ = ["Course", "Courses", "laid_out"]
 
 _ROUNDS = 3  # of paths laid out; what still fails on the last ones is cut out of them
-
-Lay = Callable[[Collection[tuple[int, int]], Index], Covered]
-"""Tool paths, given walls and small triangles to leave out: ``cellcolor.tool_paths.cover``."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +33,7 @@ class Course:
 
 @dataclass(frozen=True)
 class Courses:
-    """The tool paths of all segments, and the arm on them.
+    """The tool paths of one segment, and the arm on them.
 
     Attributes:
         covered: what was laid out.
@@ -49,58 +46,43 @@ class Courses:
     reasons: dict[int, str]
 
 
-def courses_of(
+def laid_out(
     prepared: PreparedScene,
     surface: LabelledSurface,
-    branch_of: Sequence[int],
-    lay: Lay,
-    walls: Collection[tuple[int, int]],
+    branch: int,
+    lay: Callable[[Index], Covered],
     reasons: dict[int, str],
 ) -> Courses:
-    """Lay out paths, and lay them out again without the places where a sample fails.
+    """Lay out the paths of a segment, and again without the places where a sample fails.
 
     Args:
         prepared: the scene.
         surface: the painted one.
-        branch_of: the branch of each color.
-        lay: makes tool paths.
-        walls: mesh edges that paths do not cross.
-        reasons: of each small triangle that is known to be bad, the test that fails there.
+        branch: of the segment's color.
+        lay: makes the segment's paths, given the numbers of small triangles to leave out.
+        reasons: of each of its small triangles that is known to be bad, the test that fails there.
 
     Returns:
         Paths on whose samples hardly anything fails; what still does has to be cut out of them.
 
     Raises:
-        OutOfTime: the deadline of the scene came first.
+        OutOfTime: the deadline came first.
     """
     reasons = dict(reasons)
-    before: dict[tuple[int, bytes], Course] = {}
     for _ in range(_ROUNDS):
-        prepared.deadline.check()
-        covered = lay(walls, np.array(sorted(reasons), dtype=np.int64))
-        courses = []
+        covered = lay(np.array(sorted(reasons), dtype=np.int64))
+        courses, failing = [], {}
         for path in covered.paths.paths:
-            course = before.get(_key(path))
-            if course is None:
-                samples = sampled(path)
-                course = Course(path, samples, follow(prepared, samples, branch_of[path.color]))
+            samples = sampled(path)
+            course = Course(path, samples, follow(prepared, samples, branch))
             courses.append(course)
-        before = {_key(course.path): course for course in courses}
-        failing = {
-            small_triangle_at(
-                surface, int(course.samples.faces[at]), course.samples.points[at]
-            ): why
-            for course in courses
-            for at, why in _failures(course.followed, prepared.judge.reason_names)
-        }
+            for at, why in _failures(course.followed, prepared.judge.reason_names):
+                face, point = int(samples.faces[at]), samples.points[at]
+                failing[small_triangle_at(surface, face, point)] = why
         if failing.keys() <= reasons.keys():
             break
         reasons = failing | reasons
     return Courses(covered, tuple(courses), reasons)
-
-
-def _key(path: ToolPath) -> tuple[int, bytes]:
-    return path.color, path.points.tobytes()
 
 
 def _failures(followed: Followed, names: tuple[str, ...]) -> Iterator[tuple[int, str]]:

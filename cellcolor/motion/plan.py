@@ -3,29 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.tool_paths import ToolPaths
-from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory import LeftOut, Trajectory
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.motion.assembly import assembled
-from cellcolor.motion.courses import Course, Courses, courses_of
 from cellcolor.motion.following import joint_limits
 from cellcolor.motion.limits import home_of, motion_of, speeds_of
 from cellcolor.motion.order import ordered
-from cellcolor.motion.small_triangles import corner_states, left_out_parts, small_triangles
-from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
+from cellcolor.motion.segment import Ground, SegmentStrokes, strokes_of
+from cellcolor.motion.small_triangles import (
+    SmallTriangles,
+    corner_states,
+    left_out_parts,
+    small_triangles,
+)
 from cellcolor.motion.transfers import Transfers
 from cellcolor.painting.paint import Painted
-from cellcolor.tool_paths.cover import Covered, cover
+from cellcolor.tool_paths.cover import ASKED_FOR, Covered, cover
+from cellcolor.tool_paths.measures import PathMeasures, in_all
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
 __all__ = ["MotionPlan", "plan_motion"]
@@ -37,14 +41,18 @@ class MotionPlan:
 
     Attributes:
         paths: the tool paths that the trajectory follows.
-        measures: of these paths, see :mod:`cellcolor.tool_paths`.
+        measures: of each of these paths.
+        in_all: of all together.
         trajectory: the arm on them.
+        walls: mesh edges that the paths do not cross so that joints stay inside their limits.
         seconds: wall time of each stage.
     """
 
     paths: ToolPaths
-    measures: Any
+    measures: tuple[PathMeasures, ...]
+    in_all: PathMeasures
     trajectory: Trajectory
+    walls: tuple[tuple[int, int], ...]
     seconds: dict[str, float] = field(compare=False)
 
 
@@ -86,10 +94,10 @@ def plan_motion(
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
         states = corner_states(prepared, small, own_branch)
 
-    def lay(walls: Collection[tuple[int, int]], left_out: Index) -> Covered:
+    def lay(segment: int, walls: Collection[tuple[int, int]], left_out: Index) -> Covered:
         return cover(
             surface,
-            segment_of,
+            np.where(segment_of == segment, segment, -1),
             color_of,
             normals,
             pattern=pattern,
@@ -100,15 +108,21 @@ def plan_motion(
             deadline=deadline,
         )
 
+    ground = Ground(prepared, surface, small, states, lay, motion.spacing_m, deadline)
     with clock.timed("tool paths"):
-        reasons = states.bad(prepared.judge.reason_names)
-        courses = courses_of(prepared, surface, branch_of, lay, (), reasons)
-    strokes = _strokes(prepared, courses, branch_of, motion.spacing_m)
+        covered = [
+            strokes_of(ground, segment, color_of[segment], int(own_branch[segment]))
+            for segment in np.unique(segment_of[segment_of >= 0]).tolist()
+        ]
+    strokes = [stroke for segment in covered for stroke in segment.strokes]
     if not strokes:
-        raise InputError(None, "segment_of", "the arm can follow no path on any segment")
+        raise InputError(None, None, "the arm can follow no path on any segment")
+    speeds, home, limits = (
+        speeds_of(motion, prepared.robot),
+        home_of(motion),
+        joint_limits(prepared),
+    )
     with clock.timed("order of strokes"):
-        speeds, home = speeds_of(motion, prepared.robot), home_of(motion)
-        limits = joint_limits(prepared)
         strokes = ordered(strokes, limits, speeds.velocities, home, deadline)
     with clock.timed("transfers"):
         planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
@@ -121,12 +135,27 @@ def plan_motion(
             transfers,
             speeds,
             motion.speed_m_per_s,
-            left_out_parts(small, courses.reasons),
+            _left_out(small, covered),
             {"pattern": pattern, "seed": seed},
             deadline,
         )
-    covered = courses.covered
-    return MotionPlan(covered.paths, covered.measures, trajectory, clock.seconds)
+    measures = [one for segment in covered for one in segment.courses.covered.measures]
+    paths = [path for segment in covered for path in segment.courses.covered.paths.paths]
+    return MotionPlan(
+        ToolPaths(
+            surface.name,
+            pattern,
+            motion.spacing_m,
+            motion.tool_radius_m,
+            tuple(paths),
+            surface.sha256,
+        ),
+        tuple(measures),
+        in_all(measures, motion.spacing_m),
+        trajectory,
+        tuple(edge for segment in covered if segment.walls for edge in segment.walls.edges),
+        clock.seconds,
+    )
 
 
 def _colors(painted: Painted) -> list[int]:
@@ -138,31 +167,14 @@ def _colors(painted: Painted) -> list[int]:
     return colors
 
 
-def _strokes(
-    prepared: PreparedScene, courses: Courses, branch_of: Sequence[int], shortest: float
-) -> list[Stroke]:
-    """The strokes on all paths: what fails is cut out, and what overruns a limit is cut there."""
-    limits, robot = joint_limits(prepared), prepared.robot
-    found: list[Stroke] = []
-    for course in courses.courses:
-        color, segment = course.path.color, course.path.segment
-        parts = trimmed(
-            segment,
-            branch_of[color],
-            course.samples,
-            course.followed,
-            shortest,
-            prepared.judge.reason_names,
-        )
-        if parts and any(stroke.segment == segment for stroke in found):
-            parts[0] = replace(parts[0], parting=_apart(course))
-        for part in parts:
-            found += cut_where_full(part, *limits, robot.joint_names)
-    return found
-
-
-def _apart(course: Course) -> Parting:
-    """Why a segment has a second path."""
-    x, y, z = course.path.points[0].tolist()
-    text = "places that no sample may touch part the segment"
-    return Parting("trimmed", text, (x, y, z))
+def _left_out(small: SmallTriangles, covered: Sequence[SegmentStrokes]) -> tuple[LeftOut, ...]:
+    """What the tool does not go to: where a sample would fail, and what no path comes near to."""
+    reasons = {number: why for one in covered for number, why in one.courses.reasons.items()}
+    parts = list(left_out_parts(small, reasons))
+    for one in covered:
+        parts += [
+            LeftOut(place.segment, place.area_m2, place.cause, place.place)
+            for place in one.courses.covered.uncovered
+            if place.cause != ASKED_FOR
+        ]
+    return tuple(sorted(parts, key=lambda part: (-part.area_m2, part.segment, part.place)))

@@ -19,7 +19,10 @@ from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.spurs import with_spurs
 
-__all__ = ["Covered", "cover"]
+__all__ = ["ASKED_FOR", "Covered", "cover"]
+
+ASKED_FOR = "left out as asked for"
+"""The cause of what is uncovered because it must not be entered."""
 
 _TRIANGLES = 24  # for each square of the spacing, about
 _MOST_TRIANGLES = 4_000_000
@@ -152,7 +155,7 @@ def _left_out(
         if segment < 0:
             continue
         place = _point(surface.vertices[corners[own][areas[own].argmax()]])
-        found.append(Uncovered(segment, float(areas[own].sum()), place, "left out as asked for"))
+        found.append(Uncovered(segment, float(areas[own].sum()), place, ASKED_FOR))
     return found
 
 

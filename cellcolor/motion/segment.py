@@ -1,0 +1,138 @@
+"""The strokes of one segment: one if that is possible, and why not if there are more."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cellcolor.arrays import Index
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.motion.courses import Course, Courses, laid_out
+from cellcolor.motion.following import joint_limits, whole_turns
+from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
+from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
+from cellcolor.motion.windings import Walls, closed_edges, parts_of, walls_of
+from cellcolor.tool_paths.cover import Covered
+
+__all__ = ["Ground", "SegmentStrokes", "strokes_of"]
+
+Lay = Callable[[int, Collection[tuple[int, int]], Index], Covered]
+"""The tool paths of a segment, given walls (mesh edges) and small triangles to leave out."""
+
+
+@dataclass(frozen=True)
+class Ground:
+    """What the strokes of all segments are made on.
+
+    Attributes:
+        prepared: the scene.
+        surface: the painted surface.
+        small: its small triangles.
+        states: what the arm does at their corners.
+        lay: see :data:`Lay`.
+        shortest: stretches of a path that are shorter are left out where it is cut, m.
+        deadline: when to give up.
+    """
+
+    prepared: PreparedScene
+    surface: LabelledSurface
+    small: SmallTriangles
+    states: CornerStates
+    lay: Lay
+    shortest: float
+    deadline: Deadline
+
+
+@dataclass(frozen=True)
+class SegmentStrokes:
+    """How a segment is covered.
+
+    Attributes:
+        courses: its tool paths, and the arm on them.
+        strokes: on these, each within the limits of the joints.
+        walls: what was put up so that the joints stay in their limits; None if they do so without.
+    """
+
+    courses: Courses
+    strokes: list[Stroke]
+    walls: Walls | None
+
+
+def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> SegmentStrokes:
+    """Lay out a segment's paths so that the arm can follow them, and follow them.
+
+    Walls are only put up where a joint would run out of its limits on the paths without.
+
+    Args:
+        ground: what they are made on.
+        segment: its number.
+        color: its color.
+        branch: the color's.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    prepared, small = ground.prepared, ground.small
+    bad = ground.states.bad(prepared.judge.reason_names)
+    own = {number: why for number, why in bad.items() if small.segment[number] == segment}
+
+    def courses_with(walls: Collection[tuple[int, int]], reasons: dict[int, str]) -> Courses:
+        return laid_out(
+            prepared,
+            ground.surface,
+            branch,
+            lambda left_out: ground.lay(segment, walls, left_out),
+            reasons,
+        )
+
+    courses = courses_with((), own)
+    strokes = _on(ground, courses, branch)
+    limits = joint_limits(prepared)
+    if all(whole_turns(stroke.joints, *limits) is not None for stroke in strokes):
+        return SegmentStrokes(courses, strokes, None)
+    cracks = [(crack.i, crack.j) for crack in ground.surface.cracks if color in crack.colors]
+    left_out = np.array(sorted(courses.reasons), dtype=np.int64)
+    parts = parts_of(small, ground.states, segment, left_out, closed_edges(small, cracks))
+    walls = walls_of(parts, small.edges, limits, ground.deadline)
+    parted = len(strokes)
+    courses = courses_with(walls.edges, courses.reasons)
+    name = prepared.robot.joint_names[walls.joint]
+    strokes = _on(ground, courses, branch)
+    if not walls.whole:
+        strokes = [
+            replace(stroke, parting=_full(stroke, name)) if number >= parted else stroke
+            for number, stroke in enumerate(strokes)
+        ]
+    cut = [
+        part
+        for stroke in strokes
+        for part in cut_where_full(stroke, *limits, prepared.robot.joint_names)
+    ]
+    return SegmentStrokes(courses, cut, walls)
+
+
+def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
+    """The strokes on all paths of a segment, what fails cut out of them."""
+    found: list[Stroke] = []
+    names = ground.prepared.judge.reason_names
+    for course in courses.courses:
+        segment = course.path.segment
+        parts = trimmed(segment, branch, course.samples, course.followed, ground.shortest, names)
+        if parts and found:
+            parts[0] = replace(parts[0], parting=_apart(course))
+        found += parts
+    return found
+
+
+def _apart(course: Course) -> Parting:
+    x, y, z = course.path.points[0].tolist()
+    return Parting("trimmed", "places that no sample may touch part the segment", (x, y, z))
+
+
+def _full(stroke: Stroke, joint: str) -> Parting:
+    x, y, z = stroke.points[0].tolist()
+    return Parting("winding", f"{joint} does not get over all of the segment", (x, y, z))

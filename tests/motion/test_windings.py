@@ -1,0 +1,71 @@
+"""Windings: a ring about the base, for an arm whose first joint turns by 200 degrees each way."""
+
+from __future__ import annotations
+
+import networkx as nx
+import numpy as np
+import pytest
+from motions import Planned, planned_scene
+from rings import ring_scene
+
+from cellcolor.motion.following import follow, joint_limits, whole_turns
+from cellcolor.motion.samples import sampled
+from cellcolor.tool_paths.cover import cover
+
+
+@pytest.fixture(scope="module")
+def ring() -> Planned:
+    """A motion over the ring."""
+    return planned_scene(ring_scene(np.deg2rad(200)))
+
+
+def test_a_path_without_walls_overruns_the_first_joint(ring: Planned) -> None:
+    motion = ring.prepared.setup.motion
+    assert motion is not None
+    (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}
+    covered = cover(
+        ring.painted.surface,
+        ring.painted.segment_of,
+        [color],
+        ring.normals,
+        spacing_m=motion.spacing_m,
+        tool_radius_m=motion.tool_radius_m,
+    )
+    (path,) = covered.paths.paths
+    branch = ring.built.stages.cleaned.coloring.branch[color]
+    followed = follow(ring.prepared, sampled(path), branch)
+    assert followed.good
+    assert whole_turns(followed.joints, *joint_limits(ring.prepared)) is None
+    turned = np.ptp(followed.joints, axis=0)
+    assert turned[0] > np.deg2rad(400)
+    assert (turned[1:] < np.pi).all()
+
+
+def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(ring: Planned) -> None:
+    trajectory, robot = ring.plan.trajectory, ring.prepared.robot
+    assert trajectory.lift_offs == ring.lift_offs == 0
+    assert trajectory.extra_lift_offs == ()
+    assert (trajectory.joints >= robot.lower).all()
+    assert (trajectory.joints <= robot.upper).all()
+    assert np.ptp(trajectory.joints[trajectory.contact][:, 0]) > 1.8 * np.pi  # nearly all round
+    assert ring.plan.in_all.covered_wide > 0.99
+
+
+def test_walls_open_the_ring_and_do_not_part_it(ring: Planned) -> None:
+    surface = ring.painted.surface
+    graph = nx.Graph(edge for edge in surface.left_of)
+    assert ring.plan.walls
+    graph.remove_edges_from(ring.plan.walls)
+    assert nx.is_connected(graph)
+    # The first joint follows the polar angle: no closed walk may go round the base any more.
+    polar = np.arctan2(surface.vertices[:, 1], surface.vertices[:, 0])
+    for cycle in nx.cycle_basis(graph):
+        steps = np.diff(polar[[*cycle, cycle[0]]])
+        assert np.abs((np.remainder(steps + np.pi, 2 * np.pi) - np.pi).sum()) < 1e-6
+
+
+def test_there_are_no_walls_where_the_limits_allow_the_path_as_it_is() -> None:
+    ring = planned_scene(ring_scene(np.deg2rad(20 * 360)))
+    assert ring.plan.walls == ()
+    assert ring.plan.trajectory.lift_offs == 0
+    assert np.ptp(ring.plan.trajectory.joints[:, 0]) > 2.2 * np.pi
