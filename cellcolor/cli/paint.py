@@ -19,7 +19,9 @@ from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
 
 if TYPE_CHECKING:
+    from cellcolor.motion.scene_painting import ScenePainting
     from cellcolor.painting.border_report import BorderReport
+    from cellcolor.painting.paint import Painted
 
 _SURFACE = kind_of_format(surface_file.FORMAT)
 _PLAN = kind_of_format(plan_file.FORMAT)
@@ -55,7 +57,7 @@ def paint_files(
         if subject.surface_path is not None:  # of an instance: what it names is read as well
             inputs.append(subject.surface_path)
         check_output(output, _SURFACE, inputs)
-        painted = paint_by(subject, solution, tool_radius, deadline)
+        painted, asked = paint_by(subject, solution, tool_radius, deadline)
     except OutOfTime:
         complain(f"{source}: not painted: the time limit came first; nothing is written")
         return Exit.STOPPED
@@ -76,6 +78,8 @@ def paint_files(
     if painted.borders is not None:
         for line in _lines(painted.borders, painted.segments > 1):
             say(f"  {line}")
+    for line in _answers(asked, painted):
+        say(f"  {line}")
     for group in painted.merged:
         say(f"  segments {listed(group)} of the solution touch in one color: painted they are one")
     return Exit.DONE
@@ -98,3 +102,13 @@ def _lines(report: BorderReport, several: bool) -> Iterator[str]:
     else:
         places = f", {count(after.narrow, 'corridor')} too narrow" if after.narrow else ""
         yield f"{tool} passes over {after.repeated_m2:.3g} m² of other segments{places}"
+
+
+def _answers(asked: ScenePainting | None, painted: Painted) -> Iterator[str]:
+    """What the scene has said of a painting, where it was asked and has refused something."""
+    if asked is not None and len(asked.minima) > 1:
+        yield f"the scene refuses copied colors: {count(asked.minima[0], 'segment')} as solved,"
+        yield f"{painted.segments} after solving again with the true colors of the refined surface"
+    if asked is not None and asked.refused:
+        refused = count(len(asked.refused), "vertex", "vertices")
+        yield f"the scene refuses {refused} of the painting all the same, {asked.refused[0]} first"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from os import PathLike
+from typing import TYPE_CHECKING
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.solution import Solution
@@ -14,6 +15,9 @@ from cellcolor.errors import InputError
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted
 from cellcolor.painting.paint import paint as paint_solution
+
+if TYPE_CHECKING:
+    from cellcolor.motion.scene_painting import ScenePainting
 
 __all__ = ["paint", "paint_by"]
 
@@ -38,7 +42,9 @@ def paint(
     Returns:
         A plan that the checker finds valid, on the surface refined where it had to be. It has
         exactly as many segments as the solution if these are proved to be the fewest. ``borders``
-        says what moving its borders has changed.
+        says what moving its borders has changed. Of a scene each new vertex is asked of the robot.
+        If it refuses one, the refined surface is solved and painted instead, with as many segments
+        as that needs (:mod:`cellcolor.motion.scene_painting`).
 
     Raises:
         InputError: one of the two cannot be used, they do not belong together, or the radius is not
@@ -51,19 +57,34 @@ def paint(
         solution = solution.solution
     elif not isinstance(solution, Solution):
         solution = Solution.read(solution)
-    return paint_by(open_subject(source, deadline), solution, tool_radius_m, deadline)
+    return paint_by(open_subject(source, deadline), solution, tool_radius_m, deadline)[0]
 
 
 def paint_by(
     subject: Subject, solution: Solution, tool_radius_m: float | None, deadline: Deadline
-) -> Painted:
-    """The painting by a moment that may have passed already: :func:`paint`."""
+) -> tuple[Painted, ScenePainting | None]:
+    """The painting by a moment that may have passed already: :func:`paint`.
+
+    Of a scene also what was asked of it; None for all else.
+    """
     surface, decomposition = subject.surface, subject.decomposition
     problems = check_solution(decomposition.instance, solution).problems
     if problems:
         raise InputError(None, None, f"the solution is not valid: {problems[0]}")
-    if tool_radius_m is None and subject.built is not None:
-        motion = subject.built.scene.setup.motion
-        tool_radius_m = None if motion is None else motion.tool_radius_m
-    drawn = paint_solution(surface, decomposition, solution, deadline)
-    return move_borders(drawn, tool_radius_m, deadline=deadline)
+    if subject.built is None:
+        drawn = paint_solution(surface, decomposition, solution, deadline)
+        return move_borders(drawn, tool_radius_m, deadline=deadline), None
+
+    from cellcolor.frontend.prepared import prepare
+    from cellcolor.motion.scene_painting import paint_scene
+
+    prepared = prepare(subject.built.scene, deadline)
+    asked = paint_scene(
+        prepared,
+        subject.built,
+        decomposition,
+        solution,
+        tool_radius_m=tool_radius_m,
+        deadline=deadline,
+    )
+    return asked.painted, asked

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
+import random
 from pathlib import Path
 
 import pytest
 from commands import json_lines, run
 from library import INSTANCES, PAPER
+from painted import random_solution
+from shipped import ROBOTS, WOK, edited, shipped
 
 import cellcolor
 
@@ -102,3 +105,27 @@ def test_the_surface_that_an_instance_names_is_not_overwritten(
         f"cellcolor: {surface}: is an input, which would be overwritten\n"
     )
     assert surface.read_bytes() == before and not (tmp_path / "c.plan.json").exists()
+
+
+def test_a_scene_is_asked_what_reaches_new_vertices(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """A division drawn at random copies colors beyond where they reach: both minima are told."""
+    scene = shipped("wok")
+    file, solution = tmp_path / "scene.toml", tmp_path / "solution.json"
+    text = WOK.read_text()
+    setup = (ROBOTS / "ur5_polishing.toml").read_text().partition("[slivers]")[0]
+    for key in ("arm_urdf", "tool_urdf"):
+        setup = edited(setup, **{key: f'"{ROBOTS / getattr(scene.setup.robot, key)}"'})
+    (tmp_path / "setup.toml").write_text(setup)
+    file.write_text(edited(text, setup='"setup.toml"', target_vertices=150))
+    instance = cellcolor.decompose(file)
+    chance = random_solution(instance, 1, random.Random(4))
+    solution.write_text(chance.to_json())
+    output = tmp_path / "painted.surface.json"
+    assert run("paint", file, solution, "-o", output) == 0
+    said = capsys.readouterr().out
+    assert f"the scene refuses copied colors: {chance.segments} segments as solved," in said
+    assert "2 after solving again with the true colors of the refined surface" in said
+    assert run("check", output, tmp_path / "painted.plan.json", "--json") == 0
+    assert json_lines(capsys.readouterr().out)[0]["optimal"]
