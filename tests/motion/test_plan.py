@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pinocchio as pin
 import pytest
 from motions import Planned, planned
 from scipy.spatial import cKDTree
+from shipped import shipped
 
 from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
+from cellcolor.errors import InputError
+from cellcolor.frontend.prepared import prepare
+from cellcolor.motion.limits import motion_of
+from cellcolor.motion.plan import plan_motion
 
 NAMES = ("wok", "half_pipe", "square", "hemisphere_flat", "hemisphere_tilted", "wok_obstacle")
 
@@ -132,3 +139,23 @@ def test_all_scenes_have_no_more_lift_offs_than_were_proved(name: str) -> None:
     assert trajectory.extra_lift_offs == trajectory.unplanned == ()
     verdicts = motion.prepared.judge(trajectory.joints[trajectory.contact])
     assert (verdicts.reasons == VALID).all()
+
+
+def test_the_same_scene_and_seed_give_the_same_trajectory(motion: Planned) -> None:
+    again = plan_motion(motion.prepared, motion.built, motion.painted, motion.normals)
+    assert again.trajectory == motion.plan.trajectory
+    assert again.paths == motion.plan.paths
+
+
+def test_a_setup_without_a_motion_and_one_that_does_not_fit_are_refused() -> None:
+    scene = shipped("square", 100)
+    for change, where in (
+        ({"motion": None}, "motion"),
+        ({"motion": {"home_rad": [0.0] * 5}}, "motion.home_rad"),
+        ({"motion": {"home_rad": [7.0, 0.0, 0.0, 0.0, 0.0, 0.0]}}, "motion.home_rad[0]"),
+        ({"motion": {"joint_accelerations_rad_per_s2": [1.0]}}, "accelerations"),
+        ({"motion": {"retract_m": 0.01}}, "motion.retract_m"),
+    ):
+        prepared = prepare(scene.with_setup(scene.setup.varied(**change)))
+        with pytest.raises(InputError, match=re.escape(where)):
+            motion_of(prepared)
