@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from cellcolor.arrays import Array, Index
-from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, Trajectory
+from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.motion.retraced import retraced, stretches
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.timing import Speeds, timed
 from cellcolor.motion.transfers import Transfer
@@ -72,6 +73,7 @@ def assembled(
     """
     rows, unplanned = _Rows(), []
     extra: list[ExtraLiftOff] = []
+    repeated: list[RepeatedStretch] = []
     last_of: dict[int, int] = {}
     partings = _partings(strokes)
     for number, transfer in enumerate(transfers):
@@ -95,6 +97,10 @@ def assembled(
                 )
             )
         times = rows.now + timed(stroke.joints, speeds, stroke.points, tool_speed)
+        repeated += [
+            RepeatedStretch(rows.count + a, rows.count + b, "narrow")
+            for a, b in stretches(retraced(stroke.points))
+        ]
         rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
         rows.now = float(times[-1])
         last_of[stroke.segment] = rows.count - 1
@@ -111,6 +117,7 @@ def assembled(
         unplanned=tuple(unplanned),
         extra_lift_offs=tuple(extra),
         left_out=left_out,
+        repeated=tuple(repeated),
         meta=meta,
     )
 
