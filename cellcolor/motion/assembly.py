@@ -14,7 +14,7 @@ from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Tr
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.motion.retraced import retraced, stretches
+from cellcolor.motion.retraced import beside_itself, stretches
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.timing import Speeds, timed
 from cellcolor.motion.transfers import Transfer
@@ -51,6 +51,7 @@ def assembled(
     transfers: Sequence[Transfer],
     speeds: Speeds,
     tool_speed: float,
+    spacing: float,
     left_out: tuple[LeftOut, ...],
     meta: dict[str, Any],
     deadline: Deadline,
@@ -64,6 +65,7 @@ def assembled(
         transfers: the way to the first stroke, those between strokes, and that from the last one.
         speeds: of the joints.
         tool_speed: of the tool in contact, m/s.
+        spacing: wanted between passes, m; what is passed twice is told by it.
         left_out: parts that the tool does not go to.
         meta: as of the trajectory.
         deadline: when to give up.
@@ -98,8 +100,8 @@ def assembled(
             )
         times = rows.now + timed(stroke.joints, speeds, stroke.points, tool_speed)
         repeated += [
-            RepeatedStretch(rows.count + a, rows.count + b, "narrow")
-            for a, b in stretches(retraced(stroke.points))
+            RepeatedStretch(rows.count + a, rows.count + b, "beside another pass")
+            for a, b in stretches(beside_itself(stroke.points, spacing))
         ]
         rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
         rows.now = float(times[-1])

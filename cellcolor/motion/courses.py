@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Index
+from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.following import Followed, follow
-from cellcolor.motion.samples import Samples, sampled
+from cellcolor.motion.samples import Samples, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP, small_triangle_at
 from cellcolor.tool_paths.cover import Covered
 
@@ -49,6 +49,7 @@ class Courses:
 def laid_out(
     prepared: PreparedScene,
     surface: LabelledSurface,
+    normals: Array,
     branch: int,
     lay: Callable[[Index], Covered],
     reasons: dict[int, str],
@@ -58,6 +59,7 @@ def laid_out(
     Args:
         prepared: the scene.
         surface: the painted one.
+        normals: (n, 3) outward unit normals at its vertices.
         branch: of the segment's color.
         lay: makes the segment's paths, given the numbers of small triangles to leave out.
         reasons: of each of its small triangles that is known to be bad, the test that fails there.
@@ -73,7 +75,7 @@ def laid_out(
         covered = lay(np.array(sorted(reasons), dtype=np.int64))
         courses, failing = [], {}
         for path in covered.paths.paths:
-            samples = sampled(path)
+            samples = with_normals_of(sampled(path), surface.vertices, surface.faces, normals)
             course = Course(path, samples, follow(prepared, samples, branch))
             courses.append(course)
             for at, why in _failures(course.followed, prepared.judge.reason_names):

@@ -135,6 +135,7 @@ def plan_motion(
             transfers,
             speeds,
             motion.speed_m_per_s,
+            motion.spacing_m,
             _left_out(small, covered),
             {"pattern": pattern, "seed": seed},
             deadline,

@@ -1,4 +1,4 @@
-"""Where a stroke goes the same way again: into a narrow place and back, or over a bridge twice."""
+"""Where a stroke runs along another pass of its own: into a narrow place and back, or beside it."""
 
 from __future__ import annotations
 
@@ -7,34 +7,35 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Mask
 
-__all__ = ["retraced", "stretches"]
+__all__ = ["beside_itself", "stretches"]
 
-_SAME = 1e-5  # m; a point nearer than this to an earlier step is on it
+_BESIDE = 0.25  # spacings; passes nearer to each other than that leave the same trace
+_APART = 1.0  # spacings along the path, between places of different passes
+_ALONG = 0.9  # cosine of the angle up to which two passes run along each other
 
 
-def retraced(points: Array) -> Mask:
-    """Which points of a stroke (k, 3), in m, lie on another of its steps as well.
+def beside_itself(points: Array, spacing: float) -> Mask:
+    """Which points (k, 3) of a stroke have another pass of it running along beside them.
 
-    Both passes are marked, so that it does not matter which of them is called the first: a stroke
-    may be turned round.
+    Both passes are marked, so that it does not matter which of them comes first: a stroke may be
+    turned round.
+
+    Args:
+        points: at most a tenth of the spacing or so apart, m.
+        spacing: wanted between passes, m.
     """
-    count = len(points)
-    found = np.zeros(count, dtype=bool)
-    if count < 3:
+    found = np.zeros(len(points), dtype=bool)
+    if len(points) < 3:
         return found
-    steps = np.diff(points, axis=0)
-    lengths = np.linalg.norm(steps, axis=1)
-    tree = cKDTree(points)
-    near = tree.query_pairs(float(lengths.max()) + _SAME, output_type="ndarray")
-    one, other = np.concatenate([near, near[:, ::-1]]).T
-    for step in (other, other - 1):  # the two steps that end at the other point
-        # A step that the point itself is an end of, or its neighbor, is the same pass.
-        usable = (step >= 0) & (step < count - 1) & (np.abs(one - other) > 2)
-        at, along = one[usable], step[usable]
-        square = np.maximum(lengths[along] ** 2, _SAME**2)
-        way = np.einsum("ij,ij->i", points[at] - points[along], steps[along]) / square
-        foot = points[along] + np.clip(way, 0.0, 1.0)[:, None] * steps[along]
-        found[at[np.linalg.norm(points[at] - foot, axis=1) < _SAME]] = True
+    steps = np.gradient(points, axis=0)
+    lengths = np.linalg.norm(steps, axis=1, keepdims=True)
+    directions = steps / np.where(lengths > 0, lengths, 1.0)
+    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    near = cKDTree(points).query_pairs(_BESIDE * spacing, output_type="ndarray")
+    one, other = near.T
+    parallel = np.abs(np.einsum("ij,ij->i", directions[one], directions[other])) >= _ALONG
+    passes = near[parallel & (np.abs(way[one] - way[other]) > _APART * spacing)]
+    found[passes.ravel()] = True
     return found
 
 

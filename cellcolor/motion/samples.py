@@ -9,11 +9,11 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.data.tool_paths import ToolPath
 
-__all__ = ["DISTANCE", "TURN", "Samples", "angles_between", "sampled"]
+__all__ = ["DISTANCE", "TURN", "Samples", "angles_between", "sampled", "with_normals_of"]
 
 DISTANCE = 0.001  # m, at most from one sample to the next
 TURN = float(np.deg2rad(1.0))  # rad, the same for the normal
-_ROOM = 0.999  # of both, for rounding
+_ROOM = 0.95  # of both, for rounding and for normals that are not a path's own
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,29 @@ def angles_between(first: Array, second: Array) -> Array:
     """Angles (k,) between unit vectors (k, 3), rad."""
     chord = np.linalg.norm(first - second, axis=1)
     return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
+
+
+def with_normals_of(samples: Samples, vertices: Array, faces: Index, normals: Array) -> Samples:
+    """The same points with the normals that a surface has there.
+
+    Those of a path are interpolated from point to point. Where a normal turns quickly, as beside a
+    sharp edge, they are a degree or more off those of the triangles.
+
+    Args:
+        samples: of a path on the surface.
+        vertices: (n, 3) m.
+        faces: (m, 3).
+        normals: (n, 3) outward unit normals at the vertices.
+    """
+    corners = faces[samples.faces]
+    origin, one, other = (vertices[corners[:, k]] for k in range(3))
+    along = np.stack([one - origin, other - origin], axis=2)  # (k, 3, 2)
+    inverse = np.linalg.pinv(along)
+    weights = np.einsum("kij,kj->ki", inverse, samples.points - origin)
+    weights = np.column_stack([1 - weights.sum(axis=1), weights])
+    turned = np.einsum("ki,kij->kj", weights, normals[corners])
+    turned /= np.linalg.norm(turned, axis=1, keepdims=True)
+    return Samples(samples.points, turned, samples.faces)
 
 
 def sampled(path: ToolPath) -> Samples:

@@ -16,7 +16,6 @@ from cellcolor.deadline import Deadline
 __all__ = ["sampled_way"]
 
 _BRANCH = 1.0  # rad, the longest new branch of a tree
-_ATTEMPTS = 600  # rounds of the planner; a number, so that the time it takes decides nothing
 
 
 def sampled_way(
@@ -26,6 +25,7 @@ def sampled_way(
     upper: Array,
     free: Callable[[Array], Mask],
     step: float,
+    rounds: int,
     seed: int,
     deadline: Deadline,
 ) -> Array | None:
@@ -36,6 +36,7 @@ def sampled_way(
         lower, upper: (joints,) limits, rad.
         free: which of configurations (k, joints) are free, (k,).
         step: between two tested configurations of a way a joint moves at most so far, rad.
+        rounds: of the planner; a number, so that the time that they take decides nothing.
         seed: the same way for the same seed.
         deadline: when to give up.
     """
@@ -81,9 +82,9 @@ def sampled_way(
     planner.setRange(_BRANCH)
     planner.setProblemDefinition(problem)
     planner.setup()
-    rounds = iter(range(_ATTEMPTS))
+    left = iter(range(rounds))
     planner.solve(
-        base.PlannerTerminationCondition(lambda: next(rounds, None) is None or deadline.over)
+        base.PlannerTerminationCondition(lambda: next(left, None) is None or deadline.over)
     )
     if not problem.hasExactSolution():
         return None

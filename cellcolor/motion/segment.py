@@ -84,6 +84,7 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
         return laid_out(
             prepared,
             ground.surface,
+            small.normals[: len(ground.surface.vertices)],
             branch,
             lambda left_out: ground.lay(segment, walls, left_out),
             reasons,

@@ -10,9 +10,11 @@ import numpy as np
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import Deadline
+from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
+from cellcolor.frontend.tables import in_file
 from cellcolor.motion.following import CIRCLE, whole_turns
 from cellcolor.motion.free_space import FreeSpace
 from cellcolor.motion.limits import home_of
@@ -25,6 +27,7 @@ __all__ = ["Transfer", "Transfers"]
 
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
 _COARSE = 0.04  # rad, between samples of a move that is only tried
+_FEW_ROUNDS, _MANY_ROUNDS = 600, 20_000  # of the sampling planner: seconds, or a minute or two
 _FINE = 0.01  # rad, the same where that let a hit through
 _SPARE = 0.005  # m, more than the clearance that is kept while a way is looked for
 _NEAR = 0.3  # rad; so near its ends it keeps no more than the clearance
@@ -64,6 +67,12 @@ class Transfers:
         self._clear = FreeSpace(prepared, motion.clearance_m)
         self._wide = FreeSpace(prepared, motion.clearance_m + _SPARE)
         self._home = home_of(motion)
+        if self._home is not None and not self._clear(self._home[None])[0]:
+            message = (
+                "is no place for the arm: something is in the way there, or nearer than allowed"
+            )
+            with in_file(prepared.setup.file):
+                raise InputError(None, "motion.home_rad", message)
         self._shares: dict[bytes, float] = {}
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
@@ -189,9 +198,14 @@ class Transfers:
             if self._clear(way).all():
                 return Transfer(way, None)
         if self._clear(np.array([start, end])).all():
-            for free, step in ((self._roomy(start, end), _COARSE), (self._clear, _FINE)):
+            roomy = self._roomy(start, end)
+            for free, step, rounds in (
+                (roomy, _COARSE, _FEW_ROUNDS),
+                (self._clear, _FINE, _FEW_ROUNDS),
+                (self._clear, _FINE, _MANY_ROUNDS),
+            ):
                 found = sampled_way(
-                    start, end, *self._clear.limits, free, step, self._seed, self._deadline
+                    start, end, *self._clear.limits, free, step, rounds, self._seed, self._deadline
                 )
                 self._deadline.check()
                 if found is None:

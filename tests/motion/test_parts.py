@@ -13,7 +13,7 @@ from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
 from cellcolor.motion.following import Followed, whole_turns
 from cellcolor.motion.order import ordered
-from cellcolor.motion.samples import Samples, sampled
+from cellcolor.motion.samples import Samples, sampled, with_normals_of
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
 from cellcolor.motion.timing import Speeds, timed
@@ -148,7 +148,7 @@ def wall(configurations: np.ndarray) -> np.ndarray:
 def test_the_sampling_planner_finds_a_way_round_and_the_same_for_a_seed() -> None:
     ends = np.array([0.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0])
     limits = np.full(3, -3.0), np.full(3, 3.0)
-    ways = [sampled_way(*ends, *limits, wall, 0.01, seed, NEVER) for seed in (5, 5, 6)]
+    ways = [sampled_way(*ends, *limits, wall, 0.01, 600, seed, NEVER) for seed in (5, 5, 6)]
     first, again, other = ways
     assert first is not None
     assert again is not None
@@ -167,7 +167,10 @@ def test_the_sampling_planner_says_if_it_finds_none() -> None:
         return np.asarray(np.abs(configurations[:, 0] - 1) > 0.2)
 
     start, end = np.array([0.0, 0.0]), np.array([2.0, 0.0])
-    assert sampled_way(start, end, np.full(2, -3.0), np.full(2, 3.0), shut, 0.04, 0, NEVER) is None
+    assert (
+        sampled_way(start, end, np.full(2, -3.0), np.full(2, 3.0), shut, 0.04, 600, 0, NEVER)
+        is None
+    )
 
 
 def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:
@@ -201,3 +204,25 @@ def test_strokes_are_ordered_and_turned_round_so_that_transfers_are_short() -> N
     way = [0.0, *(one.joints[at, 0] for one in found for at in (0, -1)), 0.0]
     between = sum(abs(b - a) for a, b in zip(way[::2], way[1::2], strict=True))
     assert between == pytest.approx(0.1 + 0.1 + 0.1 + 2.9)
+
+
+def test_normals_are_those_of_the_surface_beside_a_sharp_edge() -> None:
+    """Two triangles that meet at a right angle: a normal from point to point would be degrees off.
+
+    The expected normals are barycentric means, computed in the plane of the first triangle.
+    """
+    vertices = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.02, 0.0]])
+    normals = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    ends = np.array([[0.001, 0.001, 0.0], [0.018, 0.001, 0.0]])
+    weights = np.column_stack([1 - ends[:, 0] / 0.02 - ends[:, 1] / 0.02, ends[:, :2] / 0.02])
+    own = weights @ normals
+    own /= np.linalg.norm(own, axis=1, keepdims=True)
+    path = ToolPath(0, 0, ends, own, np.zeros(1, dtype=np.int64))
+    faces = np.array([[0, 1, 2]])
+    given = sampled(path)
+    samples = with_normals_of(given, vertices, faces, normals)
+    x = samples.points[:, 0] / 0.02
+    expected = np.column_stack([x, np.zeros_like(x), 1 - x])
+    expected /= np.linalg.norm(expected, axis=1, keepdims=True)
+    assert np.abs(samples.normals - expected).max() < 1e-9
+    assert np.degrees(np.arccos(np.clip((given.normals * expected).sum(axis=1), -1, 1))).max() > 1
