@@ -45,13 +45,14 @@ maximum_signature_line_length = 88
 nitpicky = True
 # Names of other packages: no inventory of theirs is fetched while the site is built.
 _OTHERS = "annotated_types click coal fcl matplotlib mpl_toolkits networkx numpy ortools pinocchio"
-_OTHERS += " plotly pydantic rich scipy trimesh np nx pin"
+_OTHERS += " plotly pydantic rich scipy trimesh np nx pin hypothesis pytest _pytest"
 nitpick_ignore_regex = [
     (r"py:attr", r"cellcolor\..*|\w+\.\w+"),  # they stand in the lists of their classes
     (r"py:.*", rf"({'|'.join([*_OTHERS.split(), *sys.stdlib_module_names])})(\..*)?"),
     # Type variables, names for type checkers only, what annotated_types says of numbers, and
     # halves of a signature that Sphinx cannot read because of a dataclass's default factory.
-    (r"py:class", r"(.*\.)?(T|_\w+|FieldInfo|NoneType|Handler)|Ge|Gt|Le|Lt|[\d.e-]+|dict\[str"),
+    (r"py:class", r"(.*\.)?(T|Kind|_\w+|FieldInfo|NoneType|Handler)"),
+    (r"py:class", r"Ge|Gt|Le|Lt|[\d.e-]+|dict\[str"),
     # Signatures of the front door that Sphinx takes as they are written: they name classes that
     # only type checkers import there.
     (

@@ -13,7 +13,7 @@ from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
-from cellcolor.door.extras import extras_for
+from cellcolor.door.extras import require_motion
 from cellcolor.door.solving import deadline_after
 from cellcolor.errors import InputError
 from cellcolor.painting.paint import Painted
@@ -78,10 +78,10 @@ def cover_by(
     progress: Callable[[str], None] | None = None,
 ) -> Covered:
     """The paths by a moment that may have passed already: :func:`cover`."""
-    with extras_for("tool paths"):
-        import potpourri3d  # noqa: F401  # asked for here, so that the extra is named
+    require_motion("tool paths", ("scipy", "potpourri3d"))
 
-        from cellcolor.tool_paths.cover import cover as cover_segments
+    from cellcolor.tool_paths.cover import cover as cover_segments
+
     report = check_plan(surface, plan)
     if not report.valid:
         raise InputError(None, None, f"the plan is not valid: {report.problems[0]}")

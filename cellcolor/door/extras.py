@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
 
 from cellcolor.errors import InputError
@@ -36,5 +37,24 @@ def extras_for(path: Path | str) -> Iterator[None]:
         missing = (error.name or "").partition(".")[0]
         if missing not in _EXTRAS:
             raise
-        line = f"needs {missing}: pip install '{DISTRIBUTION}[{_EXTRAS[missing]}]'"
-        raise InputError(str(path), None, line) from error
+        raise _lack(path, missing, _EXTRAS[missing]) from error
+
+
+def require_motion(purpose: str, modules: Sequence[str]) -> None:
+    """Refuse at once what would end for lack of the extra ``motion`` when it first lays a path.
+
+    Args:
+        purpose: what the modules are needed for.
+        modules: of this extra, or of ``frontend``, which comes with it.
+
+    Raises:
+        InputError: one of them is not installed.
+    """
+    for module in modules:
+        if find_spec(module) is None:
+            raise _lack(purpose, module, "motion")
+
+
+def _lack(purpose: Path | str, module: str, extra: str) -> InputError:
+    line = f"needs {module}: pip install '{DISTRIBUTION}[{extra}]'"
+    return InputError(str(purpose), None, line)

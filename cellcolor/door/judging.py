@@ -129,7 +129,8 @@ def judge(
 ) -> Verdict:
     """The verdict on a plan: is it valid, how many segments has it, can it be beaten?
 
-    For several plans on one surface keep a :class:`cellcolor.Oracle`.
+    For several plans on one surface keep a
+    :class:`cellcolor.Oracle <cellcolor.door.oracle.Oracle>`.
 
     Args:
         surface: a labelled surface, a scene, or an instance that names its surface; its file, its

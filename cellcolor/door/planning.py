@@ -15,7 +15,7 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.door.extras import extras_for
+from cellcolor.door.extras import require_motion
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_file
 from cellcolor.door.solving import deadline_after, solve
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = ["PlannedScene", "plan", "plan_by"]
 
+_NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "potpourri3d", "ompl", "toppra")
 _FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
 
 
@@ -174,57 +175,57 @@ def plan_by(
         path = find_file(scene)  # type: ignore[arg-type]
         if not is_scene(path):
             raise InputError(str(path), None, "is no scene: a scene is a file .toml")
-    with extras_for("planning a motion"):
-        find_pattern(pattern or DEFAULT_PATTERN)
-        from cellcolor.frontend.prepared import prepare
-        from cellcolor.frontend.scene import Scene
-        from cellcolor.frontend.stage_clock import StageClock
-        from cellcolor.motion.limits import motion_of
-        from cellcolor.motion.plan import plan_motion
-        from cellcolor.motion.scene_painting import paint_scene
-        from cellcolor.trajectory_checker.check import check_trajectory
+    require_motion("planning a motion", _NEEDED)
+    find_pattern(pattern or DEFAULT_PATTERN)
+    from cellcolor.frontend.prepared import prepare
+    from cellcolor.frontend.scene import Scene
+    from cellcolor.frontend.stage_clock import StageClock
+    from cellcolor.motion.limits import motion_of
+    from cellcolor.motion.plan import plan_motion
+    from cellcolor.motion.scene_painting import paint_scene
+    from cellcolor.trajectory_checker.check import check_trajectory
 
-        clock = StageClock(deadline, progress)
-        given = Scene.read(path) if path is not None else scene
-        with clock.timed("preparation"):
-            prepared = prepare(_with_motion(given, motion), deadline)  # type: ignore[arg-type]
-            motion_of(prepared)  # refuses what is wrong with it before the long work begins
-        with clock.timed("colors"):
-            prepared, subject = _built(prepared, path, StageClock(deadline, progress))
-        with clock.timed("fewest segments"):
-            result = _solved(subject, deadline)
-        with clock.timed("painting"):
-            painting = paint_scene(
-                prepared,
-                subject.build(),
-                subject.decomposition,
-                result.solution,
-                deadline=deadline,
-                progress=progress,
-            )
-        if len(painting.minima) > 1:  # the surface was refined and solved again
-            subject = Subject(path, painting.built, painting.built.surface)
-            result = Result(painting.solution, subject, witness(painting.solution))
-        with clock.timed("motion"):
-            planned = plan_motion(
-                prepared,
-                subject.build(),
-                painting.painted,
-                painting.normals,
-                pattern=pattern or DEFAULT_PATTERN,
-                deadline=deadline,
-                progress=progress,
-            )
-        solution = result.solution
-        with clock.timed("judging"):
-            verdict = check_trajectory(
-                prepared,
-                subject.build(),
-                planned.trajectory,
-                minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
-                deadline=deadline,
-                progress=progress,
-            )
+    clock = StageClock(deadline, progress)
+    given = Scene.read(path) if path is not None else scene
+    with clock.timed("preparation"):
+        prepared = prepare(_with_motion(given, motion), deadline)  # type: ignore[arg-type]
+        motion_of(prepared)  # refuses what is wrong with it before the long work begins
+    with clock.timed("colors"):
+        prepared, subject = _built(prepared, path, StageClock(deadline, progress))
+    with clock.timed("fewest segments"):
+        result = _solved(subject, deadline)
+    with clock.timed("painting"):
+        painting = paint_scene(
+            prepared,
+            subject.build(),
+            subject.decomposition,
+            result.solution,
+            deadline=deadline,
+            progress=progress,
+        )
+    if len(painting.minima) > 1:  # the surface was refined and solved again
+        subject = Subject(path, painting.built, painting.built.surface)
+        result = Result(painting.solution, subject, witness(painting.solution))
+    with clock.timed("motion"):
+        planned = plan_motion(
+            prepared,
+            subject.build(),
+            painting.painted,
+            painting.normals,
+            pattern=pattern or DEFAULT_PATTERN,
+            deadline=deadline,
+            progress=progress,
+        )
+    solution = result.solution
+    with clock.timed("judging"):
+        verdict = check_trajectory(
+            prepared,
+            subject.build(),
+            planned.trajectory,
+            minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
+            deadline=deadline,
+            progress=progress,
+        )
     return PlannedScene(
         subject,
         prepared,

@@ -1,8 +1,9 @@
 """An oracle for the test suites of other coverage planners.
 
 A planner that paints every vertex of a labelled surface in one of its colors cannot have fewer
-segments than the surface allows. :func:`prove` says how few that is. The front
-door has an object that holds plans against it (:class:`cellcolor.Oracle`), and functions::
+segments than the surface allows. :func:`~cellcolor.oracle.ranges.prove` says how few that is. The
+front door has an object that holds plans against it
+(:class:`cellcolor.Oracle <cellcolor.door.oracle.Oracle>`), and functions::
 
     import cellcolor
 

@@ -69,7 +69,7 @@ class SurfaceUnderTest:
         """The verdict on a plan; of one that can be beaten it says where.
 
         Args:
-            plan: see :meth:`cellcolor.Oracle.judge`.
+            plan: see :meth:`cellcolor.Oracle.judge <cellcolor.door.oracle.Oracle.judge>`.
 
         Raises:
             BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.

@@ -101,7 +101,7 @@ def test_a_notebook_shows_a_page_that_loads_nothing() -> None:
         ({"color": "pink"}, "no 'pink' among 0 'red'"),
         ({"color": 7}, "no 7 among 0 'red'"),
         ({"color": -1}, "no -1 among 0 'red'"),
-        ({"vertex": 0, "color": 0}, "one of color, vertex and solution at a time"),
+        ({"vertex": 0, "color": 0}, "one of color, vertex, solution and plan at a time"),
         ({"view": "graph", "color": 0}, "color: the picture graph does not take it"),
         ({"view": "reasons"}, "reasons: are known of a scene, or of a surface's file"),
         ({"vertex": 0}, "branch: the picture arm needs it"),

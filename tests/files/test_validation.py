@@ -17,6 +17,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
 
+import cellcolor
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.bound import Bound
 from cellcolor.data.coverage import Coverage
@@ -39,7 +40,6 @@ from cellcolor.data.solution import (
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.oracle import judge
 
 Disguise = Callable[[Any], Any]
 
@@ -105,8 +105,8 @@ def test_a_crack_given_backwards_is_a_crack() -> None:
         (Crack(1, 0, (0,)), Crack(2, 0, (0,))),
     )
     read = LabelledSurface.from_document(json.loads(made.to_json()))
-    verdict = judge(made, Plan((0, 0, 0, 0)))
-    assert verdict == judge(read, Plan((0, 0, 0, 0)))
+    verdict = cellcolor.judge(made, Plan((0, 0, 0, 0)))
+    assert verdict == cellcolor.judge(read, Plan((0, 0, 0, 0)))
     assert (verdict.segments, verdict.optimal) == (2, True)
 
 

@@ -12,10 +12,10 @@ from library import PAPER
 from meshes import drawn
 from ortools.sat.python import cp_model
 
+import cellcolor
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError, InputError, RefusedResult
-from cellcolor.oracle import proven_range
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.interface import STRANDS, Options
@@ -76,7 +76,7 @@ def test_one_default_for_strands() -> None:
 def test_the_oracle_refuses_before_it_searches(options: dict[str, int]) -> None:
     # One cell: its range is known before the search space `surface` is come to.
     with pytest.raises(InputError) as refusal:
-        proven_range(drawn("aa aa", {"a": [0]}), **options)
+        cellcolor.proven_range(drawn("aa aa", {"a": [0]}), **options)
     assert refusal.value.field == next(iter(options))
 
 

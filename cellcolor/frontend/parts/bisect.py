@@ -23,7 +23,8 @@ def bisected(surface: Surface, marked: Mask, field: str) -> Surface:
 
     Args:
         surface: the surface.
-        marked: (k,) which of its edges, in the order of :meth:`Surface.edges`.
+        marked: (k,) which of its edges, in the order of
+            :meth:`~cellcolor.frontend.parts.surface.Surface.edges`.
         field: the key that asks for it.
 
     Raises:

@@ -42,7 +42,7 @@ _OBSTACLE, _BODY = "#882255", "#C8C4B0"
 
 
 def viewer_data(report: MotionReport) -> dict[str, Any]:
-    """What ``viewer.js`` and ``charts.js`` draw, JSON-able; arrays as base64 (:func:`_packed`)."""
+    """What ``viewer.js`` and ``charts.js`` draw, JSON-able; arrays as base64 (``_packed``)."""
     prepared, painted, trajectory = report.prepared, report.painted, report.trajectory
     modes = [segment_mode(painted), reach_mode(report.built, painted)]
     surface = report.built.surface
