@@ -9,14 +9,18 @@ import pinocchio as pin
 import pytest
 from motions import Planned, planned
 from scipy.spatial import cKDTree
-from shipped import shipped
+from shipped import WOK, shipped
 
 from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
+from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.scene import Scene
 from cellcolor.motion.limits import motion_of
 from cellcolor.motion.plan import plan_motion
+from cellcolor.motion.transfers import Transfers
 
 NAMES = ("wok", "half_pipe", "square", "hemisphere_flat", "hemisphere_tilted", "wok_obstacle")
 
@@ -159,3 +163,15 @@ def test_a_setup_without_a_motion_and_one_that_does_not_fit_are_refused() -> Non
         prepared = prepare(scene.with_setup(scene.setup.varied(**change)))
         with pytest.raises(InputError, match=re.escape(where)):
             motion_of(prepared)
+
+
+def test_a_home_in_the_object_is_refused() -> None:
+    """The home of the setup, with the ball moved so that it holds the tool there."""
+    scene = Scene.read(WOK)
+    motion = scene.setup.motion
+    assert motion is not None and motion.home_rad is not None
+    prepared = prepare(scene)
+    tip = forward(prepared.robot, np.array([motion.home_rad])).tip[0]
+    moved = prepare(scene.moved(position_m=tip.tolist()))
+    with pytest.raises(InputError, match=r"motion\.home_rad: is no place for the arm"):
+        Transfers(moved, motion, np.ones(6), 0, NEVER)
