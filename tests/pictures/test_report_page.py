@@ -108,7 +108,7 @@ def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) ->
                 assert state == f"in contact, segment {trajectory.segment[sample]}"
             else:
                 assert state == "between strokes"
-        # At the end, play begins again.
+        # At the end, play begins again, at once.
         page.click("#play")
         page.wait_for_function("Number(document.getElementById('time').value) > 1")
         page.click("#play")
@@ -116,7 +116,7 @@ def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) ->
         stopped = page.input_value("#time")
         page.wait_for_timeout(100)
         assert page.input_value("#time") == stopped
-        assert float(stopped) < trajectory.times[-1]
+        assert float(stopped) < 0.9 * trajectory.times[-1]  # not played to the end
         for name in ("part", "fit", "show-arm", "show-path", "show-moves", "show-around"):
             page.locator(f"#{name}").dispatch_event("click")
         legends = set()

@@ -120,7 +120,8 @@ class Player {
   }
 
   play(on) {
-    if (on && this.now >= this.motion.end) this.go(0);
+    // Play begins again at the end. A slider's value has fewer digits than the end itself.
+    if (on && this.now > this.motion.end - 1e-3) this.go(0);
     this.playing = on;
     this.last = null;
     this.find("play").textContent = on ? "❚❚" : "▶";
