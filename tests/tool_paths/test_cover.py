@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flat import one_segment, slit, square, whole
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from painted_at_random import SHAPES, Painting, painted_at_random
 from path_checker import PathChecker
@@ -35,7 +35,8 @@ def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str) -> No
 @pytest.mark.slow
 @pytest.mark.parametrize("pattern", PATTERNS)
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.sampled_from([0.04, 0.1, 0.25]))
-@settings(max_examples=100, deadline=None)
+@example(1, "disc", 0.25)  # two segments of a quarter of the spacing squared, to the last digit
+@settings(max_examples=40, deadline=None)
 def test_many_paths_stay_on_their_segments(
     pattern: str, seed: int, shape: str, spacing: float
 ) -> None:
@@ -50,14 +51,17 @@ def assert_on_segments(pattern: str, seed: int, shape: str, spacing: float) -> N
     for path in found.paths.paths:
         assert not checker.problems(path)
         assert path.color == painting.colors[path.segment]
-    # Every segment has one path, in one piece, unless it is smaller than the tool can see.
+    # Every segment has one path, in one piece, unless it is smaller than the tool can see. On
+    # grids some are exactly as large as that, where rounding decides.
     areas = np.zeros(len(painting.colors))
     corners = painting.segment_of[painting.surface.faces].ravel()
     thirds = np.repeat(small_triangle_areas(painting.surface)[::6] * 2, 3)
     np.add.at(areas, corners[corners >= 0], thirds[corners >= 0])
     segments = [path.segment for path in found.paths.paths]
     assert len(segments) == len(set(segments))
-    assert set(segments) == set(np.flatnonzero(areas >= spacing**2 / 4).tolist())
+    least = spacing**2 / 4
+    tied = set(np.flatnonzero(np.isclose(areas, least, rtol=1e-9)).tolist())
+    assert set(segments) - tied == set(np.flatnonzero(areas > least).tolist()) - tied
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
