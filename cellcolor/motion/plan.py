@@ -85,6 +85,13 @@ def plan_motion(
         OutOfTime: the deadline came first.
     """
     motion = motion_of(prepared)
+    speeds, home, limits = (
+        speeds_of(motion, prepared.robot),
+        home_of(motion),
+        joint_limits(prepared),
+    )
+    # Refuses a home that is no place for the arm, before anything takes time.
+    planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
     clock = StageClock(deadline, progress)
     surface, segment_of = painted.surface, painted.segment_of
     color_of = _colors(painted)
@@ -117,15 +124,9 @@ def plan_motion(
     strokes = [stroke for segment in covered for stroke in segment.strokes]
     if not strokes:
         raise InputError(None, None, "the arm can follow no path on any segment")
-    speeds, home, limits = (
-        speeds_of(motion, prepared.robot),
-        home_of(motion),
-        joint_limits(prepared),
-    )
     with clock.timed("order of strokes"):
         strokes = ordered(strokes, limits, speeds.velocities, home, deadline)
     with clock.timed("transfers"):
-        planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
         strokes, transfers = planner.between_strokes(strokes)
     with clock.timed("times"):
         trajectory = assembled(

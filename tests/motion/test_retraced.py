@@ -57,3 +57,13 @@ def test_stretches_are_runs_of_two_points_or_more() -> None:
     assert stretches(marked) == [(0, 1), (6, 8)]
     assert stretches(np.zeros(3, dtype=bool)) == []
     assert beside_itself(np.zeros((2, 3)), SPACING).sum() == 0
+
+
+def test_a_wide_spacing_marks_the_same_ways() -> None:
+    """In and back, 2 m, points 1 mm apart and a spacing of 0.3 m: thinned, then marked."""
+    out = np.arange(0.0, 2.0, 0.001)
+    way = np.concatenate([out, out[::-1]])
+    points = np.column_stack([way, np.zeros((len(way), 2))])
+    marked = beside_itself(points, 0.3)
+    # Near the turn the two passes are one pass.
+    assert marked[:1800].all() and marked[2200:].all() and not marked[1950:2050].any()
