@@ -226,16 +226,3 @@ def test_normals_are_those_of_the_surface_beside_a_sharp_edge() -> None:
     expected /= np.linalg.norm(expected, axis=1, keepdims=True)
     assert np.abs(samples.normals - expected).max() < 1e-9
     assert np.degrees(np.arccos(np.clip((given.normals * expected).sum(axis=1), -1, 1))).max() > 1
-
-
-def test_where_a_surface_bends_there_are_more_samples() -> None:
-    """A path that says its normal stays the same, over a triangle where it turns by 90 degrees."""
-    vertices = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0], [0.0, 0.02, 0.0]])
-    normals = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
-    ends = np.array([[0.0, 0.0, 0.0], [0.02, 0.0, 0.0]])
-    path = ToolPath(0, 0, ends, normals[[0, 0]], np.zeros(1, dtype=np.int64))
-    samples = with_normals_of(sampled(path), vertices, np.array([[0, 1, 2]]), normals)
-    dots = (samples.normals[1:] * samples.normals[:-1]).sum(axis=1)
-    assert np.degrees(np.arccos(np.clip(dots, -1, 1))).max() <= 1.0
-    assert len(samples) > 90 and len(samples.faces) == len(samples)
-    assert (np.diff(samples.points[:, 0]) > 0).all()
