@@ -6,6 +6,8 @@ from cellcolor.data.instance import OUTSIDE as OUTSIDE
 from cellcolor.data.instance import Cell as Cell
 from cellcolor.data.instance import Edge as Edge
 from cellcolor.data.instance import Instance as Instance
+from cellcolor.data.joint_plan import ContactPath as ContactPath
+from cellcolor.data.joint_plan import JointPlan as JointPlan
 from cellcolor.data.plan import Plan as Plan
 from cellcolor.data.solution import CellDivision as CellDivision
 from cellcolor.data.solution import Solution as Solution
@@ -25,6 +27,8 @@ from cellcolor.door.judging import judge as judge
 from cellcolor.door.judging import proven_range as proven_range
 from cellcolor.door.oracle import Oracle as Oracle
 from cellcolor.door.painting import paint as paint
+from cellcolor.door.parts import inspect as inspect
+from cellcolor.door.parts import repair as repair
 from cellcolor.door.planning import PlannedScene as PlannedScene
 from cellcolor.door.planning import plan as plan
 from cellcolor.door.reading import read as read
@@ -38,6 +42,7 @@ from cellcolor.errors import CellcolorError as CellcolorError
 from cellcolor.errors import ContradictionError as ContradictionError
 from cellcolor.errors import InputError as InputError
 from cellcolor.errors import TooLarge as TooLarge
+from cellcolor.oracle import PathVerdict as PathVerdict
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
 from cellcolor.painting.paint import Painted as Painted

@@ -52,12 +52,12 @@ nitpick_ignore_regex = [
     # Type variables, names for type checkers only, what annotated_types says of numbers, and
     # halves of a signature that Sphinx cannot read because of a dataclass's default factory.
     (r"py:class", r"(.*\.)?(T|Kind|_\w+|FieldInfo|NoneType|Handler)"),
-    (r"py:class", r"Ge|Gt|Le|Lt|[\d.e-]+|dict\[str"),
+    (r"py:class", r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[str|tuple\[~pathlib\.Path"),
     # Signatures of the front door that Sphinx takes as they are written: they name classes that
     # only type checkers import there.
     (
         r"py:class",
-        r"Path(Like)?(\[str\])?|NDArray|Scene|BuildResult|SearchSpace|cellcolor\.Drawing",
+        r"Path(Like)?(\[str\])?|NDArray|Array|Telling|Scene|BuildResult|SearchSpace|cellcolor\.Drawing",
     ),
 ]
 

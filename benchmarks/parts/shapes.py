@@ -74,8 +74,8 @@ _BALLS = np.array(
 )
 
 
-def blend() -> Mesh:
-    """A closed shape without edges: five balls, blended into one another."""
+def blend(spacing: float = 10.0) -> Mesh:
+    """A closed shape without edges: five balls, blended into one another; spacing in mm."""
     softness = 16.0  # mm
 
     def field(p: Array) -> Array:
@@ -86,7 +86,7 @@ def blend() -> Mesh:
 
     low = (_BALLS[:, :3] - _BALLS[:, 3:]).min(axis=0) - 30
     high = (_BALLS[:, :3] + _BALLS[:, 3:]).max(axis=0) + 30
-    return closed_surface(field, low, high, 10.0)
+    return closed_surface(field, low, high, spacing)
 
 
 def _without_repeats(loop: Array) -> Array:

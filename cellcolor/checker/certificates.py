@@ -12,16 +12,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.crossing_segments import TwoRegions
 from cellcolor.checker.groups import Groups
+from cellcolor.checker.hubs import Hubs
 from cellcolor.checker.plan_search import BudgetExceeded, Conflict, PlanSearch
 from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import validate
 
@@ -45,17 +47,36 @@ class BoundVerdict:
             that nothing here can verify.
         reason: why it was refused, a sentence; empty otherwise.
         tried: how many choices were tried.
+        budget: how many could have been tried.
     """
 
     bound: Bound
     outcome: Outcome
     reason: str = ""
     tried: int = 0
+    budget: int = BUDGET
+
+    @property
+    def trusted(self) -> bool:
+        """Nothing here verifies or refutes it: it rests on the solver that found it."""
+        return self.outcome in ("no certificate", "budget exceeded")
 
     def __str__(self) -> str:
-        tried = f", {self.tried} tried" if self.tried else ""
+        tried = f", {self.tried} of {self.budget} choices tried" if self.tried else ""
         reason = f": {self.reason}" if self.reason else ""
         return f"{self.bound}: {self.outcome}{tried}{reason}"
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object that ``cellcolor check --json`` has for it."""
+        return {
+            "kind": self.bound.kind,
+            "value": self.bound.value,
+            "holds_for": self.bound.holds_for,
+            "outcome": self.outcome,
+            "reason": self.reason,
+            "tried": self.tried,
+            "budget": self.budget,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,18 +98,26 @@ class _Crossing:
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """Cells that so many segments at least are needed to touch, and what they cannot do."""
+    """Cells that so many segments at least are needed to touch, and why fewer cannot.
+
+    Attributes:
+        value: so many.
+        cells: what they are needed to touch.
+        conflicts: what two segments cannot do.
+        hubs: cells that are taken away, to see how many pieces of segments are needed.
+    """
 
     __pydantic_config__ = _STRICT
 
     value: NonNegativeInt
     cells: tuple[int, ...]
     conflicts: tuple[_Crossing, ...] = ()
+    hubs: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class _Certificate:
-    """Of ``conflicts``; ``left_out`` has color, a cell of the region, and what stands in for it."""
+    """Of ``conflicts`` and ``hubs``; ``left_out`` has color, a cell of the region, and stand-in."""
 
     __pydantic_config__ = _STRICT
 
@@ -109,6 +138,7 @@ def verify_bound(
     bound: Bound,
     regions: Sequence[frozenset[ColorRegion]],
     budget: int = BUDGET,
+    deadline: Deadline = NEVER,
 ) -> BoundVerdict:
     """Verify a lower bound of the number of segments by its certificate.
 
@@ -118,12 +148,13 @@ def verify_bound(
         regions: the color regions that each cell lies in, see
             :mod:`cellcolor.checker.color_regions`.
         budget: how many choices may be tried.
+        deadline: when to give up, as if the budget was used up.
     """
-    if bound.kind not in ("cover", "strangers", "conflicts") or bound.certificate is None:
-        return BoundVerdict(bound, "no certificate")
-    proof = _Proof(instance, list(regions), budget)
+    if bound.kind not in ("cover", "strangers", "conflicts", "hubs") or bound.certificate is None:
+        return BoundVerdict(bound, "no certificate", budget=budget)
+    proof = _Proof(instance, list(regions), budget, deadline)
     try:
-        if bound.kind == "conflicts":
+        if bound.kind in ("conflicts", "hubs"):
             certificate = validate(_CERTIFICATE, bound.certificate)
             proof.leave_out(certificate.left_out)
             proof.verify(certificate.parts, bound.value)
@@ -131,12 +162,10 @@ def verify_bound(
             part = validate(_CELLS, {"value": bound.value} | bound.certificate)
             proof.verify((part,), bound.value)
     except BudgetExceeded:
-        return BoundVerdict(bound, "budget exceeded", tried=proof.tried)
-    except InputError as error:
-        return BoundVerdict(bound, "refused", str(error), proof.tried)
-    except _Refused as error:
-        return BoundVerdict(bound, "refused", str(error), proof.tried)
-    return BoundVerdict(bound, "verified", tried=proof.tried)
+        return BoundVerdict(bound, "budget exceeded", "", proof.tried, budget)
+    except (InputError, _Refused) as error:
+        return BoundVerdict(bound, "refused", str(error), proof.tried, budget)
+    return BoundVerdict(bound, "verified", "", proof.tried, budget)
 
 
 class _Proof:
@@ -147,12 +176,17 @@ class _Proof:
     """
 
     def __init__(
-        self, instance: Instance, regions: list[frozenset[ColorRegion]], budget: int
+        self,
+        instance: Instance,
+        regions: list[frozenset[ColorRegion]],
+        budget: int,
+        deadline: Deadline,
     ) -> None:
         self.tried = 0
         self._instance = instance
         self._regions = regions
         self._budget = budget
+        self._deadline = deadline
 
     def leave_out(self, steps: Sequence[tuple[int, int, int]]) -> None:
         """Leave out color regions that another color can stand in for, one after the other.
@@ -191,23 +225,54 @@ class _Proof:
         used: set[ColorRegion] = set()
         for part in parts:
             demands = {cell: self._regions_of(cell) for cell in part.cells}
-            own = frozenset[ColorRegion]().union(*demands.values())
+            hubs = {cell: self._regions_of(cell) for cell in part.hubs}
+            own = frozenset[ColorRegion]().union(*demands.values(), *hubs.values())
             if not used.isdisjoint(own):
                 raise _Refused("one color region lies in two parts")
             used |= own
-            search = PlanSearch(demands, list(self._conflicts(part)), self._budget - self.tried)
+            conflicts = list(self._conflicts(part))
+            pieces = part.value
+            if part.hubs:
+                demands = self._beside_hubs(part)
+                pieces += self._saved(part)
+            search = PlanSearch(demands, conflicts, self._budget - self.tried, self._deadline)
             try:
-                possible = search.is_possible(part.value - 1)
+                possible = search.is_possible(pieces - 1)
             finally:
                 self.tried += search.tried
             if possible:
-                least = f"fewer than {part.value}"
+                least = f"fewer than {pieces}"
                 what = "segments" if part.conflicts else "color regions"
                 raise _Refused(f"{least} {what} touch all of the cells {sorted(set(part.cells))}")
+
+    def _beside_hubs(self, part: _Part) -> dict[int, frozenset[ColorRegion]]:
+        """The color regions that are left of each cell to be touched when hubs are taken away."""
+        if part.conflicts:
+            raise _Refused("a part with hubs has conflicts as well")
+        regions = Hubs(self._instance, self._regions, part.hubs).regions()
+        for cell in part.cells:
+            if not regions[cell]:
+                raise _Refused(f"hub {cell} is to be touched")
+        return {cell: regions[cell] for cell in part.cells}
+
+    def _saved(self, part: _Part) -> int:
+        """The most segments that hubs save, by their links."""
+        hubs = Hubs(self._instance, self._regions, part.hubs)
+        for hub in part.hubs:
+            if problem := hubs.problem(hub):
+                raise _Refused(problem)
+        return sum(hubs.links(hub, self._count) for hub in sorted(set(part.hubs)))
+
+    def _count(self) -> None:
+        self.tried += 1
+        if self.tried > self._budget or self._deadline.over:
+            raise BudgetExceeded
 
     def _conflicts(self, part: _Part) -> Iterator[Conflict]:
         two_regions: dict[tuple[ColorRegion, ColorRegion], TwoRegions] = {}
         for crossing in part.conflicts:
+            if self._deadline.over:
+                raise BudgetExceeded
             ends = [frozenset(cells) for cells in (*crossing.one, *crossing.other)]
             if not all(ends):
                 raise _Refused("a conflict names no cells")

@@ -61,7 +61,7 @@ class TwoRegions:
         if not set(one) <= first - second or not set(other) <= second - first:
             return False
         walls = self._same_wall(other, 0) and self._same_wall(one, 1)
-        if not walls or not self._on_a_sphere(one[0]):
+        if not walls or not self._on_a_sphere[one[0]]:
             return False
         return self._parted(0, one, other) or self._parted(1, other, one)
 
@@ -76,14 +76,9 @@ class TwoRegions:
         theirs = self._way(1 - side, *other)
         if theirs is None:
             return False
-        shut = set()
-        for cell in self.cells[side] - self.cells[1 - side]:
-            own = self._way(side, pair[0], cell)
-            if own is None or not self._same_wall((pair[0], cell), 1 - side):
-                continue
-            ways = (own, theirs) if side == 0 else (theirs, own)
-            if self._crossings(*ways) % 2:
-                shut.add(cell)
+        odd = self._oddly_reached(side, pair[0], theirs)
+        alone = self.cells[side] - self.cells[1 - side]
+        shut = {cell for cell in odd & alone if self._same_wall((pair[0], cell), 1 - side)}
         return bool(shut) and (
             pair[1] in shut or self._way(side, *pair, shut=frozenset(shut)) is None
         )
@@ -125,21 +120,27 @@ class TwoRegions:
                         places.join((dart, False), (-dart, True))
         return places
 
-    def _on_a_sphere(self, cell: int) -> bool:
-        """Whether the component of a cell, its borders filled with discs, is a sphere (Euler)."""
-        reached = {cell}
-        todo = deque(reached)
-        while todo:
-            for dart in self._lists[todo.popleft()]:
-                beyond = self._beyond(dart)
-                if beyond != OUTSIDE and beyond not in reached:
-                    reached.add(beyond)
-                    todo.append(beyond)
-        darts = [dart for own in reached for dart in self._lists[own]]
-        points = {self._places.find((dart, False)) for dart in darts}
-        edges = {abs(dart) for dart in darts if self._beyond(dart) != OUTSIDE}
-        faces = sum(2 - len(self.instance.cells[own].loops) for own in reached)
-        return len(points) - len(edges) + faces == 2
+    @cached_property
+    def _on_a_sphere(self) -> dict[int, bool]:
+        """Whether each cell's component, its borders filled with discs, is a sphere (Euler)."""
+        spheres: dict[int, bool] = {}
+        for cell in self._union:
+            if cell in spheres:
+                continue
+            reached = [cell]
+            spheres[cell] = False
+            for place in reached:
+                for dart in self._lists[place]:
+                    beyond = self._beyond(dart)
+                    if beyond != OUTSIDE and beyond not in spheres:
+                        spheres[beyond] = False
+                        reached.append(beyond)
+            darts = [dart for own in reached for dart in self._lists[own]]
+            points = {self._places.find((dart, False)) for dart in darts}
+            edges = {abs(dart) for dart in darts if self._beyond(dart) != OUTSIDE}
+            faces = sum(2 - len(self.instance.cells[own].loops) for own in reached)
+            spheres |= dict.fromkeys(reached, len(points) - len(edges) + faces == 2)
+        return spheres
 
     def _continues(self, side: int, dart: int) -> bool:
         """Whether a region goes on across a dart of one of its cells."""
@@ -177,14 +178,7 @@ class TwoRegions:
 
         None if there is no curve, or none that passes through no cell of ``shut``.
         """
-        came: dict[int, int] = {start: 0}
-        todo = deque([start])
-        while todo and end not in came:
-            for dart in self._lists[todo.popleft()]:
-                beyond = self._beyond(dart)
-                if beyond not in came and beyond not in shut and self._continues(side, dart):
-                    came[beyond] = dart
-                    todo.append(beyond)
+        came = self._tree(side, start, shut)
         if end not in came:
             return None
         way: list[int] = []
@@ -194,17 +188,62 @@ class TwoRegions:
             cell = self._beyond(-came[cell])
         return way[::-1]
 
-    def _crossings(self, one: Sequence[int], other: Sequence[int]) -> int:
-        """How often two ways cross, drawn as straight chords of the cells' polygons."""
-        count = 0
-        chords = [
-            {self._beyond(way[k]): (-way[k], way[k + 1]) for k in range(len(way) - 1)}
-            for way in (one, other)
-        ]
-        for cell in chords[0].keys() & chords[1].keys():
-            place = {dart: number for number, dart in enumerate(self._lists[cell])}
-            # Where both cross an edge, the first does so nearer to the edge's beginning.
-            low, high = sorted(place[d] + (0.25 if d > 0 else 0.75) for d in chords[0][cell])
-            between = [low < place[d] + (0.75 if d > 0 else 0.25) < high for d in chords[1][cell]]
-            count += between[0] != between[1]
-        return count
+    def _tree(self, side: int, start: int, shut: frozenset[int] = frozenset()) -> dict[int, int]:
+        """The dart across which each cell of a region is first reached, in that order; 0 at first.
+
+        Cells of ``shut`` are not passed.
+        """
+        key = side, start, shut
+        if key not in self._trees:
+            came = self._trees[key] = {start: 0}
+            todo = deque([start])
+            while todo:
+                for dart in self._lists[todo.popleft()]:
+                    beyond = self._beyond(dart)
+                    if beyond not in came and beyond not in shut and self._continues(side, dart):
+                        came[beyond] = dart
+                        todo.append(beyond)
+        return self._trees[key]
+
+    @cached_property
+    def _trees(self) -> dict[tuple[int, int, frozenset[int]], dict[int, int]]:
+        """What ``_tree`` has found."""
+        return {}
+
+    def _oddly_reached(self, side: int, start: int, theirs: Sequence[int]) -> set[int]:
+        """The cells to which a side's ways in the tree from a cell cross a way of the other oddly.
+
+        Ways are drawn as straight chords of the cells' polygons, and end in the middle of cells
+        that the other side has not.
+        """
+        passed = {
+            self._beyond(theirs[k]): (-theirs[k], theirs[k + 1]) for k in range(len(theirs) - 1)
+        }
+        came = self._tree(side, start)
+        odd: set[int] = set()
+        for cell, dart in came.items():
+            before = self._beyond(-dart) if dart else start
+            crossed = before in odd
+            if before != start and before in passed:
+                chord = (-came[before], dart)
+                ways = (chord, passed[before])
+                crossed ^= self._cross(before, *(ways if side == 0 else ways[::-1]))
+            if crossed:
+                odd.add(cell)
+        return odd
+
+    def _cross(self, cell: int, one: tuple[int, int], other: tuple[int, int]) -> bool:
+        """Whether two chords of a cell's polygon cross, each from one dart to another."""
+        place = self._number[cell]
+        # Where both cross an edge, the first does so nearer to the edge's beginning.
+        low, high = sorted(place[d] + (0.25 if d > 0 else 0.75) for d in one)
+        between = [low < place[d] + (0.75 if d > 0 else 0.25) < high for d in other]
+        return between[0] != between[1]
+
+    @cached_property
+    def _number(self) -> dict[int, dict[int, int]]:
+        """Where each dart stands in its cell's list."""
+        return {
+            cell: {dart: number for number, dart in enumerate(darts)}
+            for cell, darts in self._lists.items()
+        }

@@ -6,7 +6,7 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from cellcolor.checker.certificates import BUDGET, BoundVerdict, verify_bound
+from cellcolor.checker.certificates import BoundVerdict, verify_bound
 from cellcolor.checker.claimed_numbers import number_problems
 from cellcolor.checker.color_regions import ColorRegion, regions_of_cells
 from cellcolor.checker.dart_lists import BadSeams, TooManyDarts, live_lists
@@ -154,7 +154,6 @@ def check_solution(
     instance: Instance,
     solution: Solution,
     regions: Sequence[frozenset[ColorRegion]] | None = None,
-    budget: int = BUDGET,
 ) -> Report:
     """Hold a solution against its instance: its division, and every number in it.
 
@@ -167,7 +166,6 @@ def check_solution(
         solution: a solution of it.
         regions: the color regions that each cell lies in, if they are not to be read off the
             graph; for certificates.
-        budget: steps for each certificate.
     """
     problems: list[str] = []
     reference = solution.instance
@@ -177,9 +175,7 @@ def check_solution(
     if solution.search_space == "paper" and solution.strands != 1:
         problems.append("strands: must be 1 in search space 'paper'")
     regions = regions_of_cells(instance) if regions is None else regions
-    verdicts = tuple(
-        verify_bound(instance, bound, regions, budget) for bound in solution.bounds or ()
-    )
+    verdicts = tuple(verify_bound(instance, bound, regions) for bound in solution.bounds or ())
     refused = [
         f"bounds[{number}].certificate: {verdict.reason}"
         for number, verdict in enumerate(verdicts)

@@ -9,9 +9,12 @@ in each of its color regions. With no conflicts that is a search for a set cover
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import reduce
+from operator import or_
 
 from cellcolor.checker.color_regions import ColorRegion
+from cellcolor.deadline import NEVER, Deadline
 
 __all__ = ["BudgetExceeded", "Conflict", "PlanSearch"]
 
@@ -31,13 +34,27 @@ class Conflict:
 
 
 class BudgetExceeded(Exception):
-    """More choices than were allowed."""
+    """More choices than were allowed, or the deadline came first."""
 
 
-@dataclass(slots=True)
+_Ends = tuple[int, int, int, int]
+"""Which conflicts have their cells 0, 1, 2 and 3 touched, as the bits of four numbers."""
+
+
+@dataclass(frozen=True, slots=True)
 class _Segment:
     region: ColorRegion
-    touched: set[int] = field(default_factory=set)
+    ends: _Ends = (0, 0, 0, 0)
+
+    @property
+    def connects(self) -> tuple[int, int]:
+        """The conflicts whose first segment it is by now, and those whose second it is, as bits."""
+        return self.ends[0] & self.ends[1], self.ends[2] & self.ends[3]
+
+    def grown(self, more: _Ends) -> _Segment:
+        """It with more ends touched."""
+        a, b, c, d = self.ends
+        return _Segment(self.region, (a | more[0], b | more[1], c | more[2], d | more[3]))
 
 
 class PlanSearch:
@@ -52,20 +69,28 @@ class PlanSearch:
         regions: Mapping[int, frozenset[ColorRegion]],
         conflicts: Sequence[Conflict],
         budget: int,
+        deadline: Deadline = NEVER,
     ) -> None:
         """
         Args:
             regions: the color regions that each cell lies in; these cells have to be touched.
             conflicts: between segments.
             budget: how many choices may be tried.
+            deadline: when to give up.
         """
         self.tried = 0
         self._regions = regions
         self._budget = budget
-        self._conflicts: dict[ColorRegion, list[Conflict]] = {}
-        for conflict in conflicts:
-            for region in set(conflict.regions):
-                self._conflicts.setdefault(region, []).append(conflict)
+        self._deadline = deadline
+        ends: dict[tuple[ColorRegion, int], list[int]] = {}
+        for number, conflict in enumerate(conflicts):
+            for end, cells in enumerate(conflict.cells):
+                for cell in cells:
+                    key = conflict.regions[end // 2], cell
+                    ends.setdefault(key, [0, 0, 0, 0])[end] |= 1 << number
+        self._ends: dict[tuple[ColorRegion, int], _Ends] = {
+            key: (a, b, c, d) for key, (a, b, c, d) in ends.items()
+        }
 
     def is_possible(self, segments: int) -> bool:
         """Whether so many segments can touch all cells.
@@ -79,54 +104,55 @@ class PlanSearch:
         """Whether some segments and ``more`` new ones can touch the cells that are left, too."""
         if not left:
             return True
-        able = {cell: self._able(found, cell) for cell in left}
+        connected = [segment.connects for segment in found]
+        first = reduce(or_, (bits for bits, _ in connected), 0)
+        second = reduce(or_, (bits for _, bits in connected), 0)
+        able = {cell: self._able(found, (first, second), cell) for cell in left}
         if self._need_segments_of_their_own([c for c in left if not able[c]]) > more:
             return False
         opened = {cell: len(self._regions[cell]) if more > 0 else 0 for cell in left}
         cell = min(left, key=lambda cell: (len(able[cell]) + opened[cell], cell))
         rest = left - {cell}
-        for segment in able[cell]:
+        for number, grown in able[cell]:
             self._count()
-            segment.touched.add(cell)
-            possible = self._extends(found, rest, more)
-            segment.touched.remove(cell)
-            if possible:
+            if self._extends([*found[:number], grown, *found[number + 1 :]], rest, more):
                 return True
         for region in sorted(self._regions[cell]) if more > 0 else ():
             self._count()
-            if self._extends([*found, _Segment(region, {cell})], rest, more - 1):
+            opening = _Segment(region, self._ends.get((region, cell), (0, 0, 0, 0)))
+            if self._extends([*found, opening], rest, more - 1):
                 return True
         return False
 
     def _count(self) -> None:
         self.tried += 1
-        if self.tried > self._budget:
+        if self.tried > self._budget or self._deadline.over:
             raise BudgetExceeded
 
-    def _able(self, found: Sequence[_Segment], cell: int) -> list[_Segment]:
-        """The segments that can touch a cell besides what they touch."""
-        return [
-            segment
-            for segment in found
-            if segment.region in self._regions[cell] and not self._crosses(found, segment, cell)
-        ]
+    def _able(
+        self, found: Sequence[_Segment], connected: tuple[int, int], cell: int
+    ) -> list[tuple[int, _Segment]]:
+        """The numbers of the segments that can touch a cell too, and each as it is then.
 
-    def _crosses(self, found: Sequence[_Segment], segment: _Segment, cell: int) -> bool:
-        """Whether a segment that touches a cell as well would cross another one."""
-        touched = segment.touched | {cell}
-        for conflict in self._conflicts.get(segment.region, ()):
-            first = conflict.regions[0] == segment.region
-            own, theirs = conflict.cells[:2], conflict.cells[2:]
-            if not first:
-                own, theirs = theirs, own
-            if any(touched.isdisjoint(end) for end in own):
+        Args:
+            found: the segments.
+            connected: the conflicts of which some segment is the first, and the second, as bits.
+            cell: the cell.
+        """
+        able = []
+        for number, segment in enumerate(found):
+            if segment.region not in self._regions[cell]:
                 continue
-            region = conflict.regions[1 if first else 0]
-            for another in found:
-                connects = not any(another.touched.isdisjoint(end) for end in theirs)
-                if another.region == region and connects:
-                    return True
-        return False
+            more = self._ends.get((segment.region, cell))
+            if more is None:
+                able.append((number, segment))
+                continue
+            grown = segment.grown(more)
+            # A segment is of one region, so that it never is both segments of a conflict.
+            first, second = grown.connects
+            if not (first & connected[1] or second & connected[0]):
+                able.append((number, grown))
+        return able
 
     def _need_segments_of_their_own(self, cells: Sequence[int]) -> int:
         """Of cells that no segment can touch: so many are in different color regions altogether."""

@@ -69,6 +69,8 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
     ):
         if color is None and available:
             reason = f"null, but colors {list(available)} reach this vertex"
+        elif color is not None and not 0 <= color < len(surface.colors):
+            reason = f"there is no color {color}"
         elif color is not None and color not in available:
             reason = f"color {color} does not reach this vertex"
         else:

@@ -7,12 +7,9 @@ from pathlib import Path
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain
-from cellcolor.data import plan as plan_file
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.subject import Subject, open_subject
-from cellcolor.errors import InputError
-from cellcolor.files.documents import read_document
 
 
 def open_file(path: Path, deadline: Deadline = NEVER) -> Subject:
@@ -29,14 +26,6 @@ def open_file(path: Path, deadline: Deadline = NEVER) -> Subject:
         subject = open_subject(path, deadline, report_stage)
     INTERRUPTS.check()
     return subject
-
-
-def is_plan(claim: Path) -> bool:
-    """Whether a file says that it is a plan."""
-    try:
-        return read_document(claim).get("format") == plan_file.FORMAT
-    except InputError:
-        return False
 
 
 def read_subject(path: Path, deadline: Deadline = NEVER) -> Subject:

@@ -9,23 +9,17 @@ from typing import TYPE_CHECKING
 
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_subject
+from cellcolor.cli.painted_files import check_painted, write_painted
 from cellcolor.cli.terminal import complain, say
-from cellcolor.data import plan as plan_file
-from cellcolor.data import surface as surface_file
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count, listed
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
 
 if TYPE_CHECKING:
     from cellcolor.motion.scene_painting import ScenePainting
     from cellcolor.painting.border_report import BorderReport
     from cellcolor.painting.paint import Painted
-
-_SURFACE = kind_of_format(surface_file.FORMAT)
-_PLAN = kind_of_format(plan_file.FORMAT)
-_ENDING = ".surface.json"
 
 
 def paint_files(
@@ -40,12 +34,8 @@ def paint_files(
         tool_radius: of the tool's footprint, m; None for what ``cellcolor.paint`` takes.
         deadline: when to give up.
     """
-    if not output.name.endswith(_ENDING) or is_stream(output):
-        raise InputError(str(output), None, f"must be a file with the ending {_ENDING}")
-    plan_path = output.with_name(output.name.removesuffix(_ENDING) + ".plan.json")
     inputs = [source, claim]
-    check_output(output, _SURFACE, inputs)
-    check_output(plan_path, _PLAN, inputs)
+    plan_path = check_painted(output, inputs)
     solution = Solution.read(claim)
     if tool_radius is not None and not 0 < tool_radius < math.inf:
         raise InputError(None, "--tool-radius", "must be a positive number of meters")
@@ -56,20 +46,14 @@ def paint_files(
         subject = read_subject(source, deadline)
         if subject.surface_path is not None:  # of an instance: what it names is read as well
             inputs.append(subject.surface_path)
-        check_output(output, _SURFACE, inputs)
+        check_painted(output, inputs)
         painted, asked = paint_by(subject, solution, tool_radius, deadline)
     except OutOfTime:
         complain(f"{source}: not painted: the time limit came first; nothing is written")
         return Exit.STOPPED
     except InputError as error:
         raise error if error.file else error.in_file(str(claim)) from error
-    write(
-        [
-            Output(plan_path, _PLAN, [painted.plan.to_json().encode()]),
-            Output(output, _SURFACE, [painted.surface.to_json().encode()]),
-        ],
-        inputs,
-    )
+    write_painted(painted, output, inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
     lift_offs = count(max(0, painted.segments - 1), "lift-off")

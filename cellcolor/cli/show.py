@@ -7,9 +7,11 @@ from pathlib import Path
 import click
 
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.inputs import is_plan, open_file
+from cellcolor.cli.inputs import open_file
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import say
+from cellcolor.data import plan as plan_file
+from cellcolor.door.claims import format_of_claim
 from cellcolor.door.drawing import View, draw, kind_of_picture, picture_of
 from cellcolor.door.extras import extras_for
 from cellcolor.errors import InputError
@@ -34,7 +36,7 @@ def show_files(
     kind = kind_of_picture(output)
     check_output(output, kind, files)
     claim = files[1] if len(files) > 1 else None
-    if claim is not None and name == "segments" and is_plan(claim):
+    if name == "segments" and claim is not None and format_of_claim(claim) == plan_file.FORMAT:
         name = "plan"
     claims = {"plan" if name == "plan" else "solution": claim}
     view = View(name, color=color, vertex=vertex, branch=branch, **claims)

@@ -15,7 +15,7 @@ from cellcolor.data.coverage import Coverage
 from cellcolor.data.version_1 import fingerprint_of_version_1
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, settle
 
@@ -279,11 +279,7 @@ class Instance:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        document = read_document(path)
-        try:
-            return cls.from_document(document)
-        except InputError as error:
-            raise error.in_file(str(path)) from error
+        return read_as(path, cls.from_document)
 
 
 _ADAPTER = TypeAdapter(Instance)

@@ -10,8 +10,7 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter
 
 from cellcolor.data.wording import count
-from cellcolor.errors import InputError
-from cellcolor.files.documents import read_document, take_body, validate
+from cellcolor.files.documents import read_as, take_body, validate
 from cellcolor.files.validation import settle
 
 FORMAT = "cellcolor/plan"
@@ -63,11 +62,7 @@ class Plan:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        document = read_document(path)
-        try:
-            return cls.from_document(document)
-        except InputError as error:
-            raise error.in_file(str(path)) from error
+        return read_as(path, cls.from_document)
 
 
 _ADAPTER = TypeAdapter(Plan)

@@ -18,6 +18,7 @@ _REASONS = {
     "strangers": "that many cells cannot share a segment, no two of them",
     "cover": "fewer color regions cannot touch every cell",
     "conflicts": "fewer segments would have to cross each other",
+    "hubs": "more connections do not fit side by side into cells with many edges",
     "crossings": "the full model has nothing better, and more strands would be of no use",
 }
 """Why no division of the surface has fewer segments, for each kind of bound (docs/formats.md)."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from cellcolor.errors import InputError
 
-__all__ = ["integers", "numbers", "rows_of", "rows_of_three", "truths"]
+__all__ = ["integers", "numbered_rows", "numbers", "rows_of", "rows_of_three", "truths"]
 
 
 def rows_of(content: Any, width: int, member: str) -> NDArray[np.float64]:
@@ -24,6 +24,21 @@ def rows_of(content: Any, width: int, member: str) -> NDArray[np.float64]:
     if array.ndim != 2 or array.shape[1] != width:
         raise InputError(None, member, f"each entry needs {width} numbers")
     return _finite(array, member)
+
+
+def numbered_rows(content: Any, member: str) -> NDArray[np.float64]:
+    """An array (k, m) of float64, NaN allowed, of whatever width.
+
+    Raises:
+        InputError: it has another shape, or something in it is infinite or no number.
+    """
+    array = _array(content, np.float64, "iuf", "numbers", member)
+    if array.ndim != 2:
+        raise InputError(None, member, "must be rows of numbers")
+    bad = np.argwhere(np.isinf(array))
+    if len(bad):
+        raise InputError(None, f"{member}[{bad[0][0]}][{bad[0][1]}]", "is infinite")
+    return _settled(array)
 
 
 def rows_of_three(content: Any, member: str) -> NDArray[np.float64]:

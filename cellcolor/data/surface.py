@@ -15,7 +15,7 @@ from cellcolor.data.comparing import same_members
 from cellcolor.data.mesh import directed_edges
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, plain, settle, validate_python
 
@@ -287,11 +287,7 @@ class LabelledSurface:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        document = read_document(path)
-        try:
-            return cls.from_document(document)
-        except InputError as error:
-            raise error.in_file(str(path)) from error
+        return read_as(path, cls.from_document)
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from os import PathLike
 from typing import Any
 
@@ -14,7 +14,7 @@ from cellcolor.data.comparing import same_members
 from cellcolor.data.rows import integers, rows_of_three
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.validation import settle
 
 FORMAT = "cellcolor/tool-paths"
@@ -163,11 +163,7 @@ class ToolPaths:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        document = read_document(path)
-        try:
-            return cls.from_document(document)
-        except InputError as error:
-            raise error.in_file(str(path)) from error
+        return read_as(path, cls.from_document)
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,7 +176,7 @@ class _PathInFile:
     color: int
     points: list[tuple[float, float, float]]
     normals: list[tuple[float, float, float]]
-    faces: list[int] = field(default_factory=list)
+    faces: list[int]
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from os import PathLike
 from typing import Any
 
@@ -14,11 +14,12 @@ from cellcolor.data.comparing import same_members
 from cellcolor.data.rows import integers, numbers, rows_of, rows_of_three, truths
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.validation import json_content, settle
 
 FORMAT = "cellcolor/trajectory"
 _ARRAYS = ("times", "joints", "points", "normals", "contact", "segment")
+_LISTS = ("extra_lift_offs", "left_out", "repeated")
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +72,7 @@ class RepeatedStretch:
     Attributes:
         sample: the first of them.
         last_sample: the last of them.
-        reason: a short cause, such as ``narrow`` where there is no room for two passes.
+        reason: a short cause, such as ``beside another pass`` where there is no room for two.
     """
 
     sample: int
@@ -183,32 +184,11 @@ class Trajectory:
         }
         document |= {name: getattr(self, name).tolist() for name in _ARRAYS}
         document["unplanned"] = self.unplanned
-        document["extra_lift_offs"] = [
-            {
-                "sample": extra.sample,
-                "segment": extra.segment,
-                "reason": extra.reason,
-                "text": extra.text,
-                "place": extra.place,
-            }
-            for extra in self.extra_lift_offs
-        ]
-        document["left_out"] = [
-            {
-                "segment": part.segment,
-                "area_m2": part.area_m2,
-                "reason": part.reason,
-                "place": part.place,
-            }
-            for part in self.left_out
-        ]
-        document["repeated"] = [
-            {"sample": part.sample, "last_sample": part.last_sample, "reason": part.reason}
-            for part in self.repeated
-        ]
+        for name in _LISTS:
+            document[name] = [asdict(entry) for entry in getattr(self, name)]
         if self.meta:
             document["meta"] = self.meta
-        return dump_lines(document, frozenset({"extra_lift_offs", "left_out", "repeated"}))
+        return dump_lines(document, frozenset(_LISTS))
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Trajectory:
@@ -223,11 +203,7 @@ class Trajectory:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        document = read_document(path)
-        try:
-            return cls.from_document(document)
-        except InputError as error:
-            raise error.in_file(str(path)) from error
+        return read_as(path, cls.from_document)
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,7 @@ from pydantic import ConfigDict, Field, TypeAdapter
 
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_document, take_body, validate
+from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.validation import settle
 
 FORMAT = "cellcolor/trajectory-verdict"
@@ -24,6 +24,7 @@ FaultKind = Literal[
     "pose",
     "off surface",
     "tilted",
+    "turned",
     "invalid",
     "branch",
     "crack",
@@ -209,16 +210,12 @@ class TrajectoryVerdict:
         Raises:
             InputError: the file cannot be read or holds something that the format forbids.
         """
-        document = read_document(path)
-        try:
-            return cls.from_document(document)
-        except InputError as error:
-            raise error.in_file(str(path)) from error
+        return read_as(path, cls.from_document)
 
 
 @dataclass(frozen=True, slots=True)
 class _VerdictFile:
-    """The file's members."""
+    """The file's members, and ``file``, which ``cellcolor check`` adds to what it prints."""
 
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -237,6 +234,10 @@ class _VerdictFile:
     faults: tuple[Fault, ...]
     covered: CoveredArea | None
     notes: tuple[str, ...]
+    file: Annotated[
+        str | None,
+        Field(description="the trajectory as it was named to cellcolor check; in no stored file."),
+    ] = None
 
 
 _MEMBERS = tuple(TrajectoryVerdict.__dataclass_fields__)

@@ -22,6 +22,7 @@ _EXTRAS = {
     "pinocchio": "frontend",
     "scipy": "frontend",
     "trimesh": "frontend",
+    "gpytoolbox": "parts",
     "ompl": "motion",
     "potpourri3d": "motion",
     "toppra": "motion",

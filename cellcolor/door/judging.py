@@ -13,15 +13,15 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import FORMAT as TRAJECTORY
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-from cellcolor.deadline import Deadline
+from cellcolor.door.claims import format_of_claim
 from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.result import Result
 from cellcolor.door.solving import deadline_after
-from cellcolor.door.subject import Solvable, Subject, open_subject
-from cellcolor.door.trajectories import format_of_claim, judge_trajectory, read_trajectory
+from cellcolor.door.subject import Solvable, open_subject
+from cellcolor.door.trajectories import judge_trajectory, read_trajectory
 from cellcolor.oracle import ProvenRange, Verdict
 
-__all__ = ["check", "judge", "judge_by", "proven_range"]
+__all__ = ["check", "judge", "proven_range"]
 
 
 @overload
@@ -137,7 +137,8 @@ def judge(
             shipped name, the value.
         plan: one color per vertex, its number or its name, None exactly where the vertex has none;
             in an array of integers, which cannot hold None, -1. Or a plan, a solution, or the file
-            of one.
+            of one; for a scene also a plan in joint angles
+            (:meth:`cellcolor.Oracle.judge <cellcolor.door.oracle.Oracle.judge>`).
         bounds: this surface's ``cellcolor.proven_range``, if known already.
         time_limit: seconds for all of it, above all for finding the range otherwise; None for as
             long as it takes.
@@ -148,11 +149,4 @@ def judge(
         OutOfTime: the time limit came before there was a surface.
     """
     deadline = deadline_after(time_limit)
-    return judge_by(open_subject(surface, deadline), plan, deadline, bounds)
-
-
-def judge_by(
-    subject: Subject, plan: AnyPlan, deadline: Deadline, bounds: ProvenRange | None = None
-) -> Verdict:
-    """The verdict on a plan by a moment that may have passed already: :func:`judge`."""
-    return Oracle(subject, bounds=bounds).judge(plan, deadline=deadline)
+    return Oracle(open_subject(surface, deadline), bounds=bounds).judge(plan, deadline=deadline)

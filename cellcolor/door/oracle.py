@@ -6,25 +6,27 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import cached_property
 from os import PathLike
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, overload
 
-import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.vertex_plan import PlanReport, check_plan
-from cellcolor.data import plan as plan_file
+from cellcolor.data.joint_plan import ContactPath, JointPlan
 from cellcolor.data.plan import Plan
 from cellcolor.data.proof_wording import reason_of, witness_in_words
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.deadline import Deadline
+from cellcolor.door.claims import color_numbers, read_claim
+from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
 from cellcolor.door.result import Result
 from cellcolor.door.solving import deadline_after
-from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge
-from cellcolor.files.documents import parse_first_object, read_text
-from cellcolor.oracle import BetterPainting, Proof, ProvenRange, Verdict, prove
+from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.painting.paint import paint
 from cellcolor.solvers.bounds.witness import witness
@@ -32,9 +34,17 @@ from cellcolor.solvers.bounds.witness import witness
 __all__ = ["AnyPlan", "Oracle"]
 
 AnyPlan: TypeAlias = (
-    Plan | Solution | Result | Sequence[int | str | None] | NDArray[Any] | str | PathLike[str]
+    Plan
+    | Solution
+    | Result
+    | JointPlan
+    | AnyPath
+    | Sequence[int | str | None]
+    | NDArray[Any]
+    | str
+    | PathLike[str]
 )
-"""A plan, a solution, one color per vertex, or the file of a plan or a solution."""
+"""One color per vertex, a plan, a solution, a plan in joint angles, or the file of one of these."""
 
 
 class Oracle:
@@ -109,7 +119,7 @@ class Oracle:
             if self._known is not None:
                 self.__dict__["_proof"] = Proof(self._known)
             else:
-                with _named(self._subject):
+                with _in_file(None if self._subject.path is None else str(self._subject.path)):
                     self.__dict__["_proof"] = prove(self.surface, deadline, **self._options)
         proof: Proof = self.__dict__["_proof"]
         return proof
@@ -126,29 +136,66 @@ class Oracle:
             return None
         return better_painting(self.surface, painted)
 
+    @overload
+    def judge(self, plan: AnyPath, *, deadline: Deadline | None = None) -> PathVerdict: ...
+
+    @overload
+    def judge(self, plan: AnyPlan, *, deadline: Deadline | None = None) -> Verdict: ...
+
     def judge(self, plan: AnyPlan, *, deadline: Deadline | None = None) -> Verdict:
         """The verdict on a plan: is it valid, how many segments has it, can it be beaten and where?
+
+        A plan in joint angles is told by its type, because a bare array of them could be one row a
+        vertex as well as one row a sample of a path. It needs a scene.
 
         Args:
             plan: one color per vertex, its number or its name, None exactly where the vertex has
                 none; in an array of integers, which cannot hold None, -1. Or a plan, a solution of
-                the surface, or the file of one.
+                the surface, or the file of one. Or a configuration per vertex
+                (:class:`cellcolor.JointPlan <cellcolor.data.joint_plan.JointPlan>`). Or a tool
+                path with its joints
+                (:class:`cellcolor.ContactPath <cellcolor.data.joint_plan.ContactPath>`), a
+                trajectory, or the file of one, JSON or CSV.
             deadline: for the proof, if nothing has been proved yet; None for the time limit.
+
+        Returns:
+            Of a tool path a
+            :class:`PathVerdict <cellcolor.oracle.joint_verdicts.PathVerdict>`.
 
         Raises:
             BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.
-            InputError: the plan or the surface cannot be used.
+            InputError: the plan or the surface cannot be used; a plan in joint angles goes with a
+                scene.
         """
+        file = str(plan) if isinstance(plan, (str, PathLike)) else None
         if isinstance(plan, (str, PathLike)):
-            plan = _read(plan)
+            plan = read_claim(plan)
+        if isinstance(plan, (ContactPath, Trajectory, TrajectoryTable)):
+            with _in_file(file):
+                found = colors_of_path(self._subject, plan)
+            return self._of_path(found, deadline)
+        if isinstance(plan, JointPlan):
+            colors, violations = colors_of_joints(self._subject, plan)
+            if violations:
+                problems = tuple(map(str, violations))
+                about: dict[str, Any] = {"surface": self.surface, "plan": colors}
+                return Verdict(problems, None, self._known, violations, **about)
+            plan = colors
+        return self._of_colors(plan, deadline)
+
+    def _of_colors(self, plan: Any, deadline: Deadline | None) -> Verdict:
+        """The verdict on a plan in colors, or on a solution."""
         if isinstance(plan, Result):
             plan = plan.solution
         if isinstance(plan, Solution):
             report = check_solution(self._subject.graph(), plan)
-            segments = None if report.problems else report.segments
-            found, given = PlanReport(report.problems, segments), None
+            problems = report.problems
+            if not problems and report.segments is None:
+                problems = ("cells: null, there is no division to judge",)
+            segments = None if problems else report.segments
+            found, given = PlanReport(problems, segments), None
         else:
-            given = plan if isinstance(plan, Plan) else Plan(self._colors(plan))
+            given = plan if isinstance(plan, Plan) else Plan(color_numbers(self.surface, plan))
             found = check_plan(self.surface, given)
         about: dict[str, Any] = {"surface": self.surface, "plan": given}
         segments = found.segments
@@ -164,6 +211,30 @@ class Oracle:
             improvement = improvement_of(self.surface, found.segment_of, self.best)
         return Verdict((), segments, bounds, improvement=improvement, **about)
 
+    def _of_path(self, found: PathColors, deadline: Deadline | None) -> PathVerdict:
+        """The verdict on a tool path, by what it comes to in colors."""
+        coloring = found.coloring
+        about: dict[str, Any] = {
+            "surface": self.surface,
+            "plan": coloring.plan,
+            "strokes": found.path.strokes,
+            "color_changes": coloring.color_changes,
+            "reachable": found.reachable,
+            "untouched": len(found.violations),
+        }
+        if found.problems:
+            return PathVerdict(found.problems, None, self._known, found.violations, **about)
+        of_colors = self._of_colors(coloring.plan, deadline)
+        return PathVerdict(
+            (),
+            of_colors.segments,
+            of_colors.bounds,
+            improvement=of_colors.improvement,
+            why=of_colors.why,
+            runs=coloring.runs,
+            **about,
+        )
+
     def __repr__(self) -> str:
         proved = f", {self.__dict__['_proof'].bounds}" if "_proof" in self.__dict__ else ""
         return f"<{type(self).__name__} of {self.surface.name!r}{proved}>"
@@ -177,41 +248,13 @@ class Oracle:
         cells = witness_in_words(proof.decomposition.instance, witness(proof.solution))
         return cells or reason_of(proof.solution)
 
-    def _colors(self, plan: Any) -> Any:
-        """Numbers for names, None for -1 in an array of integers; the rest is left to the plan."""
-        if isinstance(plan, np.ndarray) and plan.ndim == 1 and plan.dtype.kind == "i":
-            return [None if color == -1 else color for color in plan.tolist()]
-        if isinstance(plan, np.ndarray):
-            plan = plan.tolist()
-        if not isinstance(plan, Sequence):
-            return plan
-        number = {name: color for color, name in enumerate(self.surface.colors)}
-        colors = []
-        for vertex, color in enumerate(plan):
-            if isinstance(color, str):
-                if color not in number:
-                    message = f"the surface has no color {color!r}"
-                    raise InputError(None, f"vertex_colors[{vertex}]", message)
-                color = number[color]
-            colors.append(color)
-        return colors
-
 
 @contextmanager
-def _named(subject: Subject) -> Iterator[None]:
-    """Name the subject's file in errors that name none."""
+def _in_file(file: str | None) -> Iterator[None]:
+    """Name the file of a surface or a plan, if it is in one, in errors that name none."""
     try:
         yield
     except InputError as error:
-        if error.file or subject.path is None:
+        if error.file or file is None:
             raise
-        raise error.in_file(str(subject.path)) from error
-
-
-def _read(path: str | PathLike[str]) -> Plan | Solution:
-    """A plan, or a solution, whichever the file says it is."""
-    try:
-        format_name = parse_first_object(read_text(path)).get("format")
-    except InputError as error:
-        raise error if error.file else error.in_file(str(path)) from error
-    return Plan.read(path) if format_name == plan_file.FORMAT else Solution.read(path)
+        raise error.in_file(file) from error

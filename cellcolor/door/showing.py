@@ -36,7 +36,8 @@ def show(
         source: what to draw: its file, its shipped name, or the value.
         path: a file .html, .png or .svg; None draws without writing, for notebooks.
         view: the picture: ``cells``, ``color``, ``graph``, ``plan``, ``reasons`` (why points
-            are out of reach), ``segments`` or ``arm``; None for what the options below ask for.
+            are out of reach), ``segments``, ``why`` (fewer are not enough) or ``arm``; None for
+            what the options below ask for.
         solution: by segment, in this solution, result or file of one.
         color: where one color is available, by its name or number.
         vertex: the arm on this vertex, in one ``branch``.
@@ -57,7 +58,7 @@ def show(
         if len(names) > 1:
             raise InputError(None, None, "one of color, vertex, solution and plan at a time")
         view = names[0] if names else _usual_view(source, subject)
-    if view == "segments" and solution is None and isinstance(source, Result):
+    if view in ("segments", "why") and solution is None and isinstance(source, Result):
         solution = source.solution
     seen = View(view, solution, color, vertex, branch, plan)
     drawing = draw(picture_of(seen), subject, seen)

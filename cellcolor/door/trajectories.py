@@ -7,31 +7,17 @@ from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
 
-from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import Deadline
 from cellcolor.door.extras import extras_for
 from cellcolor.door.subject import Subject
-from cellcolor.errors import InputError
-from cellcolor.files.documents import read_document
 
-__all__ = ["ReadTrajectory", "format_of_claim", "judge_trajectory", "read_trajectory"]
+__all__ = ["ReadTrajectory", "is_table", "judge_trajectory", "read_trajectory"]
 
 ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
 """A trajectory, or a table that a scene's arm has to complete."""
-
-
-def format_of_claim(file: str | PathLike[str]) -> str | None:
-    """The format of what is to be checked; tables are told by their suffix, None if unreadable."""
-    if _is_table(file):
-        return trajectory_file.FORMAT
-    try:
-        form = read_document(file).get("format")
-    except InputError:
-        return None
-    return form if isinstance(form, str) else None
 
 
 def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:
@@ -40,7 +26,7 @@ def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:
     Raises:
         InputError: it cannot be used; names file and member, or file, line and column.
     """
-    return read_trajectory_csv(file) if _is_table(file) else Trajectory.read(file)
+    return read_trajectory_csv(file) if is_table(file) else Trajectory.read(file)
 
 
 def judge_trajectory(
@@ -83,5 +69,6 @@ def judge_trajectory(
     )
 
 
-def _is_table(file: str | PathLike[str]) -> bool:
+def is_table(file: str | PathLike[str]) -> bool:
+    """Whether a file is a table of a trajectory, which its suffix says."""
     return Path(file).suffix == ".csv"

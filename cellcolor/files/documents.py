@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from os import PathLike
 from typing import Any, TypeVar
 
@@ -90,6 +90,19 @@ def read_document(path: str | PathLike[str]) -> dict[str, Any]:
     text = read_text(path)
     try:
         return parse_json(text)
+    except InputError as error:
+        raise error.in_file(str(path)) from error
+
+
+def read_as(path: str | PathLike[str], from_document: Callable[[dict[str, Any]], T]) -> T:
+    """What a function makes of the JSON object in a file; its errors get the file's name.
+
+    Raises:
+        InputError: the file cannot be read, or the function refuses what it holds.
+    """
+    document = read_document(path)
+    try:
+        return from_document(document)
     except InputError as error:
         raise error.in_file(str(path)) from error
 

@@ -16,6 +16,7 @@ from cellcolor.data.comparing import same_members
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.contact.stand_in_report import report_on
 from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring
@@ -32,6 +33,11 @@ if TYPE_CHECKING:
 
 __all__ = ["BuildResult", "build_surface", "result_of"]
 
+_INJECTIVE = (
+    "solutions have no names and are told apart by continuity; a color with two configurations on "
+    "one vertex: none found on this part"
+)
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BuildResult:
@@ -39,7 +45,8 @@ class BuildResult:
 
     Attributes:
         surface: what the decomposition takes.
-        branches: names of the inverse-kinematic branches, eight of a UR-type arm.
+        branches: names of the inverse-kinematic branches, eight of a UR-type arm, or of sheets
+            (:mod:`cellcolor.frontend.reach.sheets`).
         configurations: (n, branches, joints) in rad, NaN where a branch has no solution.
         reasons: (n, branches) uint8 codes, the first test that a candidate fails.
         reason_names: what the codes mean: valid, no solution, and the tests in their order.
@@ -131,7 +138,7 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
     prepared.deadline.check()
     return BuildResult(
         surface=labelled,
-        branches=prepared.kinematics.branches,
+        branches=stages.branches,
         configurations=stages.candidates.configurations,
         reasons=stages.candidates.reasons,
         reason_names=stages.candidates.reason_names,
@@ -160,24 +167,28 @@ def _labelled(
 
 
 def _report(prepared: PreparedScene, stages: Stages, seconds: dict[str, float]) -> BuildReport:
-    notes = prepared.robot.warnings + (() if prepared.coarse is None else (prepared.coarse,))
+    surface = prepared.surface
+    remarks = prepared.kinematics.remarks(surface.vertices, -surface.normals)
     return make_report(
         survey(prepared.surface, prepared.kinematics.viewpoints),
         prepared.surface,
         stages.candidates,
         stages.cleaned.coloring,
-        prepared.kinematics.branches,
+        stages.branches,
         len(stages.cleaned.cracks),
         seconds,
-        notes,
+        prepared.notes + remarks,
+        tuple(map(report_on, prepared.robot.stand_ins)),
         stages.cleaned.report,
+        None if stages.named else _INJECTIVE,
     )
 
 
 def _vertex_colors(coloring: Coloring) -> tuple[tuple[int, ...], ...]:
-    return tuple(
-        tuple(sorted(int(number) for number in row if number >= 0)) for row in coloring.node_color
-    )
+    ascending = np.sort(coloring.node_color, axis=1)
+    first = (ascending < 0).sum(axis=1).tolist()
+    rows = zip(ascending.tolist(), first, strict=True)
+    return tuple([tuple(row[start:]) for row, start in rows])
 
 
 def _given_up(valid: Mask, coloring: Coloring) -> tuple[int, ...]:

@@ -15,10 +15,13 @@ import numpy as np
 from cellcolor.arrays import Mask
 from cellcolor.frontend.parts.bisect import bisected
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.frontend.stages import Links, Stages, judged
 
 __all__ = ["with_finer_borders"]
+
+_WITH_SLIVERS = 4  # times as long are mesh edges at borders that the sliver policy takes away
 
 
 def with_finer_borders(prepared: PreparedScene, clock: StageClock) -> tuple[PreparedScene, Stages]:
@@ -32,23 +35,34 @@ def with_finer_borders(prepared: PreparedScene, clock: StageClock) -> tuple[Prep
         OutOfTime: the deadline came first.
     """
     longest = prepared.setup.continuity.border_length_m
-    stages = run_stages(prepared, clock)
+    found = judged(prepared, clock)
     while longest is not None:
-        marked = _at_borders(stages) & (prepared.surface.lengths(stages.links.edges) > longest)
+        marked = _too_long(found.stages, longest)
         if not marked.any():
             break
         clock.begin("bisecting borders")
         finer = bisected(prepared.surface, marked, "continuity.border_length_m")
         prepared = replace(prepared, surface=finer)
-        stages = run_stages(prepared, clock)
-    return prepared, stages
+        found = judged(prepared, clock, found)
+    return prepared, found.stages
 
 
-def _at_borders(stages: Stages) -> Mask:
+def _too_long(stages: Stages, longest: float) -> Mask:
+    """The mesh edges (k,) at borders that are longer than they may be, in m.
+
+    Which cells a sliver policy takes away hangs on areas and neighbors, so on borders that are gone
+    afterwards. These have to be known as well, but only so well as areas ask for.
+    """
+    lengths, cleaned = stages.surface.lengths(stages.links.edges), stages.cleaned
+    left = (lengths > longest) & _at_borders(cleaned.links, cleaned.coloring)
+    taken = (lengths > _WITH_SLIVERS * longest) & _at_borders(stages.links, stages.coloring)
+    return np.asarray(left | taken)
+
+
+def _at_borders(links: Links, coloring: Coloring) -> Mask:
     """The mesh edges (k,) whose ends have different colors, or that have a crack."""
-    cleaned = stages.cleaned
-    first, second = (cleaned.coloring.node_color[end] for end in cleaned.links.edges.T)
+    first, second = (coloring.node_color[end] for end in links.edges.T)
     # A branch has at most one color at a vertex, and a color one branch.
     different = (first != second).any(axis=1)
-    torn = ((first == second) & (first >= 0) & ~cleaned.links.linked).any(axis=1)
+    torn = ((first == second) & (first >= 0) & ~links.linked).any(axis=1)
     return np.asarray(different | torn)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 
@@ -16,14 +16,21 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.conditioning import conditioning, task_determinants
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot
+from cellcolor.frontend.arm.task_space import TaskSpace
+from cellcolor.frontend.arm.tool_turn import turn_at
+from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.contact.collision import body_ends
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
 from cellcolor.frontend.contact.tip import Tip
+from cellcolor.frontend.contact.wider import wider
 from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.frontend.reach.coarse import too_coarse
 from cellcolor.frontend.reach.postures import Workplace
+from cellcolor.frontend.reach.smooth import Measure
+from cellcolor.frontend.reach.tracking import Tracker
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
@@ -44,7 +51,7 @@ class PreparedScene:
         kinematics: the arm's inverse kinematics.
         surface: what has to be covered, in the world.
         judge: the tests.
-        coarse: what could stand unnoticed between two vertices, a sentence; None if nothing.
+        notes: what is probably not meant of robot and mesh, a sentence each.
         deadline: when to give up.
     """
 
@@ -53,7 +60,7 @@ class PreparedScene:
     kinematics: InverseKinematics
     surface: Surface
     judge: Judge
-    coarse: str | None
+    notes: tuple[str, ...]
     deadline: Deadline
 
     @property
@@ -67,16 +74,54 @@ class PreparedScene:
         return self.workplace.robot
 
     def inverse(self, points: Array, directions: Array) -> Array:
-        """All branches (n, branches, joints) in rad.
+        """All branches (n, branches, joints) in rad, or all solutions if they have no names.
 
         See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
         """
-        found = np.empty((len(points), len(self.kinematics.branches), self.robot.joints))
+        parts = []
         for first in range(0, len(points), _AT_ONCE):
             self.deadline.check()
             rows = slice(first, first + _AT_ONCE)
-            found[rows] = self.kinematics.solve(points[rows], directions[rows])
+            parts.append(self.kinematics.solve(points[rows], directions[rows]))
+        most = max([1, *(part.shape[1] for part in parts)])
+        found = np.full((len(points), most, self.robot.joints), np.nan)
+        for number, part in enumerate(parts):
+            first = number * _AT_ONCE
+            found[first : first + len(part), : part.shape[1]] = part
         return found
+
+    @property
+    def measure(self) -> Measure:
+        """By what motions along mesh edges are measured."""
+        near_singular = self.workplace.conditioning.near_singular_determinant
+        return Measure(self.setup.continuity, near_singular, self.kinematics.lever)
+
+    @property
+    def tracker(self) -> Tracker:
+        """Follows solutions that have no names."""
+        limits = self.workplace.conditioning if self.setup.constraints.conditioning else None
+        return Tracker(self.robot, self.inverse, self.measure, limits)
+
+    def check_named(self) -> None:
+        """Refuse an arm whose solutions have no names.
+
+        Raises:
+            InputError: it has no branches.
+        """
+        if not self.kinematics.branches:
+            raise InputError(
+                None,
+                "robot.kinematics",
+                "the solutions of this arm have no names: its colors can be found and its minimum "
+                "solved, but without names nothing is painted, planned or judged on the arm",
+            )
+
+    def without_turn(self, points: Array, directions: Array) -> Mask:
+        """Where the setup gives the tool's turn by a rule that says nothing there, (n,)."""
+        turn = self.setup.task.turn
+        if turn is None:
+            return np.zeros(len(points), dtype=bool)
+        return np.isnan(turn_at(turn, points, directions)[:, 0])
 
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, joints) in rad, NaN where it has no solution."""
@@ -96,7 +141,7 @@ class PreparedScene:
     ) -> tuple[Mask, Array]:
         """Is a branch valid there; see :data:`~cellcolor.frontend.reach.between.Test`."""
         verdicts = self.judge(self.follow(points, directions, branches))
-        return np.asarray(verdicts.reasons == VALID), verdicts.ends
+        return np.asarray(verdicts.reasons == VALID), verdicts.tracked
 
 
 def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> PreparedScene:
@@ -121,21 +166,51 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     setup = scene.setup
     with in_file(setup.file):
         robot = _robot(setup)
-        kinematics = family_of(setup)(robot, setup.robot)
-    surface = scene.object.surface(scene.folder, deadline).placed(scene.placement)
+        kinematics = _kinematics(setup, robot)
+    surface = scene.covered(deadline)
     lengths = surface.lengths(surface.edges())
     with in_file(setup.file):
         _check_spacings(setup, lengths)
     obstacles, target = _solids(robot, scene, surface, deadline)
-    height = None if scene.ground is None else scene.ground.height_m
-    tip = Tip(robot, setup.task.contact_radius_m, obstacles, height)
-    limits = conditioning(setup, kinematics.reach)
-    workplace = Workplace(robot, setup, limits, height, tuple(obstacles), target, tip)
+    ground = None if scene.ground is None else scene.ground.half_space
+    tip = Tip(robot, setup.task.contact_radius_m, obstacles, ground)
+    with in_file(setup.file):
+        limits = conditioning(setup, kinematics.reach, robot.task)
+    workplace = Workplace(robot, setup, limits, ground, tuple(obstacles), target, tip)
     judge = Judge(workplace, scene.validity_test, deadline)
-    coarse = None
+    notes = robot.warnings
     if setup.constraints.collision:
-        coarse = too_coarse(robot, obstacles, float(lengths.max()))
-    return PreparedScene(scene, workplace, kinematics, surface, judge, coarse, deadline)
+        notes += _notes_on_contacts(workplace, float(lengths.max()))
+    return PreparedScene(scene, workplace, kinematics, surface, judge, notes, deadline)
+
+
+def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
+    """What of the collision shapes is probably not meant; ``longest`` edge of the mesh in m."""
+    robot, found = place.robot, []
+    coarse = too_coarse(robot, list(place.obstacles), longest)
+    if coarse is not None:
+        found.append(coarse)
+    if robot.has_solids:
+        if not place.tip.body.length:
+            found.append(
+                "a collision shape of the last link or the tool reaches as far as the tool's tip, "
+                "so it touches the object wherever the tip does"
+            )
+        found += [
+            f"{first!r} and {second!r} overlap in all of 100 configurations, so nothing will be "
+            "valid: are their shapes too large (robot.mesh_collision_of), or may they touch "
+            "(robot.may_touch)?"
+            for first, second in always_touching(place.near_itself)
+        ]
+    return tuple(found)
+
+
+def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
+    """The arm's inverse kinematics for the task of its setup."""
+    family, turn = family_of(setup), setup.task.turn
+    if turn is None:
+        return family(robot, setup.robot)
+    return TurnedKinematics(family, robot, setup.robot, turn)
 
 
 def _check_spacings(setup: Setup, lengths: Array) -> None:
@@ -171,18 +246,60 @@ def _robot(setup: Setup) -> Robot:
     files, folder = setup.robot, setup.folder
     arm = _urdf(files.arm_urdf, "arm_urdf", folder)
     tool = _urdf(files.tool_urdf, "tool_urdf", folder)
-    joints = family_of(setup).joints
-    robot = load_robot(arm, files.flange_link, tool, files.tip_link, joints)
+    family = family_of(setup)
+    robot = load_robot(
+        arm,
+        files.flange_link,
+        tool,
+        files.tip_link,
+        family.joints,
+        mounted=(files.mount_position_m, files.mount_rpy_rad),
+        fixed_joints=files.fixed_joints,
+        shapes=Shapes(
+            files.mesh_collision,
+            files.mesh_collision_of,
+            tuple(folder / name for name in files.package_folders),
+        ),
+        may_touch=files.may_touch,
+        force=setup.constraints.force,
+    )
+    robot = replace(robot, task=_task(setup, family))
     unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
     if unknown:
         raise InputError(None, "robot.may_touch_ground", f"no solid link {min(unknown)!r}")
     return robot
 
 
+def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
+    """What is asked of an arm of the family: no less than its joints can do, and no more."""
+    name, joints, given = setup.robot.kinematics, family.joints, setup.task.turn is not None
+    task = family.given_turn if given else family.free_turn
+    if task is None:
+        message = (
+            f"arms of the family {name!r} are redundant if the tool's turn is free: give it "
+            "(task.turn), or fix the last joint ([robot.fixed_joints]) and name 'planar-2r'"
+        )
+        raise InputError(None, "robot.kinematics", message)
+    if given and joints < task.joints:
+        message = (
+            f"with the tool's turn given the task has {task.dimensions} dimensions, and arms of "
+            f"the family {name!r} have {joints} joints: leave the turn free"
+        )
+        raise InputError(None, "task.turn", message)
+    if joints > task.most_joints:
+        message = (
+            f"arms of the family {name!r} are redundant: {joints} joints, at most "
+            f"{task.most_joints} for a task of {task.dimensions} dimensions; those that are too "
+            "many can be fixed ([robot.fixed_joints]), for a family of fewer joints"
+        )
+        raise InputError(None, "robot.kinematics", message)
+    return task
+
+
 def _urdf(named: str, key: str, folder: Path) -> Urdf:
     """The URDF in a file, or the one that is there itself; then errors name the key."""
     if named.lstrip().startswith("<"):
-        return parse_urdf(named, Path(key))
+        return parse_urdf(named, Path(key), folder)
     return load_urdf(folder / named)
 
 
@@ -192,11 +309,13 @@ def _solids(
     """The obstacles and the object, in the world."""
     obstacles = [obstacle.solid(scene.folder, deadline) for obstacle in scene.obstacle]
     body = surface
-    if scene.collision_object is not None:
-        body = scene.collision_object.surface(scene.folder, deadline).placed(scene.placement)
+    if scene.solid_object is not None:
+        body = scene.solid_object.surface(scene.folder, deadline).placed(scene.placement)
     target = mesh_solid(body.vertices, body.faces, deadline)
-    at_zero = body_ends(robot, forward(robot, np.zeros((1, robot.joints))))
-    blocked = target.touched_by_fixed(robot, at_zero)
+    margin = scene.setup.margins.to_object_m
+    around, at_zero = wider(robot, margin), forward(robot, np.zeros((1, robot.joints)))
+    blocked = target.touched_by_fixed(around, body_ends(around, at_zero), at_zero)
     if blocked is not None and scene.setup.constraints.collision:
-        raise InputError(None, "placement", f"the object stands in the robot's {blocked!r}")
+        near = f", or nearer than {margin:g} m (margins.to_object_m)" if margin else ""
+        raise InputError(None, "placement", f"the object stands in the robot's {blocked!r}{near}")
     return obstacles, target

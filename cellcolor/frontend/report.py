@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.data.wording import count
+from cellcolor.frontend.contact.stand_in_report import StandInReport
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
@@ -43,7 +44,9 @@ class BuildReport:
         colors: see :class:`ColorReport`.
         cracks: number of mesh edges with a crack.
         notes: of robot and mesh, what is probably not meant, a sentence each.
+        stand_ins: what collides in the place of the meshes of links, and how far off it is.
         slivers: what the sliver policy did, None without one.
+        injectivity: of an arm whose solutions have no names, what was found; None for others.
         seconds: wall time of each stage.
     """
 
@@ -58,7 +61,9 @@ class BuildReport:
     cracks: int
     seconds: dict[str, float]
     notes: tuple[str, ...]
+    stand_ins: tuple[StandInReport, ...] = ()
     slivers: SliverReport | None = None
+    injectivity: str | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -68,6 +73,7 @@ class BuildReport:
     def __str__(self) -> str:
         share = 100 * self.reachable_area_m2 / self.area_m2
         lines = [f"object  {self.survey}", *(f"warning  {text}" for text in self.warnings)]
+        lines += [f"collides  {stand_in}" for stand_in in self.stand_ins]
         lines += [
             f"reachable  {self.reachable} of {self.vertices} vertices, {share:.1f} % of the area"
         ]
@@ -81,6 +87,8 @@ class BuildReport:
             for color in self.colors
         ]
         lines += [f"cracks  {self.cracks}"]
+        if self.injectivity is not None:
+            lines += [f"injectivity  {self.injectivity}"]
         if self.slivers is not None:
             lines += [self._slivers(self.slivers)]
         spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in self.seconds.items())
@@ -109,7 +117,9 @@ def make_report(
     cracks: int,
     seconds: dict[str, float],
     notes: tuple[str, ...],
+    stand_ins: tuple[StandInReport, ...],
     slivers: SliverReport | None = None,
+    injectivity: str | None = None,
 ) -> BuildReport:
     """Count what a build found."""
     areas = surface.vertex_areas()
@@ -138,7 +148,9 @@ def make_report(
         cracks=cracks,
         seconds=seconds,
         notes=notes,
+        stand_ins=stand_ins,
         slivers=slivers,
+        injectivity=injectivity,
     )
 
 

@@ -6,6 +6,7 @@ from functools import partial
 from os import PathLike
 from typing import Annotated, Any, Self
 
+import numpy as np
 from pydantic import (
     BeforeValidator,
     Field,
@@ -14,28 +15,68 @@ from pydantic import (
     SerializerFunctionWrapHandler,
     ValidationInfo,
     field_serializer,
+    field_validator,
     model_serializer,
     model_validator,
 )
 
 from cellcolor.data.wording import count
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
+from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.parts.arrays import ArraysObject
+from cellcolor.frontend.parts.cover import Cover
 from cellcolor.frontend.parts.part import PARTS, Part
 from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.validity_interface import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
-from cellcolor.frontend.tables import Coordinate, FileTable, Table
+from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector
 
 __all__ = ["Ground", "Scene"]
 
+_UPRIGHT = (0.0, 0.0, 1.0)
+_LEAST_RISE = 0.01  # of a normal of length 1; a steeper ground is a wall
+
 
 class Ground(Table):
-    """The half space below a height."""
+    """The half space below a height, or below a plane through that height over the origin.
+
+    Attributes:
+        height_m: of the ground over the world's origin, m.
+        normal: (3,) out of the ground, of any length; it points up, if only a little.
+    """
 
     height_m: Coordinate
+    normal: Vector = _UPRIGHT
+
+    @field_validator("normal")
+    @classmethod
+    def _upward(cls, normal: Vector) -> Vector:
+        """What faces sideways or down is a wall or a ceiling: an obstacle."""
+        if not normal[2] > _LEAST_RISE * float(np.linalg.norm(normal)):
+            raise ValueError("must point up; a wall or a ceiling is an obstacle, a half-space")
+        return normal
+
+    @model_serializer(mode="wrap")
+    def _normal_if_tilted(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before there were tilted grounds stay the same to the byte."""
+        content: dict[str, Any] = whole(self)
+        if self.normal == _UPRIGHT:
+            del content["normal"]
+        return content
+
+    @property
+    def half_space(self) -> HalfSpace:
+        """The ground, in the world."""
+        return HalfSpace.through(np.array([0.0, 0.0, self.height_m]), np.array(self.normal))
+
+    @property
+    def tilt_rad(self) -> float:
+        """The angle between the normal and the world's z axis, rad."""
+        return float(np.arctan2(np.hypot(*self.normal[:2]), self.normal[2]))
 
 
 def _setup(content: Any, info: ValidationInfo) -> Any:
@@ -53,15 +94,16 @@ AnyObstacle = Annotated[SerializeAsAny[Obstacle], PlainValidator(partial(of_kind
 class Scene(FileTable):
     """An object, where it stands, and what else is there: ground and obstacles.
 
-    ``object`` is what has to be covered. It is what must not be hit as well, unless
-    ``collision_object`` is given, in the same frame. A ``validity_test`` is made after the standard
-    ones. A scene is a value: what varies it makes a
+    ``object`` is what has to be covered, or those of its faces that ``cover`` chooses. It is what
+    must not be hit as well, unless ``collision_object`` is given, in the same frame. A
+    ``validity_test`` is made after the standard ones. A scene is a value: what varies it makes a
     new one, and holds it to the same rules as a file.
     """
 
     name: Annotated[str, Field(min_length=1)]
     setup: Annotated[Setup, BeforeValidator(_setup)]
     object: AnyPart
+    cover: Cover | None = None
     collision_object: AnyPart | None = None
     placement: Placement
     ground: Ground | None = None
@@ -78,11 +120,12 @@ class Scene(FileTable):
         return content
 
     @model_serializer(mode="wrap")
-    def _tests_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before there were such tests stay the same to the byte."""
+    def _optional_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before there were these keys stay the same to the byte."""
         content: dict[str, Any] = whole(self)
-        if not self.validity_test:
-            del content["validity_test"]
+        for key in ("validity_test", "cover"):
+            if not getattr(self, key):
+                del content[key]
         return content
 
     @field_serializer("setup", mode="wrap")
@@ -93,12 +136,43 @@ class Scene(FileTable):
         within = setup.file.is_relative_to(self.folder)
         return (setup.file.relative_to(self.folder) if within else setup.file).as_posix()
 
+    @model_validator(mode="after")
+    def _faces_as_numbered(self) -> Self:
+        """A list of faces is one of the file's: what changes them is refused beside it."""
+        if self.cover is not None and self.cover.faces_file is not None:
+            for key in ("max_edge_m", "repair"):
+                if getattr(self.object, key, None):
+                    message = f"does not go with {key}, which numbers the faces anew"
+                    raise InputError(None, "cover.faces_file", message)
+        return self
+
+    @property
+    def solid_object(self) -> Part | None:
+        """What must not be hit in the object's place, where that is not what is covered."""
+        if self.collision_object is None and self.cover is not None:
+            return self.object
+        return self.collision_object
+
+    def covered(self, deadline: Deadline = NEVER) -> Surface:
+        """What has to be covered, in the world.
+
+        Raises:
+            InputError: there is no such surface.
+            OutOfTime: the deadline came first.
+        """
+        surface = self.object.surface(self.folder, deadline)
+        if self.cover is not None:
+            surface = self.cover.patch(surface, self.folder, deadline)
+        return surface.placed(self.placement)
+
     def __str__(self) -> str:
         place = ", ".join(f"{number:g}" for number in self.placement.position_m)
         kind = getattr(self.object, "kind", type(self.object).__name__)
-        parts = [f"{kind} at ({place}) m"]
+        parts = [f"{'part of a ' if self.cover else ''}{kind} at ({place}) m"]
         if self.ground is not None:
-            parts.append(f"ground at {self.ground.height_m:g} m")
+            tilt = np.degrees(self.ground.tilt_rad)
+            tilted = f", tilted by {tilt:g} degrees" if tilt else ""
+            parts.append(f"ground at {self.ground.height_m:g} m{tilted}")
         if self.obstacle:
             parts.append(count(len(self.obstacle), "obstacle"))
         if self.validity_test:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+import itertools
+import math
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     Field,
@@ -13,26 +15,57 @@ from pydantic import (
 )
 from pydantic_core import PydanticCustomError
 
-from cellcolor.frontend.tables import FileTable, NotNegative, Positive, Table, Vector
+from cellcolor.frontend.tables import (
+    FileTable,
+    NotNegative,
+    Position,
+    Positive,
+    Table,
+    Vector,
+)
 
 __all__ = [
     "Constraints",
     "Continuity",
+    "Margins",
+    "MeshCollision",
     "Motion",
     "RobotFiles",
     "Setup",
     "Slivers",
     "Task",
     "Thresholds",
+    "Turn",
 ]
+
+
+MeshCollision = Literal["hull", "exact", "capsules"]
+"""What stands for a link's mesh: its convex hull, nothing but itself, or capsules around it."""
+_NEWER = (
+    "kinematics",
+    "may_touch",
+    "mount_position_m",
+    "mount_rpy_rad",
+    "fixed_joints",
+    "package_folders",
+    "mesh_collision",
+    "mesh_collision_of",
+)
 
 
 class RobotFiles(Table):
     """Arm and tool, the family of the arm, and the joint that the task leaves free.
 
     ``kinematics`` names a family of arms, see :mod:`cellcolor.frontend.arm.inverse`; the locked
-    joint is asked for by the family ``ur``. ``arm_urdf`` and ``tool_urdf`` are names of files, or
-    URDF texts themselves, which begin with ``<``.
+    joint is asked for by the families ``ur`` and ``eaik``. ``arm_urdf`` and ``tool_urdf`` are names
+    of files, or URDF texts themselves, which begin with ``<``.
+
+    ``mount_position_m`` and ``mount_rpy_rad`` are the pose of the tool's root link in the frame of
+    the flange link. ``fixed_joints`` has positions of joints that do not move, in rad, or in m of
+    prismatic ones. Pairs of links that ``may_touch`` are not tested against each other, as
+    neighbors are not. What collides in the place of a link's mesh is its convex ``hull``, the mesh
+    itself (``exact``) or ``capsules`` around it, for single links by ``mesh_collision_of``.
+    ``package://`` is looked for in ``package_folders`` first.
     """
 
     arm_urdf: str
@@ -42,22 +75,98 @@ class RobotFiles(Table):
     kinematics: str = "ur"
     locked_joint_6_rad: FiniteFloat | None = None
     may_touch_ground: tuple[str, ...] = ()
+    may_touch: tuple[tuple[str, str], ...] = ()
+    mount_position_m: Vector = (0.0, 0.0, 0.0)
+    mount_rpy_rad: Vector = (0.0, 0.0, 0.0)
+    fixed_joints: dict[str, FiniteFloat] = Field(default_factory=dict)
+    package_folders: tuple[str, ...] = ()
+    mesh_collision: MeshCollision = "hull"
+    mesh_collision_of: dict[str, MeshCollision] = Field(default_factory=dict)
 
     @model_serializer(mode="wrap")
-    def _family_if_another(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before there were other families stay the same to the byte."""
+    def _newer_if_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before there were the newer keys stay the same to the byte."""
         content: dict[str, Any] = whole(self)
-        if self.kinematics == "ur":
-            del content["kinematics"]
+        for name in _NEWER:
+            usual = type(self).model_fields[name].get_default(call_default_factory=True)
+            if getattr(self, name) == usual:
+                del content[name]
         return content
 
 
+_SAME_TURN_DEG = 1e-6  # turns nearer than this, modulo a full circle, are one
+_MOST_TURNS = 360
+_Degrees = Annotated[FiniteFloat, Field(ge=-360, le=360)]
+
+
+class Turn(Table):
+    """The turn of the tool about its axis, where it is given (``docs/frontend.md``, "The task").
+
+    The tool's x axis points ``along`` a vector of the world or ``towards_m`` a point of it, as far
+    as it can across the surface's normal. With ``turns`` equally spaced ones or a list
+    ``turns_deg`` the arm has a choice; they are counted from there about the tool's z axis.
+    """
+
+    along: Vector | None = None
+    towards_m: Position | None = None
+    turns: Annotated[int, Field(ge=1, le=_MOST_TURNS)] | None = None
+    turns_deg: Annotated[tuple[_Degrees, ...], Field(min_length=1)] | None = None
+
+    @model_validator(mode="after")
+    def _complete(self) -> Self:
+        if (self.along is None) == (self.towards_m is None):
+            raise PydanticCustomError("one_of_each", "give either along or towards_m")
+        if self.along is not None and not 1e-150 < math.hypot(*self.along) < 1e150:
+            raise PydanticCustomError("no_direction", "along must have a direction: it is zero")
+        if self.turns is not None and self.turns_deg is not None:
+            raise PydanticCustomError("one_of_each", "give either turns or turns_deg")
+        around = sorted(degrees % 360.0 for degrees in self.degrees)
+        gaps = [after - before for before, after in itertools.pairwise(around)]
+        if len(around) > 1 and min(*gaps, 360.0 - around[-1] + around[0]) < _SAME_TURN_DEG:
+            raise PydanticCustomError("twice", "turns_deg has a turn twice, modulo 360 degrees")
+        if len(around) > _MOST_TURNS:
+            message = f"turns_deg has {len(around)} turns, at most {_MOST_TURNS} fit"
+            raise PydanticCustomError("too_many", "{message}", {"message": message})
+        return self
+
+    @property
+    def is_choice(self) -> bool:
+        """Whether a set of turns is given, be it of one only: then colors are named after them."""
+        return self.turns is not None or self.turns_deg is not None
+
+    @property
+    def degrees(self) -> tuple[float, ...]:
+        """The turns that the arm may choose from."""
+        if self.turns_deg is not None:
+            return self.turns_deg
+        count = self.turns or 1
+        return tuple(360.0 * number / count for number in range(count))
+
+    @model_serializer(mode="wrap")
+    def _what_is_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """What is not given is not written, as in a file."""
+        content: dict[str, Any] = whole(self)
+        return {key: value for key, value in content.items() if value is not None}
+
+
 class Task(Table):
-    """What the tool has to do on each point, and how much room it needs there."""
+    """What the tool has to do on each point, and how much room it needs there.
+
+    Without ``turn`` the tool's turn about its axis is free.
+    """
 
     normal_force_n: NotNegative
     contact_radius_m: Annotated[FiniteFloat, Field(ge=0.001)] = 0.005
     gravity_m_per_s2: Vector
+    turn: Turn | None = None
+
+    @model_serializer(mode="wrap")
+    def _turn_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before a turn could be given stay the same to the byte."""
+        content: dict[str, Any] = whole(self)
+        if self.turn is None:
+            del content["turn"]
+        return content
 
 
 def _one_of_each(table: Table, *names: str) -> None:
@@ -122,6 +231,18 @@ class Constraints(Table):
     conditioning: bool = True
 
 
+class Margins(Table):
+    """How far arm and tool stay from everything, at least; a touch is what they avoid without.
+
+    The region where the tool works has its own room, ``contact_radius_m`` of the task.
+    """
+
+    to_object_m: NotNegative = 0.0
+    to_obstacles_m: NotNegative = 0.0
+    to_ground_m: NotNegative = 0.0
+    between_links_m: NotNegative = 0.0
+
+
 class Slivers(Table):
     """What happens to small cells; both thresholds are shares of the surface's area."""
 
@@ -157,5 +278,14 @@ class Setup(FileTable):
     thresholds: Thresholds
     continuity: Continuity
     constraints: Constraints = Constraints()
+    margins: Margins = Margins()
     slivers: Slivers | None = None
     motion: Motion | None = None
+
+    @model_serializer(mode="wrap")
+    def _margins_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before there were margins stay the same to the byte."""
+        content: dict[str, Any] = whole(self)
+        if self.margins == Margins():
+            content.pop("margins", None)
+        return content

@@ -11,7 +11,14 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 
-__all__ = ["MOST_VERTICES", "check_faces", "check_points", "check_refinement", "check_vertices"]
+__all__ = [
+    "MOST_VERTICES",
+    "check_faces",
+    "check_points",
+    "check_refinement",
+    "check_turns",
+    "check_vertices",
+]
 
 MOST_VERTICES = 250_000
 _MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches
@@ -26,6 +33,17 @@ def check_vertices(count: int, field: str | None = None) -> None:
     """
     if count > MOST_VERTICES:
         raise InputError(None, field, f"has {count:,} vertices, at most {MOST_VERTICES:,} fit")
+
+
+def check_turns(vertices: int, turns: int) -> None:
+    """Refuse more turns of the tool than fit beside so many vertices.
+
+    Raises:
+        InputError: names the key and the numbers.
+    """
+    if vertices * turns > MOST_VERTICES:
+        message = f"{turns} turns on {vertices:,} vertices are more than {MOST_VERTICES:,} together"
+        raise InputError(None, "task.turn", message)
 
 
 def check_faces(count: int) -> None:

@@ -18,7 +18,8 @@ class StageClock:
     """What one build has spent its time on.
 
     Attributes:
-        seconds: wall time of each timed stage, in the order in which they ended.
+        seconds: wall time of each timed stage, in the order in which they first ended; of a stage
+            that came several times, the sum.
     """
 
     def __init__(self, deadline: Deadline, progress: Progress | None) -> None:
@@ -41,8 +42,9 @@ class StageClock:
         self.begin(stage)
         started = time.perf_counter()
         yield
-        self.seconds[stage] = time.perf_counter() - started
+        self.add({stage: time.perf_counter() - started})
 
     def add(self, seconds: Mapping[str, float]) -> None:
         """Times that were taken elsewhere, of parts of a stage."""
-        self.seconds |= seconds
+        for stage, spent in seconds.items():
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + spent

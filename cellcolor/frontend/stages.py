@@ -1,31 +1,40 @@
 """The stages of a build: candidates, links, coloring, cleaned coloring, each a value.
 
 Each function takes the prepared scene and what the stages before it have made.
+
+A verdict on a configuration hangs on nothing but the place and normal of its vertex, and whether a
+branch is continuous along a mesh edge on nothing but the edge's ends. So where a surface is judged
+and then one with all its vertices and some more, what is known is taken over.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.nameless import arranged_in_sheets
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.between import at_domain_border, remains_valid
+from cellcolor.frontend.processes import share_out, shared
+from cellcolor.frontend.reach.between import Test, at_domain_border, remains_valid
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes, find_cracks, link, node_links
 from cellcolor.frontend.reach.slivers import SliverReport, clean
-from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity import Candidates, Verdicts
+from cellcolor.frontend.sizes import check_turns
 from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.tables import in_file
 
-__all__ = ["Cleaned", "Links", "Stages", "run_stages"]
+__all__ = ["TURN_NOT_DEFINED", "Cleaned", "Judged", "Links", "Stages", "judged", "run_stages"]
 
-_AT_ONCE = 50_000  # mesh edges, or links on them; a matter of memory: some kilobytes each
+TURN_NOT_DEFINED = "turn not defined"
+"""The reason at a vertex where the setup's rule for the tool's turn says nothing."""
+
+_AT_ONCE = 10_000  # mesh edges, or links on them; some kilobytes each, some 20 ms
 
 
 @dataclass(frozen=True)
@@ -69,6 +78,8 @@ class Stages:
         links: those of them that are valid between the vertices as well.
         coloring: the colors of all valid candidates.
         cleaned: the same after the sliver policy.
+        branches: names of the branches, or of the sheets of an arm whose solutions have no names.
+        named: whether they are branches.
     """
 
     surface: Surface
@@ -77,99 +88,215 @@ class Stages:
     links: Links
     coloring: Coloring
     cleaned: Cleaned
+    branches: tuple[str, ...]
+    named: bool
+
+
+@dataclass(frozen=True)
+class Judged:
+    """The stages of a surface, and what a finer one takes over besides.
+
+    Attributes:
+        stages: what they have made.
+        verdicts: on all solutions of all vertices, (n * solutions,).
+    """
+
+    stages: Stages
+    verdicts: Verdicts
 
 
 def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
     """All stages, one after the other.
 
     Raises:
-        InputError: a color has two configurations on one vertex.
+        InputError: a color has two configurations on one vertex; there are too many vertices for
+            the turns of the tool.
         OutOfTime: the deadline came first.
     """
+    return judged(prepared, clock).stages
+
+
+def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = None) -> Judged:
+    """All stages, where something may be known already; raises like :func:`run_stages`.
+
+    Args:
+        before: of the same scene on a surface whose vertices are the first ones of this one, with
+            the same normals. Only new vertices and new mesh edges are asked about, to the same
+            result. An arm whose solutions have no names is asked about everything.
+    """
+    names, test_on = prepared.kinematics.branches, _test_of_branches(prepared)
+    known = None if before is None or not names else before.stages
+    first = 0 if known is None else len(known.surface.vertices)
+    setup, surface = prepared.setup, prepared.surface
+    if setup.task.turn is not None:
+        with in_file(setup.file):
+            check_turns(len(surface.vertices), len(setup.task.turn.degrees))
     with clock.timed("inverse kinematics"):
-        solutions = prepared.inverse(prepared.surface.vertices, -prepared.surface.normals)
+        solutions = prepared.inverse(surface.vertices[first:], -surface.normals[first:])
     clock.begin("validity at the vertices")
     verdicts = prepared.judge(solutions.reshape(-1, solutions.shape[2]))
     clock.add(verdicts.seconds)
-    candidates = _candidates(prepared, verdicts, solutions.shape[:2])
+    if before is not None and known is not None:
+        verdicts = before.verdicts.followed_by(verdicts)
+    candidates, tracked = _candidates(prepared, verdicts), verdicts.tracked
     with clock.timed("continuity"):
-        continuous = _continuous_links(prepared, candidates)
-    links = continuous
+        if names:
+            continuous = _continuous_links(prepared, candidates, known)
+        else:
+            found = arranged_in_sheets(prepared, candidates, tracked)
+            candidates, tracked, test_on = found.candidates, found.tracked, found.test_on
+            names = found.sheets.names
+            continuous = Links(prepared.surface.edges(), found.sheets.linked)
+    candidates, links = _with_turn(prepared, candidates), continuous
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
-            links = _valid_links(prepared, candidates, continuous, verdicts.ends)
+            links = _valid_links(prepared, candidates, continuous, tracked, test_on, known)
     with clock.timed("colors and cracks"):
-        coloring = _colored(prepared, candidates, candidates.valid, links)
+        coloring = _colored(names, candidates, candidates.valid, links)
         prepared.deadline.check()
-        cleaned = _cleaned(prepared, candidates, links, coloring)
-    return Stages(prepared.surface, candidates, continuous, links, coloring, cleaned)
+        cleaned = _cleaned(prepared, names, candidates, links, coloring)
+    stages = Stages(
+        prepared.surface,
+        candidates,
+        continuous,
+        links,
+        coloring,
+        cleaned,
+        names,
+        bool(prepared.kinematics.branches),
+    )
+    return Judged(stages, verdicts)
 
 
-def _candidates(prepared: PreparedScene, verdicts: Verdicts, shape: tuple[int, ...]) -> Candidates:
+TestOn = Callable[[Index, Index], Test]
+"""Mesh edges (k, 2) and a branch of each (k,) to a test of points on them."""
+
+
+def _test_of_branches(prepared: PreparedScene) -> TestOn:
+    def test_on(_: Index, branches: Index) -> Test:
+        return lambda points, directions, at: prepared.test(points, directions, branches[at])
+
+    return test_on
+
+
+def _candidates(prepared: PreparedScene, verdicts: Verdicts) -> Candidates:
     """Verdicts on all candidates as arrays of vertices and branches."""
+    shape = len(prepared.surface.vertices), -1
     return Candidates(
-        verdicts.configurations.reshape(*shape, -1),
+        verdicts.configurations.reshape(*shape, prepared.robot.joints),
         verdicts.reasons.reshape(shape),
         verdicts.determinants.reshape(shape),
         prepared.judge.reason_names,
     )
 
 
-def _continuous_links(prepared: PreparedScene, candidates: Candidates) -> Links:
+def _with_turn(prepared: PreparedScene, candidates: Candidates) -> Candidates:
+    """The same with another reason where the setup's rule for the tool's turn says nothing."""
+    if prepared.setup.task.turn is None:
+        return candidates
+    names, reasons = (*candidates.reason_names, TURN_NOT_DEFINED), candidates.reasons.copy()
+    surface = prepared.surface
+    reasons[prepared.without_turn(surface.vertices, -surface.normals)] = len(names) - 1
+    return replace(candidates, reasons=reasons, reason_names=names)
+
+
+def _continuous_links(
+    prepared: PreparedScene, candidates: Candidates, known: Stages | None
+) -> Links:
     """The links along which a branch moves without a jump and within the joint limits."""
     robot, setup, edges = prepared.robot, prepared.setup, prepared.surface.edges()
     limits = (robot.lower, robot.upper) if setup.constraints.collision else None
-    measure = Measure(
-        setup.continuity,
-        prepared.workplace.conditioning.near_singular_determinant,
-        prepared.kinematics.lever,
-    )
-    linked = np.zeros((len(edges), candidates.valid.shape[1]), dtype=bool)
-    for part in _parts(len(edges), prepared.deadline):
-        linked[part] = link(
-            prepared.surface, edges[part], candidates, measure, limits, prepared.probe
+    linked = shared((len(edges), candidates.valid.shape[1]), np.bool_)
+    new = np.ones(len(edges), dtype=bool)
+    if known is not None:
+        here, there = _in_both(edges, known.continuous.edges)
+        linked[here], new[here] = known.continuous.linked[there], False
+    all_rows = np.flatnonzero(new)
+
+    def link_part(part: slice) -> None:
+        rows = all_rows[part]
+        linked[rows] = link(
+            prepared.surface, edges[rows], candidates, prepared.measure, limits, prepared.probe
         )
+
+    _in_parts(link_part, len(all_rows), prepared.deadline)
     return Links(edges, linked)
 
 
 def _valid_links(
-    prepared: PreparedScene, candidates: Candidates, continuous: Links, ends: Array
+    prepared: PreparedScene,
+    candidates: Candidates,
+    continuous: Links,
+    tracked: Array,
+    test_on: TestOn,
+    known: Stages | None,
 ) -> Links:
     """The links that are valid between the vertices as well.
 
     Args:
-        ends: (ends, n * branches, 3) of the bodies at the vertices, m.
+        tracked: (points, n * branches, 3) of the bodies at the vertices, m.
+        test_on: makes tests of points on mesh edges.
+        known: of a surface whose vertices are the first ones of this one.
     """
-    surface, edges, linked = prepared.surface, continuous.edges, continuous.linked.copy()
-    if prepared.setup.constraints.collision:
-        for part in _parts(len(edges), prepared.deadline):
-            linked[part] &= prepared.workplace.tip.free_along(surface, edges[part])[:, None]
+    surface, edges = prepared.surface, continuous.edges
+    linked = shared(continuous.linked.shape, np.bool_)
+    linked[:] = continuous.linked
     near_border = at_domain_border(edges, candidates.valid)
+    new = np.ones(linked.shape, dtype=bool)
+    if known is not None:
+        # Which points of an edge are asked hangs on the neighbors of its ends, which may be new.
+        here, there = _in_both(edges, known.links.edges)
+        border_before = at_domain_border(known.links.edges, known.candidates.valid)
+        new[here] = near_border[here] != border_before[there]
+        linked[here] = np.where(new[here], linked[here], known.links.linked[there])
+    asked = np.flatnonzero((linked & new).any(axis=1))
+
+    def free_part(part: slice) -> None:
+        rows = asked[part]
+        linked[rows] &= prepared.workplace.tip.free_along(surface, edges[rows])[:, None]
+
+    if prepared.setup.constraints.collision:
+        _in_parts(free_part, len(asked), prepared.deadline)
     spacing = prepared.setup.continuity.validity_spacing_m
     assert spacing is not None  # asked by who calls
     counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
-    at_vertices = ends.reshape(-1, *candidates.valid.shape, 3)
-    longest = longest_steps(prepared.judge.end_radii)
-    all_rows, all_branches = np.nonzero(linked)
-    for part in _parts(len(all_rows), prepared.deadline):
+    at_vertices = tracked.reshape(-1, *candidates.valid.shape, 3)
+    longest = prepared.judge.tracked_steps
+    all_rows, all_branches = np.nonzero(linked & new)
+
+    def test_part(part: slice) -> None:
         rows, branches = all_rows[part], all_branches[part]
         pieces = np.where(near_border[rows, branches], counts[rows], 1)
+        test = test_on(edges[rows], branches)
         linked[rows, branches] = remains_valid(
-            surface, edges[rows], branches, pieces, at_vertices, longest, prepared.test
+            surface, edges[rows], branches, pieces, at_vertices, longest, test
         )
+
+    _in_parts(test_part, len(all_rows), prepared.deadline)
     return Links(edges, linked)
 
 
-def _colored(
-    prepared: PreparedScene, candidates: Candidates, nodes: Mask, links: Links
-) -> Coloring:
+def _in_both(edges: Index, others: Index) -> tuple[Index, Index]:
+    """The rows of mesh edges (k, 2) that are among others as well, and their rows there."""
+    count = int(edges.max(initial=0)) + 1
+    _, here, there = np.intersect1d(
+        edges @ [count, 1], others @ [count, 1], assume_unique=True, return_indices=True
+    )
+    return here, there
+
+
+def _colored(names: tuple[str, ...], candidates: Candidates, nodes: Mask, links: Links) -> Coloring:
     """The colors of some of the candidates, ``nodes`` (n, branches)."""
     pairs = node_links(links.edges, links.linked)
-    return color_nodes(nodes, candidates.configurations, pairs, prepared.kinematics.branches)
+    return color_nodes(nodes, candidates.configurations, pairs, names)
 
 
 def _cleaned(
-    prepared: PreparedScene, candidates: Candidates, links: Links, coloring: Coloring
+    prepared: PreparedScene,
+    names: tuple[str, ...],
+    candidates: Candidates,
+    links: Links,
+    coloring: Coloring,
 ) -> Cleaned:
     """What the setup's sliver policy leaves, colored anew, and its cracks."""
     policy, report = prepared.setup.slivers, None
@@ -178,12 +305,15 @@ def _cleaned(
         areas = prepared.surface.vertex_areas()
         kept, report = clean(edges, links.linked, coloring, areas, policy, prepared.deadline)
         links = Links(edges, links.linked & kept[edges].all(axis=1))
-        coloring = _colored(prepared, candidates, kept, links)
+        coloring = _colored(names, candidates, kept, links)
     return Cleaned(links, coloring, find_cracks(edges, links.linked, coloring), report)
 
 
-def _parts(count: int, deadline: Deadline) -> Iterator[slice]:
-    """Slices of a long list, as long as there is time."""
-    for first in range(0, count, _AT_ONCE):
+def _in_parts(work: Callable[[slice], None], count: int, deadline: Deadline) -> None:
+    """Work on slices of a long list, as long as there is time, in several processes."""
+
+    def work_on(number: int) -> None:
         deadline.check()
-        yield slice(first, first + _AT_ONCE)
+        work(slice(number * _AT_ONCE, (number + 1) * _AT_ONCE))
+
+    share_out(work_on, -(-count // _AT_ONCE))

@@ -12,7 +12,7 @@ import numpy as np
 import trimesh
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.parts.surface import Faces, Surface, face_normals
+from cellcolor.frontend.parts.surface import Faces, Surface, every_edge, face_normals
 
 __all__ = ["Survey", "survey"]
 
@@ -63,9 +63,7 @@ def survey(surface: Surface, viewpoints: Array) -> Survey:
 
 
 def _is_open(faces: Faces) -> bool:
-    directed = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    used = np.unique(np.sort(directed, axis=1), axis=0)
-    return len(directed) < 2 * len(used)
+    return 3 * len(faces) < 2 * len(every_edge(faces))
 
 
 def _from_behind(vertices: Array, faces: Faces, viewpoints: Array) -> float:

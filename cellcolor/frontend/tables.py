@@ -64,6 +64,11 @@ class Table(BaseModel):
     # would not know where in the outer one it is.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
+    def __hash__(self) -> int:
+        """Pydantic's own does not bear keys that hold tables with names of the user's."""
+        values = (getattr(self, name) for name in type(self).model_fields)
+        return hash((type(self), *(_hashable(value) for value in values)))
+
     def varied(self, **changes: Any) -> Self:
         """The same table with some keys changed.
 
@@ -84,6 +89,10 @@ class Table(BaseModel):
                     raise InputError(None, place, error.message) from error
             content[key] = change
         return type(self)(**content)
+
+
+def _hashable(value: Any) -> Any:
+    return frozenset(value.items()) if isinstance(value, dict) else value
 
 
 class FileTable(Table):

@@ -10,6 +10,7 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
+from cellcolor.frontend.contact.wider import wider, wider_body
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.following import joint_limits
 
@@ -30,16 +31,23 @@ class FreeSpace:
     """
 
     def __init__(self, prepared: PreparedScene, clearance: float, *, leaving: bool = False) -> None:
-        """``clearance`` is the distance that is kept from everything, m."""
+        """``clearance`` is what is kept from everything besides the setup's margins, m."""
         place = prepared.workplace
         self._place, self._on = place, prepared.setup.constraints.collision
         self.limits = joint_limits(prepared)
+        self._leaving, margins = leaving, prepared.setup.margins
         tip = replace(place.tip.body, link=place.robot.bodies[-1].link)
-        self._leaving = leaving
-        self._robot = place.robot if leaving else _with_tip(place.robot, tip)
-        self._around = _wider(self._robot, clearance)
+
+        def keeping(room: float, margin: float) -> Robot:
+            """The robot with room around it, and a margin that the tip's region does not have."""
+            around = wider(place.robot, room + margin)
+            return around if leaving else _with_tip(around, wider_body(tip, room))
+
+        self._near_obstacles = keeping(clearance, margins.to_obstacles_m)
+        self._near_object = keeping(clearance, margins.to_object_m)
+        self._near_ground = keeping(clearance, margins.to_ground_m)
         # Two bodies that keep a distance from each other keep half of it each.
-        self._half = _wider(self._robot, clearance / 2)
+        self._half = keeping(clearance / 2, margins.between_links_m / 2)
 
     def __call__(self, configurations: Array) -> Mask:
         """Which of configurations (k, joints) in rad, taken as they are, are free, (k,)."""
@@ -63,18 +71,20 @@ class FreeSpace:
 
     def _touching(self, configurations: Array) -> Mask:
         place = self._place
-        poses = forward(self._robot, configurations)
-        ends = body_ends(self._around, poses)
+        poses = forward(place.robot, configurations)
         hit = np.zeros(len(configurations), dtype=bool)
         if place.ground is not None:
-            exempt = place.setup.robot.may_touch_ground
-            hit |= hits_ground(self._around, ends, place.ground, exempt)
+            exempt, around = place.setup.robot.may_touch_ground, self._near_ground
+            hit |= hits_ground(around, body_ends(around, poses), place.ground, exempt, poses)
         if self._leaving:
             hit |= place.tip.blocked(poses.tip, poses.tool_axis)
-        for solid in (*place.obstacles, place.target):
-            hit[~hit] = solid.hits(self._around, ends[:, :, ~hit])
-        halves = body_ends(self._half, poses)
-        hit[~hit] = hits_itself(self._half, halves[:, :, ~hit])
+        near = [(self._near_obstacles, solid) for solid in place.obstacles]
+        for around, solid in (*near, (self._near_object, place.target)):
+            left = np.flatnonzero(~hit)
+            hit[left] = solid.hits(around, body_ends(around, poses)[:, :, left], poses.take(left))
+        left = np.flatnonzero(~hit)
+        halves = body_ends(self._half, poses)[:, :, left]
+        hit[left] = hits_itself(self._half, halves, poses.take(left))
         return hit
 
 
@@ -83,17 +93,3 @@ def _with_tip(robot: Robot, tip: Body) -> Robot:
     number, last = len(robot.bodies), len(robot.bodies) - 1
     pairs = tuple((i, number) for i, j in robot.tested_pairs if j == last)
     return replace(robot, bodies=(*robot.bodies, tip), tested_pairs=robot.tested_pairs + pairs)
-
-
-def _wider(robot: Robot, by: float) -> Robot:
-    """The robot with all that is nearer than a distance to its bodies, and a little more."""
-    return replace(robot, bodies=tuple([_wider_body(body, by) for body in robot.bodies]))
-
-
-def _wider_body(body: Body, by: float) -> Body:
-    if not body.flat:
-        return replace(body, radius=body.radius + by)
-    along = by * (body.end - body.start) / body.length
-    return Body(
-        body.link, body.joint, body.start - along, body.end + along, body.radius + by, flat=True
-    )

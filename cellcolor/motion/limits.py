@@ -20,10 +20,15 @@ def motion_of(prepared: PreparedScene) -> Motion:
 
     Raises:
         InputError: there is none, or a list has another number of joints than the arm, the home
-            position is outside the limits, or the tool retracts less than it has to keep clear.
+            position is outside the limits, the tool retracts less than it has to keep clear, the
+            arm's solutions have no names, or the arm is planar.
     """
     setup, robot = prepared.setup, prepared.robot
     with in_file(setup.file):
+        prepared.check_named()
+        if robot.task.plane:
+            message = "a planar arm does not lift its tool off the part, so no motion is planned"
+            raise InputError(None, "robot.kinematics", message)
         motion = setup.motion
         if motion is None:
             raise InputError(None, "motion", "planning a motion needs this table")
@@ -49,8 +54,16 @@ def home_of(motion: Motion) -> Array | None:
 
 
 def speeds_of(motion: Motion, robot: Robot) -> Speeds:
-    """The URDF's velocities, lowered where the setup says so, and the setup's accelerations."""
-    velocities = np.array(robot.model.velocityLimit)
+    """The URDF's velocities, lowered where the setup says so, and the setup's accelerations.
+
+    Raises:
+        InputError: neither has the velocity of a joint.
+    """
+    velocities = robot.velocity
     if motion.joint_velocities_rad_per_s is not None:
-        velocities = np.minimum(velocities, motion.joint_velocities_rad_per_s)
+        velocities = np.fmin(velocities, motion.joint_velocities_rad_per_s)
+    if np.isnan(velocities).any():
+        name = robot.joint_names[int(np.argmax(np.isnan(velocities)))]
+        message = "is missing or 0; give motion.joint_velocities_rad_per_s in the setup"
+        raise InputError(str(robot.files[0]), f"joint[{name}].limit.velocity", message)
     return Speeds(velocities, np.array(motion.joint_accelerations_rad_per_s2))

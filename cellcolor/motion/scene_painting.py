@@ -85,10 +85,12 @@ def paint_scene(
         progress: told what is being done.
 
     Raises:
-        InputError: the solution has no division, or the radius is not positive.
+        InputError: the solution has no division, the radius is not positive, or the arm's
+            solutions have no names.
         OutOfTime: the deadline came first.
         TooLarge: a painting would need too many vertices.
     """
+    prepared.check_named()  # on a refined surface sheets would be others
     clock = StageClock(deadline, progress)
     motion = prepared.setup.motion
     if tool_radius_m is None and motion is not None:
@@ -157,8 +159,11 @@ def color_costs(robot: Robot, candidates: Candidates) -> Array:
     good = determinants / greatest if greatest else determinants
     joints = np.where(valid[:, :, None], candidates.configurations, 0.0)
     circle = 2 * np.pi
-    # As far from both limits as full circles allow: the middle is the best place.
-    middle, half = (robot.lower + robot.upper) / 2, (robot.upper - robot.lower) / 2
+    # As far from both limits as full circles allow: the middle is the best place. A joint without
+    # limits has room everywhere.
+    endless = np.isinf(robot.lower)
+    lower, upper = np.where(endless, 0.0, robot.lower), np.where(endless, 0.0, robot.upper)
+    middle, half = (lower + upper) / 2, np.where(endless, np.inf, (upper - lower) / 2)
     off = np.abs(joints - middle)
     nearest = np.minimum(off % circle, circle - off % circle)
     room = np.clip((half - nearest) / _ROOMY, 0.0, 1.0).min(axis=2)

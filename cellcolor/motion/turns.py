@@ -53,7 +53,8 @@ def chosen_turns(
         detour: by how much longer than a straight move from one configuration (joints,) to
             another the arm takes, s; 0 where that is free.
     """
-    middle = np.where(np.isfinite(limits[0] + limits[1]), (limits[0] + limits[1]) / 2, 0.0)
+    lower, upper = (np.where(np.isfinite(limits).all(axis=0), own, 0.0) for own in limits)
+    middle = (lower + upper) / 2
     circles, starts, ends, aside = [], [], [], []
     for visit in visits:
         own = _choices(visit, limits, middle)

@@ -17,7 +17,17 @@ that are proved to have too many; it passes as well if nothing is known.
 """
 
 from cellcolor.oracle.improvement import BetterPainting, Improvement
+from cellcolor.oracle.joint_verdicts import JointViolation, PathVerdict
 from cellcolor.oracle.ranges import Proof, ProvenRange, prove
 from cellcolor.oracle.verdict import Verdict
 
-__all__ = ["BetterPainting", "Improvement", "Proof", "ProvenRange", "Verdict", "prove"]
+__all__ = [
+    "BetterPainting",
+    "Improvement",
+    "JointViolation",
+    "PathVerdict",
+    "Proof",
+    "ProvenRange",
+    "Verdict",
+    "prove",
+]

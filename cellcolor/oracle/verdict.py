@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["Verdict"]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Verdict:
     """What is to be said about a plan.
 
@@ -34,7 +34,8 @@ class Verdict:
         why: of an optimal plan why there cannot be fewer segments, a clause; None where nothing
             needs a reason or none is known.
         surface: what the plan is on.
-        plan: what was judged; None for a solution.
+        plan: what was judged, of a plan in joint angles the colors that it comes to, -1 where a
+            configuration has none; None for a solution.
     """
 
     problems: tuple[str, ...]
@@ -43,8 +44,8 @@ class Verdict:
     violations: tuple[Violation, ...] = field(default=(), compare=False)
     improvement: Improvement | None = field(default=None, compare=False)
     why: str | None = field(default=None, compare=False)
-    surface: LabelledSurface | None = field(default=None, compare=False, repr=False)
-    plan: Plan | None = field(default=None, compare=False, repr=False)
+    surface: LabelledSurface | None = field(default=None, compare=False)
+    plan: Plan | None = field(default=None, compare=False)
 
     @property
     def valid(self) -> bool:
@@ -125,3 +126,7 @@ class Verdict:
             where = "" if self.improvement is None else f"; {self.improvement}"
             return f"{found}, {self.beatable_by} fewer are proved to be enough{where}"
         return f"{found}, not known to be optimal; the fewest are {self.bounds}"
+
+    def __repr__(self) -> str:
+        # What pytest prints of ``assert verdict.optimal, verdict``.
+        return f"<{type(self).__name__}: {self}>"

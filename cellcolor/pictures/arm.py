@@ -15,6 +15,7 @@ from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
@@ -75,8 +76,8 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     ]
     mesh = (result.surface.vertices, result.surface.faces)
     layers.append(_layer("object", FAINT, mesh))
-    if scene.collision_object is not None:
-        solid = scene.collision_object.surface(scene.folder).placed(scene.placement)
+    if scene.solid_object is not None:
+        solid = scene.solid_object.surface(scene.folder).placed(scene.placement)
         layers.append(_layer("collision object", "#999933", (solid.vertices, solid.faces)))
     size = float(np.ptp(result.surface.vertices, axis=0).max())
     points, triangles = _capsule(np.zeros(3), np.zeros(3), 0.02 * size)
@@ -89,7 +90,7 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     ground: tuple[SpaceLines, ...] = ()
     if scene.ground is not None:
         points = np.concatenate([layer.points for layer in layers])
-        ground = (_ground(scene.ground.height_m, points),)
+        ground = (_ground(scene.ground.half_space, points),)
     degrees = ", ".join(f"{angle:.1f}" for angle in np.degrees(configuration))
     place = ", ".join(f"{value:.3f}" for value in target)
     return Picture3D(
@@ -112,6 +113,8 @@ def _layer(name: str, color: str, mesh: _Mesh) -> Layer:
 
 def body_mesh(body: Body) -> _Mesh:
     """Points (k, 3) in m and triangles (t, 3) of a body, in the frame of its joint."""
+    if body.solid is not None:
+        return body.solid.vertices, body.solid.faces
     return (_cylinder if body.flat else _capsule)(body.start, body.end, body.radius)
 
 
@@ -177,11 +180,13 @@ def obstacle_mesh(obstacle: Obstacle, folder: Path) -> _Mesh:
     return obstacle.placed(points), triangles
 
 
-def _ground(height: float, points: Array) -> SpaceLines:
+def _ground(ground: HalfSpace, points: Array) -> SpaceLines:
     """The part of the ground below everything else as a grid, in pieces that sort by depth."""
     low, high = points.min(axis=0) - 0.05, points.max(axis=0) + 0.05
     x, y = (np.linspace(low[axis], high[axis], _GRID) for axis in (0, 1))
-    grid = np.stack([*np.meshgrid(x, y, indexing="ij"), np.full((_GRID, _GRID), height)], axis=2)
+    x, y = np.meshgrid(x, y, indexing="ij")
+    nx, ny, nz = ground.normal
+    grid = np.stack([x, y, (ground.offset_m - nx * x - ny * y) / nz], axis=2)
     along_x = np.stack([grid[:-1], grid[1:]], axis=2).reshape(-1, 2, 3)
     along_y = np.stack([grid[:, :-1], grid[:, 1:]], axis=2).reshape(-1, 2, 3)
     return SpaceLines("ground", "#AAAAAA", np.concatenate([along_x, along_y]))

@@ -20,6 +20,7 @@ PICTURES = {
     "plan": "cellcolor.pictures.by_plan:PlanPicture",
     "reasons": "cellcolor.pictures.by_reason:ReasonPicture",
     "segments": "cellcolor.pictures.by_segment:SegmentPicture",
+    "why": "cellcolor.pictures.why_not_fewer:WhyNotFewerPicture",
 }
 """The class of each, as ``module:name``; it is imported when somebody asks for the picture."""
 

@@ -27,8 +27,8 @@ __all__ = [
     "solve",
 ]
 
-FEW_STEPS = 2_000
-"""Steps for each certificate of a result; hardly any needs more, and `check` takes more."""
+FEW_STEPS = 20_000
+"""Choices for each certificate of a result, some seconds; hardly any takes more than a few."""
 
 
 def check_able(name: str, options: Options, *, start: bool = False, schemes: bool = False) -> None:
@@ -110,7 +110,9 @@ def solve(
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
     solution = _solution(instance, options, solver, answer, time.monotonic() - start)
-    _insist(check_solution(instance, solution, budget=FEW_STEPS), solver)
+    # Its certificates have been verified just now.
+    bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
+    _insist(check_solution(instance, replace(solution, bounds=bare)), solver)
     return solution
 
 
@@ -212,12 +214,14 @@ def _certified(instance: Instance, bound: Bound, deadline: Deadline) -> Bound:
     """The bound with what a checker without a solver can verify, where that is known in time."""
     if bound.kind in ("cover", "strangers") and bound.holds_for == "surface":
         cells = hard_cells(instance, bound.value, deadline)
-        return bound if cells is None else replace(bound, certificate={"cells": cells})
+        bound = bound if cells is None else replace(bound, certificate={"cells": cells})
     if bound.certificate is None:
         return bound
-    # What a solver hands in may be true and yet not prove it: conflicts on handles, say.
-    verdict = verify_bound(instance, bound, regions_of_cells(instance), FEW_STEPS)
-    return replace(bound, certificate=None) if verdict.outcome == "refused" else bound
+    # What a solver hands in may be true and yet not prove it: conflicts on handles, say. And what
+    # could not be verified here would make the solution invalid if `check` refused it.
+    regions = regions_of_cells(instance)
+    verdict = verify_bound(instance, bound, regions, FEW_STEPS, deadline)
+    return bound if verdict.outcome == "verified" else replace(bound, certificate=None)
 
 
 def _cuts(instance: Instance, answer: Answer) -> int | None:

@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from cellcolor.door.subject import Solvable
     from cellcolor.testing.surface_under_test import SurfaceUnderTest
 
+PICTURES = "cellcolor_pictures"
+"""Attribute of a failed assertion: what draws its pictures, given the name of the test."""
+
 _OPTION = "--cellcolor-time-limit"
 
 
@@ -25,17 +28,18 @@ def pytest_addoption(parser: pytest.Parser) -> None:
         type=float,
         default=60.0,
         metavar="SECONDS",
-        help="for the proof of each surface that cellcolor_oracle is asked for (default: 60)",
+        help="for the proof of each surface that cellcolor_oracle is asked for, and for building "
+        "it if it is a scene (default: 60)",
     )
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def cellcolor_oracle(request: pytest.FixtureRequest) -> Callable[[Solvable], SurfaceUnderTest]:
     """What is proved of a surface, to hold plans against: ``cellcolor_oracle("part.json")``.
 
     It takes a labelled surface, a scene, or an instance that names its surface: a file, a shipped
     name, or the value. What is proved is kept in pytest's cache, so that the next run proves
-    nothing again; ``--cache-clear`` forgets it.
+    nothing again; ``--cache-clear`` forgets it. Fixtures of any scope can use it.
     """
     from cellcolor.testing.surface_under_test import surfaces_under_test
 
@@ -43,5 +47,14 @@ def cellcolor_oracle(request: pytest.FixtureRequest) -> Callable[[Solvable], Sur
     return surfaces_under_test(
         request.config.getoption(_OPTION),
         None if cache is None else cache.mkdir("cellcolor"),
-        request.node.nodeid,
     )
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> None:
+    """Draw what a failed assertion is about, and name the pictures below its message."""
+    error = None if call.excinfo is None else call.excinfo.value
+    draw = getattr(error, PICTURES, None)
+    if error is not None and draw is not None:
+        for line in draw(item.nodeid):
+            error.add_note(line)

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.lab.families import planar_graph
+from cellcolor.testing.sheets import sheet
 
 __all__ = ["broken_plans", "instances", "labelled_surfaces", "valid_plans"]
 
@@ -20,19 +21,23 @@ _SEEDS = st.integers(0, 2**31 - 1)
 def labelled_surfaces(
     largest: int = 12, most_colors: int = 5
 ) -> st.SearchStrategy[LabelledSurface]:
-    """Square sheets with random overlapping colors, some with cracks and with holes.
+    """Flat sheets with overlapping colors, unreachable points, cracks and several parts.
+
+    What fails is made smaller, and printed as the call of :func:`~cellcolor.testing.sheets.sheet`
+    that makes it.
 
     Args:
-        largest: vertices along a side, 4 or more.
+        largest: vertices along a side, 2 or more.
         most_colors: colors, 1 or more.
     """
+    sides, places = st.integers(2, largest), st.integers(0, largest - 1)
+    rectangles = st.lists(st.tuples(places, places, places, places), min_size=1, max_size=3)
     return st.builds(
-        blobs,
-        seed=_SEEDS,
-        size=st.integers(4, largest),
-        colors=st.integers(1, most_colors),
-        cracks=st.integers(0, 3),
-        holes=st.integers(0, 2),
+        sheet,
+        sides,
+        sides,
+        st.lists(rectangles, min_size=1, max_size=most_colors),
+        st.lists(st.tuples(places, places, places), max_size=2),
     )
 
 
@@ -43,12 +48,14 @@ def instances(most_cells: int = 10, most_colors: int = 5) -> st.SearchStrategy[I
         most_cells: cells, 1 or more.
         most_colors: colors, 1 or more.
     """
-    return st.builds(
-        lambda seed, cells, more, colors: planar_graph(seed, cells, cells + more, colors),
-        _SEEDS,
-        st.integers(1, most_cells),
-        st.integers(0, 5),
-        st.integers(1, most_colors),
+    return st.integers(1, most_cells).flatmap(
+        lambda cells: st.builds(
+            planar_graph,
+            seed=_SEEDS,
+            cells=st.just(cells),
+            edges=st.integers(cells, cells + 5),
+            colors=st.integers(1, most_colors),
+        )
     )
 
 
@@ -65,23 +72,39 @@ def valid_plans(surface: LabelledSurface) -> st.SearchStrategy[Plan]:
 def broken_plans(surface: LabelledSurface) -> st.SearchStrategy[Plan]:
     """Plans that are wrong at one vertex, or have one entry too many or too few.
 
+    A wrong vertex has no color though some reach it, a color that does not reach it, or a number
+    that is no color's; each sort of fault that the surface has a place for is as likely as the
+    others.
+
     Args:
         surface: the labelled surface.
     """
-    return valid_plans(surface).flatmap(lambda plan: _broken(surface, plan))
-
-
-def _broken(surface: LabelledSurface, plan: Plan) -> st.SearchStrategy[Plan]:
-    colors = plan.vertex_colors
-
-    def wrong_at(vertex: int) -> st.SearchStrategy[Plan]:
-        own = surface.vertex_colors[vertex]
-        others: list[int | None] = [c for c in range(-1, len(surface.colors) + 1) if c not in own]
-        wrong = st.sampled_from(others + ([None] if own else []))
-        return wrong.map(lambda color: Plan((*colors[:vertex], color, *colors[vertex + 1 :])))
-
-    return st.one_of(
-        st.sampled_from(range(len(colors))).flatmap(wrong_at),
-        st.just(Plan(colors[:-1])),
-        st.just(Plan((*colors, colors[-1]))),
+    every = range(len(surface.colors))
+    wrong: list[dict[int, list[int | None]]] = [{}, {}, {}]
+    for vertex, own in enumerate(surface.vertex_colors):
+        if own:
+            wrong[0][vertex] = [None]
+        if others := [color for color in every if color not in own]:
+            wrong[1][vertex] = [*others]
+        wrong[2][vertex] = [-1, len(surface.colors)]
+    return valid_plans(surface).flatmap(
+        lambda plan: st.one_of(
+            *(_wrong_at(plan, faults) for faults in wrong if faults),
+            *(st.just(Plan(colors)) for colors in _of_wrong_length(plan)),
+        )
     )
+
+
+def _wrong_at(plan: Plan, faults: dict[int, list[int | None]]) -> st.SearchStrategy[Plan]:
+    """One of the vertices has one of its wrong colors."""
+    colors = plan.vertex_colors
+    return st.sampled_from(sorted(faults)).flatmap(
+        lambda vertex: st.sampled_from(faults[vertex]).map(
+            lambda color: Plan((*colors[:vertex], color, *colors[vertex + 1 :]))
+        )
+    )
+
+
+def _of_wrong_length(plan: Plan) -> list[tuple[int | None, ...]]:
+    colors = plan.vertex_colors
+    return [(*colors, None)] + ([colors[:-1]] if colors else [])

@@ -4,30 +4,45 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from functools import cached_property
+from functools import partial
 from pathlib import Path
 
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.door.oracle import AnyPlan, Oracle
+from cellcolor.deadline import OutOfTime
+from cellcolor.door.keeping_oracle import KeepingOracle
+from cellcolor.door.oracle import AnyPlan
+from cellcolor.door.showing import show
 from cellcolor.door.subject import Solvable
-from cellcolor.errors import CellcolorError
+from cellcolor.errors import CellcolorError, InputError
 from cellcolor.oracle import ProvenRange, Verdict
-from cellcolor.testing.range_cache import RangeCache
+from cellcolor.testing.plugin import PICTURES
 
 __all__ = ["SurfaceUnderTest", "surfaces_under_test"]
 
+_SHOWN = 3  # problems of a plan that is not valid
+
 
 def surfaces_under_test(
-    time_limit: float, folder: Path | None, test: str
+    time_limit: float, folder: Path | None
 ) -> Callable[[Solvable], SurfaceUnderTest]:
-    """What opens surfaces for one test.
+    """What opens surfaces for tests.
 
     Args:
         time_limit: seconds for each proof.
-        folder: where ranges and pictures are kept; None keeps neither.
-        test: its name, which pictures are named after.
+        folder: where proofs and pictures are kept; None keeps neither.
     """
-    return lambda source: SurfaceUnderTest(source, time_limit, folder, test)
+
+    def open_surface(source: Solvable) -> SurfaceUnderTest:
+        __tracebackhide__ = True
+        try:
+            return SurfaceUnderTest(source, time_limit, folder)
+        except InputError as error:
+            raise _shortened(error) from None
+        except OutOfTime:
+            message = f"the scene was not built in {time_limit:g} s (--cellcolor-time-limit)"
+            raise OutOfTime(message) from None
+
+    return open_surface
 
 
 class SurfaceUnderTest:
@@ -37,33 +52,25 @@ class SurfaceUnderTest:
         surface: the labelled surface.
     """
 
-    def __init__(self, source: Solvable, time_limit: float, folder: Path | None, test: str) -> None:
+    def __init__(self, source: Solvable, time_limit: float, folder: Path | None) -> None:
         """Open the surface; nothing is proved yet.
 
         Args:
             source: a labelled surface, a scene, or an instance that names its surface.
             time_limit: seconds for the proof.
-            folder: where ranges and pictures are kept; None keeps neither.
-            test: name of the test that asks.
+            folder: where proofs and pictures are kept; None keeps neither.
 
         Raises:
             InputError: the source cannot be used, or has no surface.
         """
-        self._oracle = Oracle(source, time_limit=time_limit)
-        self._time_limit, self._folder, self._test = time_limit, folder, test
-        self._cache = None if folder is None else RangeCache(folder)
+        self._oracle = KeepingOracle(source, time_limit, folder)
+        self._folder = folder
         self.surface: LabelledSurface = self._oracle.surface
 
-    @cached_property
+    @property
     def bounds(self) -> ProvenRange:
         """Between what the fewest segments lie; from the cache where it is known there."""
-        if self._cache is None:
-            return self._oracle.bounds
-        found = self._cache.get(self.surface, self._time_limit)
-        if found is None:
-            found = self._oracle.bounds
-            self._cache.put(self.surface, self._time_limit, found)
-        return found
+        return self._oracle.bounds
 
     def judge(self, plan: AnyPlan) -> Verdict:
         """The verdict on a plan; of one that can be beaten it says where.
@@ -75,8 +82,11 @@ class SurfaceUnderTest:
             BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.
             InputError: the plan cannot be used.
         """
-        verdict = Oracle(self.surface, bounds=self.bounds).judge(plan)
-        return self._oracle.judge(plan) if verdict.beatable_by else verdict
+        __tracebackhide__ = True
+        try:
+            return self._oracle.judge(plan)
+        except InputError as error:
+            raise _shortened(error) from None
 
     def assert_valid(self, plan: AnyPlan) -> Verdict:
         """Fail unless every reachable vertex has one of its colors, and no other vertex has one.
@@ -94,7 +104,8 @@ class SurfaceUnderTest:
         A plan of which that is open passes.
 
         Raises:
-            AssertionError: says where it can be beaten, and where the picture is.
+            AssertionError: says where it can be beaten, and where pictures of it and of a better
+                plan are.
         """
         __tracebackhide__ = True
         verdict = self.assert_valid(plan)
@@ -115,23 +126,38 @@ class SurfaceUnderTest:
         __tracebackhide__ = True
         if holds:
             return verdict
-        shown = [str(problem) for problem in verdict.problems[:3]]
-        lines = [
-            f"the plan on {self.surface.name!r} {what}: {verdict}",
-            *shown,
-            self._picture(verdict),
-        ]
-        raise AssertionError("\n".join(lines))
+        if verdict.problems:
+            lines = [f"the plan on {self.surface.name!r}: {verdict}"]
+            first = map(str, verdict.problems[:_SHOWN])
+            lines += [problem for problem in first if problem not in lines[0]]
+        else:
+            lines = [f"the plan on {self.surface.name!r} {what}: {verdict}"]
+        error = AssertionError("\n".join(lines))
+        # The plugin calls it once the test has failed; Hypothesis may have raised hundreds before.
+        vars(error)[PICTURES] = partial(self._pictures, verdict)
+        raise error
 
-    def _picture(self, verdict: Verdict) -> str:
-        """Draw the plan; a sentence saying where, or why not."""
-        if self._folder is None or verdict.plan is None:
-            return "no picture: there is no folder for it, or no plan in vertices"
+    def _pictures(self, verdict: Verdict, test: str) -> list[str]:
+        """Draw the plan, and a better one; where they are, or why not, a line each."""
+        if self._folder is None:
+            return ["no picture: pytest's cache, where it would be, is switched off"]
+        if verdict.plan is None:
+            return ["no picture: what was judged is a solution"]
         folder = self._folder / "pictures"
         folder.mkdir(exist_ok=True)
-        file = folder / f"{re.sub('[^A-Za-z0-9]+', '-', self._test).strip('-')[-120:]}.png"
+        file = folder / f"{re.sub('[^A-Za-z0-9]+', '-', test).strip('-')[-120:]}.png"
         try:
             verdict.plot(file)
+            if verdict.improvement is None:
+                return [f"picture: {file}"]
+            better = file.with_name(f"{file.stem}-better.png")
+            painted = verdict.improvement.better.painted
+            show(painted.surface, better, plan=painted.plan)
         except CellcolorError as error:
-            return f"no picture: {error}"
-        return f"picture: {file}"
+            return [f"no picture: {error}"]
+        return [f"picture: {file}", f"better: {better}"]
+
+
+def _shortened(error: InputError) -> InputError:
+    """An error that says all in its one line, without the way through cellcolor's own code."""
+    return error.with_traceback(None)

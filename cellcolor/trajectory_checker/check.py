@@ -21,6 +21,7 @@ from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from cellcolor.trajectory_checker.on_surface import branches_of, judge_contact, judge_cracks
 from cellcolor.trajectory_checker.tolerances import Limits
+from cellcolor.trajectory_checker.tool_turn import across_of, judge_turn
 from cellcolor.trajectory_checker.validity import judge_validity
 
 __all__ = ["check_trajectory"]
@@ -53,12 +54,14 @@ def check_trajectory(
         progress: told what is being done.
 
     Raises:
-        InputError: the trajectory is of another arm, or the setup's velocities are.
+        InputError: the trajectory is of another arm, or the setup's velocities are; or the arm's
+            solutions have no names.
         OutOfTime: the deadline came first.
         TooLarge: surface or trajectory would not fit into memory.
     """
     report = progress or (lambda _: None)
     robot, motion = prepared.robot, prepared.setup.motion
+    prepared.check_named()
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)
     notes: list[str] = []
@@ -78,8 +81,11 @@ def check_trajectory(
     rows = np.flatnonzero(dense.contact)
     located = fine.locate(dense.tips[rows], dense.outward[rows], deadline)
     judge_contact(dense, rows, located, faults)
-    deadline.check()
-    branches = branches_of(prepared, dense, rows)
+    across, turn = np.zeros((len(rows), 3)), prepared.setup.task.turn
+    if turn is not None:
+        across = across_of(robot, dense.joints[rows], deadline)
+        judge_turn(turn, dense, rows, located.normals, across, faults)
+    branches = branches_of(prepared, dense, rows, across)
     judge_cracks(built, dense, rows, located, branches, fine, faults)
     covered: CoveredArea | None = None
     if motion is None:
@@ -141,7 +147,7 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
     if not setup.constraints.collision:
         lower = upper = None
         notes.append("The setup leaves out collisions and joint limits.")
-    velocity = np.array(robot.model.velocityLimit, dtype=np.float64)
+    velocity = robot.velocity
     acceleration: Array | None = None
     if not timed:
         notes.append("There are no times, so velocities and accelerations are not judged.")
@@ -159,7 +165,11 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
                 file = None if setup.file is None else str(setup.file)
                 raise InputError(file, f"motion.{key}", message)
         if lowered is not None:
-            velocity = np.minimum(velocity, lowered)
+            velocity = np.fmin(velocity, lowered)
+    if timed and np.isnan(velocity).any():
+        names = [robot.joint_names[joint] for joint in np.flatnonzero(np.isnan(velocity))]
+        notes.append(f"Without a limit, so velocities are not judged: {', '.join(names)}.")
+        velocity = np.where(np.isnan(velocity), np.inf, velocity)
     return JointLimits(lower, upper, velocity, acceleration)
 
 

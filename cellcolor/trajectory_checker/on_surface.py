@@ -6,13 +6,14 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory_verdict import FaultKind
-from cellcolor.frontend.arm.kinematics import TASK_JOINTS
+from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 from cellcolor.trajectory_checker.tolerances import BRANCH, OFF_SURFACE, TILT
+from cellcolor.trajectory_checker.tool_turn import nearest_turns
 
 __all__ = ["branches_of", "judge_contact", "judge_cracks"]
 
@@ -70,22 +71,40 @@ def _note(
     )
 
 
-def branches_of(prepared: PreparedScene, dense: Dense, rows: Index) -> Index:
+def branches_of(prepared: PreparedScene, dense: Dense, rows: Index, across: Array) -> Index:
     """The branch (c,) that configurations belong to, -1 where it is none that is known.
 
     Joints are compared up to full circles, and without a last one that only turns the tool.
+
+    Args:
+        across: (c, 3) the tool's x axis; asked for if the setup gives the tool's turn.
     """
-    found = np.full(len(rows), -1)
+    found, compared = np.full(len(rows), -1), prepared.robot.task.joints
     for first in range(0, len(rows), _AT_ONCE):
-        part = rows[first : first + _AT_ONCE]
-        solutions = prepared.inverse(dense.tips[part], dense.axes[part])[..., :TASK_JOINTS]
-        off = solutions - dense.joints[part, None, :TASK_JOINTS]
+        part = slice(first, first + _AT_ONCE)
+        own = rows[part]
+        solutions, before = _solutions(prepared, dense.tips[own], dense.axes[own], across[part])
+        off = solutions[..., :compared] - dense.joints[own, None, :compared]
         off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
         off = np.where(np.isnan(off), np.inf, off)
         nearest = np.argmin(off, axis=1)
-        known = off[np.arange(len(part)), nearest] <= BRANCH
-        found[first : first + _AT_ONCE][known] = nearest[known]
+        known = off[np.arange(len(own)), nearest] <= BRANCH
+        found[part][known] = (before + nearest)[known]
     return found
+
+
+def _solutions(
+    prepared: PreparedScene, tips: Array, axes: Array, across: Array
+) -> tuple[Array, Index]:
+    """All solutions (k, branches, joints) of poses, and the number (k,) of their first branch.
+
+    A pose is solved with the turn that it has, and belongs to the nearest of those that are given.
+    """
+    kinematics = prepared.kinematics
+    if not isinstance(kinematics, TurnedKinematics):
+        return prepared.inverse(tips, axes), np.zeros(len(tips), dtype=np.int64)
+    number = nearest_turns(kinematics.turn, tips, axes, across)
+    return kinematics.solve_pose(tips, axes, across), number * len(kinematics.own.branches)
 
 
 def judge_cracks(

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 __all__ = [
     "ANGLE_ROUNDING",
+    "AT_VERTEX",
     "BRANCH",
     "JUMP",
     "OFF_SURFACE",
@@ -16,6 +17,7 @@ __all__ = [
     "STEP",
     "STEP_ANGLE",
     "TILT",
+    "TURN",
     "Limits",
 ]
 
@@ -29,7 +31,9 @@ POSE_DISTANCE = 1e-4  # m; the file's point against the one that the joints give
 POSE_ANGLE = math.radians(0.1)  # the same for the normal
 OFF_SURFACE = 0.001  # m; a mesh leaves the curved object it stands for by up to 0.6 mm as shipped
 TILT = math.radians(1.0)  # the tool's axis against the interpolated normal
+TURN = math.radians(1.0)  # the tool's x axis against the turn that the setup gives
 BRANCH = 0.01  # rad; configurations nearer than this to a branch's are its
+AT_VERTEX = 0.1  # rad; the same where tip and tool are off the vertex as far as a contact may be
 
 
 @dataclass(frozen=True)

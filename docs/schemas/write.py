@@ -21,10 +21,13 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from cellcolor.data import (
     bound,
+    check_error,
     coverage,
     instance,
     plan,
+    plan_verdict,
     solution,
+    solution_verdict,
     surface,
     tool_paths,
     trajectory,
@@ -36,10 +39,13 @@ DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 MODULES = (
     bound,
+    check_error,
     coverage,
     instance,
     plan,
+    plan_verdict,
     solution,
+    solution_verdict,
     surface,
     tool_paths,
     trajectory,
@@ -75,6 +81,13 @@ FORMATS = {
     ),
     "plan-1": Format(plan.FORMAT, 1, plan._ADAPTER, plan.Plan),
     "tool-paths-1": Format(tool_paths.FORMAT, 1, tool_paths._ADAPTER, tool_paths.ToolPaths),
+    "solution-verdict-1": Format(
+        solution_verdict.FORMAT, 1, solution_verdict._ADAPTER, solution_verdict.SolutionVerdict
+    ),
+    "plan-verdict-1": Format(
+        plan_verdict.FORMAT, 1, plan_verdict._ADAPTER, plan_verdict.PlanVerdict
+    ),
+    "check-error-1": Format(check_error.FORMAT, 1, check_error._ADAPTER, check_error.CheckError),
     "trajectory-1": Format(trajectory.FORMAT, 1, trajectory._ADAPTER, trajectory.Trajectory),
     "trajectory-verdict-1": Format(
         trajectory_verdict.FORMAT,

@@ -22,8 +22,10 @@ from cellcolor.checker.division import check_solution
 from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import planar_graph
+from cellcolor.solvers import checked
 
 SEEDS = st.integers(0, 10**6)
 THREE = drawn("AAB CAB CCB", {"A": [0, 1], "B": [1, 2], "C": [0, 2]})
@@ -130,6 +132,23 @@ def test_where_no_two_cells_are_strangers_choices_are_tried_up_to_the_budget() -
     # Each of the two colors of a first cell leaves the cell that lacks it untouched.
     assert verify_bound(instance, bound, regions).tried == 2
     assert verify_bound(instance, bound, regions, budget=1).outcome == "budget exceeded"
+
+
+def test_a_deadline_ends_it_as_the_budget_does() -> None:
+    instance = cellcolor.decompose(THREE)
+    (bound,) = cellcolor.solve(instance).solution.bounds or ()
+    late = verify_bound(instance, bound, regions_of_cells(instance), deadline=Deadline(0.0))
+    assert late.outcome == "budget exceeded"
+
+
+def test_a_certificate_that_is_not_verified_in_time_is_not_handed_out(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Nobody has seen it prove its bound, and a refused one would make the solution invalid."""
+    monkeypatch.setattr(checked, "FEW_STEPS", 1)
+    instance = cellcolor.decompose(THREE)
+    (bound,) = cellcolor.solve(instance).solution.bounds or ()
+    assert bound.value == 2 and bound.certificate is None
 
 
 def test_what_is_verified_is_no_claim() -> None:

@@ -100,12 +100,33 @@ class TestWhatWasSolved:
         capsys.readouterr()
         assert run("check", RING, solution) == 0
         out = capsys.readouterr().out
-        assert "at least 2 by cover: verified" in out and "claimed" not in out
+        assert "at least 2 by cover: verified, 0 of 200000 choices tried" in out
+        assert "claimed" not in out and "by CP-SAT" not in out
         assert run("check", RING, solution, "--json") == 0
         (document,) = json_lines(capsys.readouterr().out)
         assert document["claimed"] == {}
         (bound,) = document["bounds"]
         assert (bound["kind"], bound["value"], bound["outcome"]) == ("cover", 2, "verified")
+        assert (bound["tried"], bound["budget"]) == (0, 200_000)
+        assert (document["bounds_by_solver"], document["solver"]) == (0, "cp-sat")
+
+    @pytest.mark.parametrize(("solver", "name"), [("cp-sat", "CP-SAT"), ("dfs", "dfs")])
+    def test_what_rests_on_a_solver_is_said_and_counted(
+        self, solver: str, name: str, tmp_path: Path, capsys: Capture
+    ) -> None:
+        """The paper's space needs a segment more here than the surface, which nothing verifies."""
+        solution = tmp_path / "solution.json"
+        assert run("solve", CORRIDORS, "-o", solution, "--solver", solver) == 0
+        capsys.readouterr()
+        assert run("check", CORRIDORS, solution) == 0
+        lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+        unverified = [line for line in lines if line.endswith(f": no certificate, by {name}")]
+        (counted,) = [line for line in lines if line.endswith(f"bounds by {name}")]
+        assert counted.startswith(f"{len(unverified)} of ") and unverified
+        assert run("check", CORRIDORS, solution, "--json") == 0
+        (document,) = json_lines(capsys.readouterr().out)
+        assert document["bounds_by_solver"] == len(unverified)
+        assert {b["outcome"] for b in document["bounds"]} <= {"verified", "no certificate"}
 
     def test_a_forged_certificate_makes_a_solution_invalid(
         self, tmp_path: Path, capsys: Capture
@@ -117,7 +138,9 @@ class TestWhatWasSolved:
         solution.write_text(json.dumps(forged))
         capsys.readouterr()
         assert run("check", RING, solution) == 1
-        assert "bounds[0].certificate: fewer than 2 color regions" in capsys.readouterr().out
+        out = capsys.readouterr().out
+        assert "bounds[0].certificate: fewer than 2 color regions" in out
+        assert "at least 2 by cover: refused, fewer than 2 color regions" in out
 
 
 class TestKnown:

@@ -35,15 +35,15 @@ def test_a_torus(tmp_path: Path) -> None:
         assert caught.value.field == "object.tube_radius_m"
 
 
-def test_a_cone(tmp_path: Path) -> None:
+def test_a_pyramid(tmp_path: Path) -> None:
     with followed("add-an-obstacle", tmp_path) as names:
         result, free = names["result"], names["free"]
         assert (result.reasons != free.reasons).any()
         lost = (free.reasons == VALID) & (result.reasons != VALID)
         reasons = {result.reason_names[code] for code in result.reasons[lost]}
         assert reasons == {"tip blocked", "obstacle collision"}
-        # Within a contact radius of the cone's flank no tip can be, straight from above.
-        across = np.linalg.norm(result.surface.vertices[:, :2] - [0.5, 0.1], axis=1)
+        # Inside of the pyramid no tip can be; in a section |x| + |y| is half its diagonal.
+        across = np.abs(result.surface.vertices[:, :2] - [0.5, 0.1]).sum(axis=1)
         inside = across < 0.06 * (0.25 - 0.1) / 0.25
         assert inside.any() and not any(
             result.surface.vertex_colors[vertex] for vertex in np.flatnonzero(inside)
@@ -79,7 +79,7 @@ def test_a_keep_out_zone(tmp_path: Path) -> None:
 
 
 def test_an_arm_with_four_joints(tmp_path: Path) -> None:
-    with followed("add-an-arm", tmp_path) as names:
+    with followed("add-a-family-of-arms", tmp_path) as names:
         result, scene = names["result"], names["scene"]
         assert result.branches == ("elbow-up", "elbow-down")
         assert result.configurations.shape == (len(result.surface.vertices), 2, 4)
@@ -94,6 +94,17 @@ def test_an_arm_with_four_joints(tmp_path: Path) -> None:
         assert all(
             any(color.startswith(b) for b in result.branches) for color in result.surface.colors
         )
+
+
+def test_an_own_arm_whose_solutions_have_no_names(tmp_path: Path) -> None:
+    with followed("add-a-family-of-arms", tmp_path) as names:
+        named, scene = names["result"], names["scene"]
+        sys.modules["pitch_arm"].PitchArm.branches = ()
+        result = build_surface(scene)
+        assert result.branches == ("sheet-1", "sheet-2")
+        assert "none found on this part" in str(result.report)
+        sizes = [sorted(c.vertices for c in each.report.colors) for each in (result, named)]
+        assert sizes[0] == sizes[1] and len(sizes[0]) >= 2
 
 
 def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:

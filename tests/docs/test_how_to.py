@@ -106,7 +106,7 @@ def test_one_screen(guide: str) -> None:
 
 def test_another_planner(tmp_path: Path) -> None:
     """It fails as the guide says, and passes once it is mended."""
-    first, test, _, failure, second = found = blocks("test-another-planner")
+    first, test, _, failure, second, joints, printed = found = blocks("test-another-planner")
     ((pytest_command, *options),) = commands(found)
     assert pytest_command == "pytest"
     plugin = (
@@ -127,3 +127,6 @@ def test_another_planner(tmp_path: Path) -> None:
     (tmp_path / "test_planner.py").write_text(tilted, encoding="utf-8")
     done = run(command, tmp_path, tmp_path)
     assert done.returncode == 1 and "1 fewer are proved to be enough" in done.stdout
+    pytest.importorskip("pinocchio")
+    done = run([sys.executable, "-c", joints.text], tmp_path, tmp_path)
+    assert (done.returncode, done.stdout) == (0, printed.text), done.stderr

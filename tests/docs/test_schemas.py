@@ -13,14 +13,25 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from documents import TOOL_PATHS, TRAJECTORY, VERDICT
+from documents import (
+    CHECK_ERROR,
+    INVALID_PLAN_VERDICT,
+    PLAN_VERDICT,
+    SOLUTION_VERDICT,
+    TOOL_PATHS,
+    TRAJECTORY,
+    VERDICT,
+)
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 
+from cellcolor.data.check_error import CheckError
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
+from cellcolor.data.plan_verdict import PlanVerdict
 from cellcolor.data.solution import Solution, scheme_line
+from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
@@ -70,7 +81,8 @@ def written() -> list[Document]:
     plan = Plan(tuple(min(colors, default=None) for colors in surface.vertex_colors))
     texts = [surface.to_json(), decompose(surface, "x.json").to_json(), instance.to_json()]
     texts += [paper.to_json(), strands.to_json(), scheme_line(next(schemes)), plan.to_json()]
-    return [*(json.loads(text) for text in texts), TOOL_PATHS, TRAJECTORY, VERDICT]
+    checks = [PLAN_VERDICT, INVALID_PLAN_VERDICT, SOLUTION_VERDICT, CHECK_ERROR]
+    return [*(json.loads(text) for text in texts), TOOL_PATHS, TRAJECTORY, VERDICT, *checks]
 
 
 WRITTEN = written()
@@ -131,6 +143,9 @@ def read(document: Document) -> None:
         "cellcolor/tool-paths": ToolPaths.from_document,
         "cellcolor/trajectory": Trajectory.from_document,
         "cellcolor/trajectory-verdict": TrajectoryVerdict.from_document,
+        "cellcolor/plan-verdict": PlanVerdict.from_document,
+        "cellcolor/solution-verdict": SolutionVerdict.from_document,
+        "cellcolor/check-error": CheckError.from_document,
     }
     readers[document["format"]](document)
 

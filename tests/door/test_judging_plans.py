@@ -252,14 +252,15 @@ class TestCommand:
         out = capsys.readouterr().out
         assert "2 segments, 1 lift-off\n" in out
         assert "exactly 2" in out
-        assert "optimal" in out.split()
+        assert "  optimal, because " in out
 
     def test_json(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         plan = halves(LabelledSurface.read(CORRIDORS))
         assert self.check(CORRIDORS, plan, tmp_path, "--json") == 0
         (line,) = capsys.readouterr().out.splitlines()
         document: Document = json.loads(line)
-        assert document == {
+        # What was printed before verdicts had a format stays where it was.
+        before = {
             "file": str(tmp_path / "plan.json"),
             "valid": True,
             "problems": [],
@@ -270,6 +271,7 @@ class TestCommand:
             "optimal": True,
             "beatable_by": 0,
         }
+        assert {name: document[name] for name in before} == before
 
     def test_not_valid(self, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
         colors = list(halves(LabelledSurface.read(CORRIDORS)).vertex_colors)

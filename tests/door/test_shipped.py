@@ -6,13 +6,13 @@ import json
 import os
 import subprocess
 import sys
-import tomllib
 import zipfile
 from pathlib import Path
 
 import pytest
 from library import INSTANCES, PAPER
 from shipped import ROBOTS, SCENES, TOP
+from wheels import build_wheel
 
 import cellcolor
 from cellcolor.cli import main
@@ -107,7 +107,7 @@ print(len(cellcolor.library()))
 def test_a_wheel_has_it_all(tmp_path: Path) -> None:
     """Built, unpacked elsewhere, and used from a folder that knows nothing of the repository."""
     pytest.importorskip("hatchling")
-    wheel = _wheel(tmp_path / "wheels")
+    wheel = build_wheel(tmp_path / "wheels")
     folder = tmp_path / "site"
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(folder)
@@ -132,17 +132,9 @@ def test_a_wheel_has_it_all(tmp_path: Path) -> None:
     assert list(empty.iterdir()) == []
 
 
-def _wheel(folder: Path) -> Path:
-    command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation"]
-    subprocess.run([*command, "-q", "-w", str(folder), str(TOP)], check=True)
-    (wheel,) = folder.iterdir()
-    project = tomllib.loads((TOP / "pyproject.toml").read_text(encoding="utf-8"))["project"]
-    assert wheel.name.startswith(f"{project['name'].replace('-', '_')}-{cellcolor.__version__}-")
-    return wheel
-
-
 def _files(place: str) -> list[Path]:
-    return [file for file in (TOP / place).rglob("*") if file.is_file()]
+    found = (file for file in (TOP / place).rglob("*") if file.is_file())
+    return [file for file in found if file.parent.name != "__pycache__"]
 
 
 def _can_import(*packages: str) -> bool:

@@ -10,8 +10,11 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.build import BuildResult
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.stages import Links
 
 LONGEST = 0.012
 
@@ -86,3 +89,21 @@ def test_without_the_key_nothing_is_said_of_it() -> None:
 def test_a_length_that_is_far_too_small_is_refused() -> None:
     with pytest.raises(InputError, match=r"continuity\.border_length_m"):
         scene(0.0)
+
+
+def crossing_length(links: Links, coloring: Coloring, mesh: Surface) -> float:
+    """The longest mesh edge whose ends have different colors, m."""
+    here, there = (coloring.node_color[end] for end in links.edges.T)
+    return float(mesh.lengths(links.edges)[(here != there).any(axis=1)].max())
+
+
+def test_borders_that_the_sliver_policy_takes_are_made_finer_as_well() -> None:
+    """Which cells it takes hangs on their areas, and so on borders that are gone afterwards."""
+    plain = shipped("wok_obstacle", 150)
+    keys, policy = {"border_length_m": 0.006}, {"simplify_below_share": 0.1}
+    made = build_surface(
+        plain.varied(setup=plain.setup.varied(continuity=keys, slivers=policy))
+    ).stages
+    left = crossing_length(made.cleaned.links, made.cleaned.coloring, made.surface)
+    before = crossing_length(made.links, made.coloring, made.surface)
+    assert left <= 0.006 < before <= 4 * 0.006

@@ -146,7 +146,7 @@ def check_candidates(name: str, vertices: int, count: int) -> None:
     ends = body_ends(prepared.robot, forward(prepared.robot, joints))
     # Each test on every candidate, not only on what the ones before it have left.
     verdicts = {
-        Reason.GROUND: hits_ground(prepared.robot, ends, ground, exempt),
+        Reason.GROUND: hits_ground(prepared.robot, ends, prepared.scene.ground.half_space, exempt),
         Reason.SELF_COLLISION: hits_itself(prepared.robot, ends),
         Reason.OBJECT_COLLISION: target.hits(prepared.robot, ends),
     }

@@ -130,6 +130,16 @@ def test_values_are_pickled_and_compared() -> None:
     assert "sha256" in scene.model_dump(mode="json")["object"]
 
 
+def test_setups_with_names_of_links_and_joints_are_hashed_too() -> None:
+    """By content: in whichever order the names stand."""
+    one, other = (
+        Setup.read(SETUP).varied(robot={"fixed_joints": dict(named)})
+        for named in ((("rail", 0.5), ("jaw", 0.1)), (("jaw", 0.1), ("rail", 0.5)))
+    )
+    assert one == other and hash(one) == hash(other)
+    assert len({one, other, Setup.read(SETUP)}) == 2
+
+
 def test_a_scene_without_any_file() -> None:
     """Robot, tool, setup and object as text, values and arrays: nothing is there to be read."""
     shipped = Setup.read(SETUP)

@@ -9,8 +9,9 @@ import pinocchio as pin
 import pytest
 from motions import Planned, planned
 from scipy.spatial import cKDTree
-from shipped import WOK, shipped
+from shipped import ROBOTS, WOK, shipped
 
+import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
@@ -175,3 +176,20 @@ def test_a_home_in_the_object_is_refused() -> None:
     moved = prepare(scene.moved(position_m=tip.tolist()))
     with pytest.raises(InputError, match=r"motion\.home_rad: is no place for the arm"):
         Transfers(moved, motion, np.ones(6), 0, NEVER)
+
+
+@pytest.mark.slow
+def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
+    """As many vendors describe theirs: of what is missing a plan needs the velocities."""
+    text = (ROBOTS / "ur5.urdf").read_text()
+    text = re.sub(r"<inertial>.*?</inertial>|<limit [^>]*/>", "", text, flags=re.DOTALL)
+    text = text.replace('type="revolute"', 'type="continuous"')
+    square = shipped("square", 200)
+    setup = square.setup.varied(robot={"arm_urdf": text}, constraints={"force": False})
+    with pytest.raises(InputError, match="joint_velocities_rad_per_s") as caught:
+        cellcolor.plan(square.with_setup(setup))
+    assert caught.value.field == "joint[shoulder_pan_joint].limit.velocity"
+    setup = setup.varied(motion={"joint_velocities_rad_per_s": [3.0] * 6})
+    planned = cellcolor.plan(square.with_setup(setup))
+    assert planned.verdict.valid
+    assert re.search(r'"lower":\s*\[null', planned.page().decode())  # JSON knows no infinity

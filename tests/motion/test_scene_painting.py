@@ -123,3 +123,14 @@ def test_costs_by_hand(wok: Scene) -> None:
         share = min(1.0, min(room) / (np.pi / 2), determinant / determinants.max())
         assert cost[row, branch] == pytest.approx(1 - share)
     assert (cost[~candidates.valid] == 1).all()
+
+
+def test_a_joint_without_limits_has_room_everywhere(wok: Scene) -> None:
+    """As one whose limits are so wide that no angle comes near them."""
+    prepared, built = wok
+    far = np.full(6, 1e4)
+    endless = replace(prepared.robot, lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
+    wide = replace(prepared.robot, lower=-far, upper=far)
+    candidates = built.stages.candidates
+    assert (color_costs(endless, candidates) == color_costs(wide, candidates)).all()
+    assert np.isfinite(color_costs(endless, candidates)).all()

@@ -120,3 +120,17 @@ class TestScene:
         expected = np.array([-0.6, 0.5, 0.1]) + np.vstack([np.zeros(3), 0.1 * np.eye(3)])
         assert sorted(corner.round(9).tolist()) == sorted(expected.round(9).tolist())
         assert found["object"].shape == result.surface.vertices.shape
+
+    def test_the_ground_is_drawn_where_it_is(self) -> None:
+        """A grid on the tilted plane: it rises by half of x, from -0.5 m over the origin."""
+        from shipped import shipped
+
+        from cellcolor.frontend import build_surface
+        from cellcolor.pictures.arm import arm_at
+
+        ground = {"height_m": -0.5, "normal": (-1.0, 0.0, 2.0)}
+        result = build_surface(shipped("square", 100).varied(ground=ground))
+        vertex, branch = (int(k) for k in np.argwhere(result.node_color >= 0)[0])
+        (lines,) = arm_at(result, vertex, branch).lines
+        ends = lines.ends.reshape(-1, 3)
+        np.testing.assert_allclose(ends[:, 2], -0.5 + 0.5 * ends[:, 0], atol=1e-12)

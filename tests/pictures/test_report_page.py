@@ -8,6 +8,7 @@ import re
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -65,6 +66,15 @@ def unpacked(packed: Document) -> np.ndarray:
     return np.frombuffer(base64.b64decode(packed["base64"]), "<" + packed["kind"])
 
 
+def wait_for_time(page: Any, seconds: float) -> None:
+    """Until the page shows a later time. Asked from here: its policy lets nothing evaluate text."""
+    for _ in range(300):
+        if float(page.input_value("#time")) > seconds:
+            return
+        page.wait_for_timeout(100)
+    raise AssertionError(f"still at {page.input_value('#time')} s after half a minute")
+
+
 def test_the_page_is_known_again_and_the_same_each_time(page_file: Path) -> None:
     page = page_file.read_bytes()
     assert HTML.pattern.match(page[:4096])
@@ -81,6 +91,14 @@ def test_texts_stay_texts() -> None:
     assert "<b>" not in page
     assert page.count("&lt;/script&gt;&lt;b&gt;&amp;&quot;&#x27;{{DATA}}") == 3
     assert data_of(page)["frames"]["samples"] == len(odd.times)
+
+
+def test_the_ground_is_a_normal_and_an_offset() -> None:
+    """Three numbers out of the ground, and how far its plane is from the origin along them."""
+    made = stand_in()
+    assert made.prepared.scene.ground is not None
+    height = made.prepared.scene.ground.height_m
+    assert data_of(render_page(report()).decode())["ground"] == [0.0, 0.0, 1.0, height]
 
 
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
@@ -110,7 +128,7 @@ def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) ->
                 assert state == "between strokes"
         # At the end, play begins again, at once.
         page.click("#play")
-        page.wait_for_function("Number(document.getElementById('time').value) > 1")
+        wait_for_time(page, 1)
         page.click("#play")
         page.wait_for_selector("#play[aria-label=Play]")
         stopped = page.input_value("#time")
@@ -151,7 +169,7 @@ def test_without_webgl_the_rest_works(page_file: Path, tmp_path: Path) -> None:
     with opened(tmp_path / "plain.html", DESKTOP) as (browser_page, faults):
         assert "cannot draw in 3D" in browser_page.inner_text("#overlay")
         browser_page.click("#play")
-        browser_page.wait_for_function("Number(document.getElementById('time').value) > 0")
+        wait_for_time(browser_page, 0)
         assert faults == []
 
 

@@ -147,6 +147,94 @@ VERDICT: Document = {
     "notes": ["The setup has no [motion], so accelerations are not judged."],
 }
 
+PLAN_VERDICT: Document = {
+    "file": "plan.json",
+    "format": "cellcolor/plan-verdict",
+    "version": 1,
+    "valid": True,
+    "text": "2 segments, 1 lift-off, 1 fewer are proved to be enough",
+    "problems": [],
+    "violation_count": 0,
+    "violations": [],
+    "segments": 2,
+    "lift_offs": 1,
+    "lower_bound": 1,
+    "upper_bound": 1,
+    "optimal": False,
+    "beatable_by": 1,
+    "gap": 1,
+    "on_mesh": {"lower": 1, "upper": 1},
+    "improvement": {
+        "joined": [0, 1],
+        "places": [0, 2],
+        "segments": 1,
+        "segments_on_mesh": 1,
+        "vertex_colors": [0, 0, 0, None],
+    },
+    "why": None,
+}
+
+INVALID_PLAN_VERDICT: Document = PLAN_VERDICT | {
+    "valid": False,
+    "text": "not valid: vertex_colors[3]: color 1 does not reach this vertex",
+    "problems": ["vertex_colors[3]: color 1 does not reach this vertex"],
+    "violation_count": 1,
+    "violations": [
+        {
+            "vertex": 3,
+            "color": 1,
+            "place": [0.0, 1.0, 0.0],
+            "reason": "color 1 does not reach this vertex",
+        }
+    ],
+    "segments": None,
+    "lift_offs": None,
+    "lower_bound": None,
+    "upper_bound": None,
+    "optimal": None,
+    "beatable_by": None,
+    "gap": None,
+    "on_mesh": None,
+    "improvement": None,
+}
+
+SOLUTION_VERDICT: Document = {
+    "file": "solution.json",
+    "format": "cellcolor/solution-verdict",
+    "version": 1,
+    "valid": True,
+    "problems": [],
+    "segments": 1,
+    "lift_offs": 0,
+    "status": "optimal",
+    "solver": "cp-sat",
+    "bounds": [
+        {
+            "kind": "cover",
+            "value": 1,
+            "holds_for": "surface",
+            "outcome": "no certificate",
+            "reason": "",
+            "tried": 0,
+            "budget": 200000,
+        }
+    ],
+    "bounds_by_solver": 1,
+    "claimed": {"lower_bound": 1},
+    "schemes": None,
+}
+
+CHECK_ERROR: Document = {
+    "file": "-",
+    "format": "cellcolor/check-error",
+    "version": 1,
+    "valid": None,
+    "error": "standard input: vertex_colors[0]: Input should be a valid integer",
+    "at_file": "standard input",
+    "at_field": "vertex_colors[0]",
+    "exit_code": 2,
+}
+
 Change = Callable[[Document], None]
 
 

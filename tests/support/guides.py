@@ -31,7 +31,9 @@ def blocks(guide: str) -> list[Block]:
 def follow(block: Block, folder: Path) -> None:
     """Write the file that a block is, or put its line where its introduction says."""
     if whole := re.fullmatch(r"`(\S+)`:", block.introduced):
-        (folder / whole[1]).write_text(block.text, encoding="utf-8")
+        path = folder / whole[1]
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(block.text, encoding="utf-8")
     elif inside := re.fullmatch(r"In `(\w+)` of `(\S+)`:", block.introduced):
         path = folder / inside[2]
         text = path.read_text(encoding="utf-8")

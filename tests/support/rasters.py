@@ -10,6 +10,7 @@ from functools import cache
 
 import numpy as np
 from shipped import shipped
+from turned_scenes import setup
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
@@ -31,6 +32,14 @@ def square() -> tuple[PreparedScene, BuildResult, Trajectory]:
 def cap() -> tuple[PreparedScene, BuildResult, Trajectory]:
     """The top of the shipped wok with its obstacle, in two strokes of one branch."""
     return _made(shipped("wok_obstacle").varied(object={"half_angle_rad": 0.4}))
+
+
+@cache
+def turned() -> tuple[PreparedScene, BuildResult, Trajectory]:
+    """The small square for a tool that may have two turns, 90 degrees apart."""
+    given = setup({"along": (1.0, 0.0, 0.0), "turns_deg": (0.0, 90.0)})
+    scene = shipped("square").varied(object={"size_x_m": 0.16, "size_y_m": 0.12})
+    return _made(scene.with_setup(given))
 
 
 def _made(scene: Scene) -> tuple[PreparedScene, BuildResult, Trajectory]:

@@ -50,11 +50,16 @@ class World:
             if self.link[i] != "base_link"
         )
 
-    def to_ground(self, height: float, exempt: tuple[str, ...]) -> float:
-        """Smallest distance of a shape to the half space below a height."""
-        ground = coal.Halfspace(np.array([0.0, 0.0, 1.0]), height)
+    def to_ground(
+        self,
+        height: float,
+        exempt: tuple[str, ...],
+        normal: tuple[float, float, float] = (0.0, 0.0, 1.0),
+    ) -> float:
+        """Smallest distance of a shape to the half space below a height, perhaps tilted."""
+        ground = coal.Halfspace(np.array(normal) / np.linalg.norm(normal), 0.0)
         return min(
-            self._distance(ground, coal.Transform3s(), i)
+            self._distance(ground, coal.Transform3s(np.eye(3), np.array([0.0, 0.0, height])), i)
             for i in range(len(self.link))
             if self.link[i] not in exempt
         )

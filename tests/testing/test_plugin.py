@@ -9,8 +9,10 @@ import sys
 from importlib.metadata import entry_points
 from pathlib import Path
 
+import pytest
 from meshes import drawn
 
+import cellcolor
 from cellcolor.data.surface import LabelledSurface
 
 RED, BLUE = 0, 1
@@ -38,8 +40,9 @@ def test_a_plan_that_can_be_beaten_fails_with_the_place_and_a_picture(tmp_path: 
     )
     assert "1 failed" in out
     assert "can be beaten: 3 segments, 2 lift-offs, 2 fewer are proved to be enough" in out
-    picture = re.search(r"picture: (.*\.png)", out)
-    assert picture and Path(picture[1]).read_bytes().startswith(b"\x89PNG")
+    for word in ("picture", "better"):
+        picture = re.search(rf"{word}: (.*\.png)", out)
+        assert picture and Path(picture[1]).read_bytes().startswith(b"\x89PNG")
     # The lines of cellcolor's own functions are left out: the test's line is the last one.
     assert "surface_under_test.py" not in out
 
@@ -55,24 +58,127 @@ def test_optimal_valid_and_invalid_plans(tmp_path: Path) -> None:
         "    cellcolor_oracle('row.surface.json').assert_valid([1] * 18)\n",
     )
     assert "1 failed, 2 passed" in out
-    assert "is not valid" in out and "vertex_colors[0]: color 1 does not reach this vertex" in out
+    reason = "color 1 does not reach this vertex"
+    # The lines of the failure; pytest's summary repeats the first one where CI is set.
+    said = [line for line in out.splitlines() if line.startswith("E  ")]
+    # The first is in the verdict's own words, and is not said twice.
+    assert said[0].endswith(f"not valid: vertex_colors[0]: {reason} (and 11 other problems)")
+    assert sum("vertex_colors[0]: " in line for line in said) == 1
+    assert said[1] == f"E       vertex_colors[1]: {reason}"
+    assert sum("vertex_colors[" in line for line in said) == 3
+
+
+def test_what_hypothesis_tries_is_not_drawn_but_what_it_ends_with(tmp_path: Path) -> None:
+    """Every plan that is tried fails; the two pictures are those of the last one."""
+    out = run(
+        tmp_path,
+        "from hypothesis import given, settings, strategies as st\n"
+        "import cellcolor\n"
+        "from cellcolor.testing import surface_under_test as module\n"
+        "drawn = []\n"
+        "show = module.show\n"
+        "module.show = lambda *a, **b: drawn.append(0) or show(*a, **b)\n"
+        "@settings(max_examples=20, database=None, deadline=None)\n"
+        "@given(st.integers(0, 9))\n"
+        "def test_mine(cellcolor_oracle, number):\n"
+        "    cellcolor_oracle('row.surface.json').assert_optimal([0, 0, 1, 1, 0, 0] * 3)\n"
+        "def test_count():\n"
+        "    assert len(drawn) == 1\n",
+    )
+    assert "1 failed, 1 passed" in out and "number=0" in out
+    assert "picture: " in out and "better: " in out
+
+
+def test_a_verdict_asserted_by_hand_and_what_cannot_be_used(tmp_path: Path) -> None:
+    """pytest prints the verdict's words; what cannot be used is a line below the test's own."""
+    out = run(
+        tmp_path,
+        "def test_by_hand(cellcolor_oracle):\n"
+        "    verdict = cellcolor_oracle('row.surface.json').judge([0, 0, 1, 1, 0, 0] * 3)\n"
+        "    assert verdict.optimal, verdict\n"
+        "def test_fractions(cellcolor_oracle):\n"
+        "    cellcolor_oracle('row.surface.json').assert_valid([0.5] * 18)\n"
+        "def test_no_file(cellcolor_oracle):\n"
+        "    cellcolor_oracle('none.surface.json')\n"
+        "def test_solution(cellcolor_oracle):\n"
+        "    import cellcolor\n"
+        "    row = cellcolor_oracle('row.surface.json')\n"
+        "    row.assert_valid(cellcolor.solve('annulus.json'))\n",
+    )
+    assert "4 failed" in out
+    assert "AssertionError: <Verdict: 3 segments, 2 lift-offs, 2 fewer are proved to be" in out
+    assert "E       cellcolor.errors.InputError: vertex_colors[0]: Input should be a valid" in out
+    assert "InputError: none.surface.json: No such file or directory\n" in out
+    assert "no picture: what was judged is a solution" in out
+    assert "/cellcolor/" not in out.replace("/d/cellcolor/", "")  # no way through its own code
+
+
+def test_a_scene_that_there_is_no_time_to_build(tmp_path: Path) -> None:
+    pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+    tests = "def test_mine(cellcolor_oracle):\n    cellcolor_oracle('wok')\n"
+    out = run(tmp_path, tests, "--cellcolor-time-limit", "0.001")
+    assert "the scene was not built in 0.001 s (--cellcolor-time-limit)" in out
 
 
 def test_the_second_run_proves_nothing_again(tmp_path: Path) -> None:
-    """Twenty plans, of which none is proved in the second run: proving would fail there."""
+    """Twenty plans, every other one of which can be beaten: proving fails in the second run."""
     tests = (
         "import pytest\n"
         "@pytest.mark.parametrize('number', range(20))\n"
         "def test_mine(cellcolor_oracle, number, monkeypatch):\n"
         "    {}\n"
-        "    cellcolor_oracle('row.surface.json').assert_optimal([0] * 18)\n"
+        "    row = cellcolor_oracle('row.surface.json')\n"
+        "    if number % 2:\n"
+        f"        assert {joined_in_the_row()!r} in str(row.judge([0, 0, 1, 1, 0, 0] * 3))\n"
+        "    else:\n"
+        "        row.assert_optimal([0] * 18)\n"
     )
     assert "20 passed" in run(tmp_path, tests.format("pass"))
     (kept,) = (tmp_path / ".pytest_cache" / "d" / "cellcolor").glob("*.json")
-    assert json.loads(kept.read_text()) == {"lower": 1, "upper": 1, "seconds": 60.0}
+    document = json.loads(kept.read_text())
+    assert (document["lower"], document["upper"], document["seconds"]) == (1, 1, 60.0)
     broken = tests.format("monkeypatch.setattr('cellcolor.door.oracle.prove', None)")
     assert "20 passed" in run(tmp_path, broken)
-    assert "20 failed" in run(tmp_path, broken, "--cache-clear")
+    # A solution that is none of this surface is not believed.
+    document["solution"]["segments"] = 0
+    kept.write_text(json.dumps(document))
+    assert "20 failed" in run(tmp_path, broken)
+
+
+def test_a_cleared_cache_is_proved_anew(tmp_path: Path) -> None:
+    tests = (
+        "def test_mine(cellcolor_oracle, monkeypatch):\n"
+        "    {}\n"
+        "    cellcolor_oracle('row.surface.json').assert_optimal([0] * 18)\n"
+    )
+    assert "1 passed" in run(tmp_path, tests.format("pass"))
+    broken = tests.format("monkeypatch.setattr('cellcolor.door.oracle.prove', None)")
+    assert "1 failed" in run(tmp_path, broken, "--cache-clear")
+
+
+def joined_in_the_row() -> str:
+    """Which segments the oracle itself says can be joined."""
+    improvement = cellcolor.Oracle(ROW).judge([0, 0, 1, 1, 0, 0] * 3).improvement
+    assert improvement is not None
+    return "segments {} and {}".format(*improvement.joined)
+
+
+def test_a_fixture_of_a_module_and_a_picture_named_after_the_test(tmp_path: Path) -> None:
+    """The surface is opened once for the module; the picture is that of the test that fails."""
+    out = run(
+        tmp_path,
+        "import pytest\n"
+        "@pytest.fixture(scope='module')\n"
+        "def row(cellcolor_oracle):\n"
+        "    return cellcolor_oracle('row.surface.json')\n"
+        "def test_good(row):\n"
+        "    row.assert_optimal([0] * 18)\n"
+        "@pytest.mark.parametrize('name', ['a b'])\n"
+        "def test_bad(row, name):\n"
+        "    row.assert_valid([1] * 18)\n",
+    )
+    assert "1 failed, 1 passed" in out
+    assert "pictures/test-planner-py-test-bad-a-b.png" in out
 
 
 def test_the_time_limit_is_an_option(tmp_path: Path) -> None:
@@ -110,4 +216,7 @@ def test_without_a_cache_there_is_no_picture(tmp_path: Path) -> None:
         "-p",
         "no:cacheprovider",
     )
-    assert "1 failed" in out and "no picture: there is no folder for it" in out
+    assert (
+        "1 failed" in out
+        and "no picture: pytest's cache, where it would be, is switched off" in out
+    )

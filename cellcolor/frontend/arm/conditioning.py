@@ -2,7 +2,8 @@
 
 Manipulability and task determinant are volumes: the three rows of the Jacobian for the tip's
 position are in meters, and those for a direction have no unit. So a share of the cube of the arm's
-reach means the same for a small arm and a large one, and a number in cubic meters does not.
+reach means the same for a small arm and a large one, and a number in cubic meters does not. In a
+plane they are areas, and a share is one of the square of the reach.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.arrays import Array
+from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import (
     forward,
     manipulability,
@@ -19,16 +21,15 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.setup import Setup
+from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
+from cellcolor.frontend.setup import Continuity, Setup, Thresholds
 
 __all__ = ["Conditioning", "conditioning", "task_determinants"]
-
-_POSITION = 3  # rows of the task's Jacobian that are lengths
 
 
 @dataclass(frozen=True)
 class Conditioning:
-    """Thresholds in m^3.
+    """Thresholds in m^3, or in m^2 for a task in a plane.
 
     Attributes:
         min_manipulability, min_task_determinant: what is below is not valid.
@@ -40,22 +41,30 @@ class Conditioning:
     near_singular_determinant: float
 
 
-def conditioning(setup: Setup, reach: float) -> Conditioning:
-    """The thresholds of a setup for an arm of a reach in m, whichever way the setup has them."""
-    unit = reach**_POSITION
+def conditioning(setup: Setup, reach: float, task: TaskSpace = FREE_TURN) -> Conditioning:
+    """The thresholds of a setup for an arm of a reach in m, whichever way the setup has them.
 
-    def volume(absolute: float | None, share: float | None) -> float:
-        if absolute is not None:
-            return absolute
-        assert share is not None  # one of both: the setup has been checked
-        return share * unit
-
+    Raises:
+        InputError: one is in cubic meters and the task is in a plane; names the key.
+    """
     limits, policy = setup.thresholds, setup.continuity
     return Conditioning(
-        volume(limits.min_manipulability_m3, limits.min_manipulability),
-        volume(limits.min_task_determinant_m3, limits.min_task_determinant),
-        volume(policy.near_singular_determinant_m3, policy.near_singular_determinant),
+        _measure("thresholds", limits, "min_manipulability", reach, task),
+        _measure("thresholds", limits, "min_task_determinant", reach, task),
+        _measure("continuity", policy, "near_singular_determinant", reach, task),
     )
+
+
+def _measure(
+    table: str, given: Thresholds | Continuity, name: str, reach: float, task: TaskSpace
+) -> float:
+    absolute, share = getattr(given, f"{name}_m3"), getattr(given, name)
+    if absolute is None:
+        return float(share * reach**task.lengths)  # one of both: the setup has been checked
+    if task.plane:
+        message = f"in a plane this is an area: give a share of the reach's square, {name}"
+        raise InputError(None, f"{table}.{name}_m3", message)
+    return float(absolute)
 
 
 def task_determinants(robot: Robot, configurations: Array, limits: Conditioning | None) -> Array:
@@ -66,9 +75,9 @@ def task_determinants(robot: Robot, configurations: Array, limits: Conditioning 
     found = np.flatnonzero(~np.isnan(configurations[:, 0]))
     poses = forward(robot, configurations[found])
     linear, angular = tip_jacobian(poses)
-    determinant = task_determinant(linear, angular, poses.tool_axis)
+    determinant = task_determinant(linear, angular, poses.tool_axis, robot.task)
     if limits is not None:
-        good = (manipulability(linear) >= limits.min_manipulability) & (
+        good = (manipulability(linear, robot.task) >= limits.min_manipulability) & (
             determinant >= limits.min_task_determinant
         )
         determinant[~good] = np.nan

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.task_space import FREE_TURN, GIVEN_TURN, TaskSpace
 from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.setup import RobotFiles
 
@@ -24,8 +25,12 @@ class InverseKinematics(ABC):
 
     Attributes:
         joints: how many revolute joints the arms of the family have, between base and tip.
+        free_turn: what the task asks for if the tool's turn is free; None if the arm is redundant
+            then.
+        given_turn: the same if the turn is given; it may have more joints than the arm.
         branches: names of the branches. Along a motion without singularity the branch stays the
-            same, and a pose has at most one solution of each.
+            same, and a pose has at most one solution of each. None, ``()``, where nothing but
+            continuity tells the solutions of an arm apart.
         reach: the farthest that the tip gets from the arm's shoulder, joint limits aside, m;
             thresholds may be shares of its cube.
         lever: the farthest that turning the tool about its tip by one rad moves any joint's axis
@@ -35,7 +40,9 @@ class InverseKinematics(ABC):
     """
 
     joints: ClassVar[int]
-    branches: ClassVar[tuple[str, ...]]
+    free_turn: ClassVar[TaskSpace | None] = FREE_TURN
+    given_turn: ClassVar[TaskSpace] = GIVEN_TURN
+    branches: tuple[str, ...]
     reach: float
     lever: float
     viewpoints: Array
@@ -57,17 +64,33 @@ class InverseKinematics(ABC):
 
         Args:
             points: (n, 3) tip positions in the world, m.
-            directions: (n, 3) unit vectors from the flange to the tip.
-            branches: (n,) the only one wanted of each point; all without it.
+            directions: (n, 3) unit vectors from the flange to the tip; NaN where there is none, and
+                there is no solution then.
+            branches: (n,) the only one wanted of each point; all without it. A family without
+                branches is never given any.
 
         Returns:
             (n, branches, joints), or (n, 1, joints) with ``branches``: angles in rad, NaN where a
-            branch has no solution.
+            branch has no solution. Without branches (n, s, joints) in any order, each solution
+            once, for an s of its own choice.
         """
+
+    def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:  # noqa: ARG002
+        """What a user should know of the solutions for some poses, a sentence each; nothing here.
+
+        Args:
+            points, directions: (n, 3) each, of all that is asked; see :meth:`solve`.
+        """
+        return ()
 
 
 KINEMATICS: Registry[InverseKinematics] = Registry(
     "cellcolor.kinematics",
     InverseKinematics,  # type: ignore[type-abstract]
-    {"ur": "cellcolor.frontend.arm.ur:UrKinematics"},
+    {
+        "ur": "cellcolor.frontend.arm.ur_family:UrKinematics",
+        "eaik": "cellcolor.frontend.arm.eaik:EaikKinematics",
+        "planar-2r": "cellcolor.frontend.arm.planar:PlanarTwo",
+        "planar-3r": "cellcolor.frontend.arm.planar:PlanarThree",
+    },
 )

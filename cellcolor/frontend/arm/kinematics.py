@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
 
 __all__ = [
     "TASK_JOINTS",
@@ -20,13 +21,16 @@ __all__ = [
     "forward",
     "gravity_torques",
     "manipulability",
+    "signed_task_determinant",
     "static_torques",
     "task_determinant",
+    "task_jacobian",
     "tip_jacobian",
+    "tool_across",
     "turned",
 ]
 
-TASK_JOINTS = 5  # a sixth turns about the tool's own axis and does not move the task
+TASK_JOINTS = FREE_TURN.joints  # a sixth turns about the tool's own axis and does not move the task
 
 
 @dataclass(frozen=True)
@@ -101,35 +105,84 @@ def tip_jacobian(poses: Poses) -> tuple[Array, Array]:
     return linear.transpose(0, 2, 1), poses.axis.transpose(0, 2, 1)
 
 
-def manipulability(linear: Array) -> Array:
-    """Translational manipulability sqrt(det(J J^T)) of the five task joints, (n,), m^3.
+def tool_across(robot: Robot, poses: Poses) -> Array:
+    """The tool's x axis (n, 3) in the world, across the tool."""
+    return turned(poses.rotation[:, -1], robot.tip[:3, 0])
 
-    Yoshikawa, Translational and rotational manipulability of robotic manipulators, 1990.
+
+def manipulability(linear: Array, task: TaskSpace = FREE_TURN) -> Array:
+    """Translational manipulability sqrt(det(J J^T)) of the task's joints, (n,), m^3.
+
+    Yoshikawa, Translational and rotational manipulability of robotic manipulators, 1990. In a plane
+    J has two rows, whichever two directions they are for, and the unit is m^2.
     """
-    task = linear[:, :, :TASK_JOINTS]
-    gram = task @ task.transpose(0, 2, 1)
+    columns = linear[:, :, : task.joints]
+    gram = columns @ columns.transpose(0, 2, 1)
+    if task.plane:
+        # The product of the two eigenvalues that are not zero, from their sum and sum of squares.
+        total, squares = np.einsum("nii->n", gram), np.einsum("nij,nji->n", gram, gram)
+        return np.asarray(np.sqrt(np.maximum(total**2 - squares, 0.0) / 2))
     measure: Array = np.sqrt(np.maximum(np.linalg.det(gram), 0.0))
     return measure
 
 
-def task_determinant(linear: Array, angular: Array, tool_axis: Array) -> Array:
-    """Absolute determinant (n,) of the 5x5 Jacobian of tip position and tool direction, m^3.
+def task_determinant(
+    linear: Array, angular: Array, tool_axis: Array, task: TaskSpace = FREE_TURN
+) -> Array:
+    """Absolute determinant (n,) of the task's Jacobian, m^3, or m^2 in a plane.
 
-    The direction has two rows, the angular velocity across the tool axis; which two
-    perpendicular ones does not change the absolute value. Unlike translational manipulability
-    it vanishes at every singularity of the task, the aligned wrist included. With fewer than five
-    joints it is the volume that their columns span, lengths in m and angles in rad mixed.
+    Its rows are those of the tip's position, of the tool's direction and, if the task asks for it,
+    of the tool's turn. The direction has two rows, the angular velocity across the tool axis; which
+    two perpendicular ones does not change the absolute value. Unlike translational manipulability
+    it vanishes at every singularity of the task, the aligned wrist included. With fewer joints than
+    rows it is the volume that their columns span, lengths in m and angles in rad mixed.
     """
+    return np.asarray(np.abs(signed_task_determinant(linear, angular, tool_axis, task)))
+
+
+def signed_task_determinant(
+    linear: Array, angular: Array, tool_axis: Array, task: TaskSpace = FREE_TURN
+) -> Array:
+    """The task determinant (n,) in m^3 with its sign, which no motion without singularity changes.
+
+    The rows of the direction are two that make a right-handed frame with the tool. With fewer
+    joints than rows there is no sign.
+    """
+    rows = _rows(linear, angular, tool_axis, task)
+    if rows.shape[2] == task.dimensions:
+        return np.asarray(np.linalg.det(rows))
+    gram = rows.transpose(0, 2, 1) @ rows
+    return np.asarray(np.sqrt(np.maximum(np.linalg.det(gram), 0.0)))
+
+
+def task_jacobian(poses: Poses) -> tuple[Array, Array]:
+    """How tip position and tool direction move with the joints that a free turn takes, m and rad.
+
+    Returns:
+        (n, 5, task joints), three rows of the position and two of the direction; and (n, 2, 3) the
+        unit vectors across the tool that the last two are angular velocities about.
+    """
+    linear, angular = tip_jacobian(poses)
+    across = _across(poses.tool_axis)
+    return np.concatenate([linear, across @ angular], axis=1)[:, :, :TASK_JOINTS], across
+
+
+def _rows(linear: Array, angular: Array, tool_axis: Array, task: TaskSpace) -> Array:
+    """The task's Jacobian (n, dimensions, task joints), m and rad per rad."""
+    across = _across(tool_axis)
+    rows = [across @ linear] if task.plane else [linear, across @ angular]
+    if task.turn:
+        rows.append(tool_axis[:, None] @ angular)
+    return np.concatenate(rows, axis=1)[:, :, : task.joints]
+
+
+def _across(tool_axis: Array) -> Array:
+    """Two unit vectors (n, 2, 3) that make a right-handed frame with the tool axis (n, 3)."""
     # A perpendicular that is never near zero: cross with the coordinate axis farthest off.
     farthest = np.eye(3)[np.argmin(np.abs(tool_axis), axis=1)]
     first = np.cross(tool_axis, farthest)
     first /= np.linalg.norm(first, axis=1, keepdims=True)
-    across = np.stack([first, np.cross(tool_axis, first)], axis=1)
-    rows = np.concatenate([linear, across @ angular], axis=1)[:, :, :TASK_JOINTS]
-    if rows.shape[2] == TASK_JOINTS:
-        return np.asarray(np.abs(np.linalg.det(rows)))
-    gram = rows.transpose(0, 2, 1) @ rows
-    return np.asarray(np.sqrt(np.maximum(np.linalg.det(gram), 0.0)))
+    return np.stack([first, np.cross(tool_axis, first)], axis=1)
 
 
 def gravity_torques(robot: Robot, poses: Poses, gravity: Array) -> Array:

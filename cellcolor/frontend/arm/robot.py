@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -11,32 +11,22 @@ import pinocchio as pin
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.urdf import Urdf, load_urdf, mount
+from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount
+from cellcolor.frontend.arm.body import Body, StandIn
+from cellcolor.frontend.arm.pinocchio_text import pinocchio_text
+from cellcolor.frontend.arm.placed_shapes import Shapes, place_shapes
+from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
+from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Urdf, load_urdf
 
-__all__ = ["Body", "Robot", "load_robot"]
+__all__ = ["Body", "Robot", "Shapes", "load_robot"]
 
-_SAME = 1e-6  # m; a sphere's center and a cylinder's end nearer than this are one point
-
-
-@dataclass(frozen=True)
-class Body:
-    """A collision shape: all points within ``radius`` of a segment, or a flat-ended cylinder.
-
-    ``start`` and ``end`` (3,) in m are in the frame of ``joint`` (0 is the world, the
-    others are the frames behind the joints). A sphere is a capsule whose ends coincide.
-    """
-
-    link: str
-    joint: int
-    start: Array
-    end: Array
-    radius: float
-    flat: bool
-
-    @cached_property
-    def length(self) -> float:
-        """Distance between the ends in m."""
-        return float(np.linalg.norm(self.end - self.start))
+_FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
+_NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
+_WAY_OUT = (
+    "; with more the arm is redundant, has endlessly many configurations for one pose, and colors "
+    "are not defined: make the joints that are too many fixed, at angles of your choice, under "
+    "[robot.fixed_joints]"
+)
 
 
 @dataclass(frozen=True)
@@ -46,8 +36,9 @@ class Robot:
     Attributes:
         placement: (joints, 4, 4) fixed pose of each joint frame in the one before it.
         axis: (joints, 3) unit axis of each joint in its own frame.
-        lower, upper: (joints,) joint limits in rad.
-        effort: (joints,) torque limits in N m.
+        lower, upper: (joints,) joint limits in rad, infinite for continuous joints.
+        velocity: (joints,) limits in rad/s, NaN where the file has none.
+        effort: (joints,) torque limits in N m, NaN where the file has none.
         mass: (joints,) mass that each joint's frame carries, in kg; fixed links and tool included.
         center: (joints, 3) its center of mass in that frame, m.
         tip: (4, 4) pose of the tool tip in the frame of the last joint; the tool works along +z.
@@ -56,7 +47,10 @@ class Robot:
             belong to one link or to links next to each other.
         joint_names: names of the joints.
         warnings: what its files have that is probably not meant, a sentence each.
-        model: Pinocchio's own model, for those who want to compute independently.
+        model, geometry: Pinocchio's own, for those who want to compute independently; meshes and
+            capsules are small spheres there.
+        stand_ins: what collides in the place of meshes.
+        task: what it is asked to do with the tool; :func:`load_robot` leaves the turn free.
     """
 
     files: tuple[Path, Path]
@@ -64,6 +58,7 @@ class Robot:
     axis: Array
     lower: Array
     upper: Array
+    velocity: Array
     effort: Array
     mass: Array
     center: Array
@@ -74,70 +69,128 @@ class Robot:
     warnings: tuple[str, ...]
     model: pin.Model = field(repr=False, compare=False)
     geometry: pin.GeometryModel = field(repr=False, compare=False)
+    stand_ins: tuple[StandIn, ...] = ()
+    task: TaskSpace = FREE_TURN
 
     @property
     def joints(self) -> int:
         """How many there are between base and tip."""
         return len(self.axis)
 
+    @property
+    def has_solids(self) -> bool:
+        """Whether bodies with flat faces are among the collision shapes."""
+        return any(body.solid is not None for body in self.bodies)
+
 
 def load_robot(
-    arm: Path | Urdf, flange_link: str, tool: Path | Urdf, tip_link: str, joints: int = 6
+    arm: Path | Urdf,
+    flange_link: str,
+    tool: Path | Urdf,
+    tip_link: str,
+    joints: int = 6,
+    *,
+    mounted: tuple[Vector, Vector] = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0)),
+    fixed_joints: Mapping[str, float] | None = None,
+    shapes: Shapes | None = None,
+    may_touch: tuple[tuple[str, str], ...] = (),
+    force: bool = True,
 ) -> Robot:
     """Put the tool on the arm's flange, both from files or as they have been read.
 
+    Args:
+        mounted: position in m and angles in rad (extrinsic x, y, z) of the tool's root link in the
+            frame of the flange link.
+        fixed_joints: positions of joints that do not move, rad, or m of prismatic ones.
+        shapes: how meshes collide; as hulls without it.
+        may_touch: pairs of links that are not tested against each other.
+        force: whether forces are asked for, so that masses and efforts have to be known.
+
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip
-            link, not so many joints between base and tip, one there that follows another, or
+            link, not so many joints between base and tip, one there that follows another or is
+            prismatic, one elsewhere that moves, a mesh that cannot be found or read, or
             Pinocchio read other collision shapes than the file has.
     """
     arm, tool = (given if isinstance(given, Urdf) else load_urdf(given) for given in (arm, tool))
+    positions = fixed_joints or {}
+    for name in positions:
+        if not any(name in tree.kinds or name in tree.followers for tree in (arm, tool)):
+            message = "no such joint in arm and tool, or a fixed one"
+            raise InputError(None, f"robot.fixed_joints.{name}", message)
+    if positions:
+        arm, tool = fix_joints(arm, positions), fix_joints(tool, positions)
     arm_file, tool_file = arm.file, tool.file
-    if tool.moving:
-        raise InputError(str(tool_file), f"joint[{tool.moving[0]}]", "a tool may not move")
     if tip_link != tool.root and tip_link not in tool.parent:
         raise InputError(str(tool_file), f"link[{tip_link}]", "the tip link is not in the tool")
-    whole = mount(arm, flange_link, tool)
-    in_chain = [whole.joint_above[link] for link in whole.chain(tip_link)[1:]]
-    for name in in_chain:
-        if name in whole.locked:
-            raise InputError(
-                str(tool_file if name in tool.locked else arm_file),
-                f"joint[{name}].mimic",
-                "a joint between base and tip may not follow another one",
-            )
-    moving = tuple(name for name in in_chain if name in whole.moving)
-    if len(moving) != joints or len(whole.moving) != joints:
-        raise InputError(
-            str(arm_file),
-            "robot",
-            f"needs {joints} revolute joints in a row to the tip, has {len(moving)} there and "
-            f"{len(whole.moving)} in all",
-        )
+    whole = mount(arm, flange_link, tool, *mounted)
+    _check_chain(whole, arm, tool, tip_link, joints)
+    if force and whole.weightless:
+        fault = whole.weightless[0]
+        places = {f"link[{link}].inertial" for link in (tool.root, *tool.parent)}
+        of_tool = any((fault.field or "").startswith(place) for place in places)
+        message = f"{fault.message} ({_NO_FORCE})"
+        raise InputError(str(tool_file if of_tool else arm_file), fault.field, message)
+    text = pinocchio_text(whole)
     try:
-        model = pin.buildModelFromXML(whole.text())
-        geometry = pin.buildGeomFromUrdfString(model, whole.text(), pin.GeometryType.COLLISION)
+        model = pin.buildModelFromXML(text)
+        geometry = pin.buildGeomFromUrdfString(model, text, pin.GeometryType.COLLISION)
     except (ValueError, RuntimeError) as error:
         raise InputError(str(arm_file), "robot", f"Pinocchio refuses it: {error}") from error
-    bodies = _bodies(arm_file, whole, model, geometry)
-    tip = model.frames[model.getFrameId(tip_link)]
+    bodies, stand_ins = place_shapes((arm, tool), whole, model, geometry, shapes or Shapes())
+    tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
+    names = tuple(model.names[1:])
+    endless = np.array([whole.kinds[name] == CONTINUOUS for name in names], dtype=bool)
     return Robot(
         files=(arm_file, tool_file),
         placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, joints + 1)]),
         axis=_axes(model),
-        lower=np.array(model.lowerPositionLimit),
-        upper=np.array(model.upperPositionLimit),
-        effort=np.array(model.effortLimit),
+        lower=np.where(endless, -np.inf, model.lowerPositionLimit),
+        upper=np.where(endless, np.inf, model.upperPositionLimit),
+        velocity=_where_given(model.velocityLimit),
+        effort=_where_given(model.effortLimit),
         mass=np.array([model.inertias[i].mass for i in range(1, joints + 1)]),
         center=np.array([model.inertias[i].lever for i in range(1, joints + 1)]),
         tip=np.array(tip.placement.homogeneous),
         bodies=bodies,
-        tested_pairs=_tested_pairs(whole, bodies),
-        joint_names=tuple(model.names[1:]),
+        tested_pairs=_tested_pairs(whole, bodies, may_touch),
+        joint_names=names,
         warnings=_warnings(whole),
         model=model,
         geometry=geometry,
+        stand_ins=stand_ins,
     )
+
+
+def _check_chain(whole: Urdf, arm: Urdf, tool: Urdf, tip_link: str, joints: int) -> None:
+    """Hold the tree to so many turning joints in a row to the tip, and none elsewhere."""
+    in_chain = [whole.joint_above[link] for link in whole.chain(tip_link)[1:]]
+
+    def refuse(name: str, key: str, message: str) -> InputError:
+        file = tool.file if name in tool.joint_above.values() else arm.file
+        return InputError(str(file), f"joint[{name}]{key}", message)
+
+    for name in in_chain:
+        if name in whole.locked:
+            message = "a joint between base and tip may not follow another one"
+            raise refuse(name, ".mimic", message)
+    for name, kind in whole.kinds.items():
+        if name in tool.kinds:
+            raise refuse(name, "", f"a tool may not move: {_FIX.format(name)}")
+        if name not in in_chain:
+            raise refuse(name, "", f"it moves beside the chain to the tip: {_FIX.format(name)}")
+        if kind == PRISMATIC:
+            message = f"prismatic, only turning joints may move: {_FIX.format(name)}"
+            raise refuse(name, ".type", message)
+    if len(whole.kinds) != joints:
+        message = f"needs {joints} revolute joints in a row to the tip, has {len(whole.kinds)}"
+        way_out = _WAY_OUT if len(whole.kinds) > joints else ""
+        raise InputError(str(arm.file), "robot", message + way_out)
+
+
+def _where_given(limits: Array) -> Array:
+    """Limits (joints,), NaN where the file has none; vendors write 0 as well."""
+    return np.where(limits > 0, limits, np.nan)
 
 
 def _warnings(urdf: Urdf) -> tuple[str, ...]:
@@ -164,53 +217,19 @@ def _axes(model: pin.Model) -> Array:
     return np.array([data.oMi[i + 1].rotation.T @ jacobian[3:, i] for i in range(model.nv)])
 
 
-def _bodies(
-    file: Path, urdf: Urdf, model: pin.Model, geometry: pin.GeometryModel
-) -> tuple[Body, ...]:
-    shapes: dict[str, list[pin.GeometryObject]] = {}
-    for shape in geometry.geometryObjects:
-        shapes.setdefault(model.frames[shape.parentFrame].name, []).append(shape)
-    for link, count in urdf.shapes.items():
-        read = len(shapes.get(link, []))
-        if read != count:
-            raise InputError(
-                str(file), f"link[{link}].collision", f"Pinocchio read {read} of {count} shapes"
-            )
-    return tuple(body for link in urdf.shapes for body in _of_link(link, shapes[link]))
+def _tested_pairs(
+    urdf: Urdf, bodies: tuple[Body, ...], may_touch: tuple[tuple[str, str], ...]
+) -> tuple[tuple[int, int], ...]:
+    """All pairs but of bodies that do not move against each other, or of links that may touch.
 
-
-def _of_link(link: str, shapes: list[pin.GeometryObject]) -> list[Body]:
-    """Bodies of one link; a cylinder with a sphere of its radius on both ends is a capsule."""
-    spheres: list[tuple[Array, float]] = []
-    cylinders: list[tuple[Array, Array, float]] = []
-    joint = int(shapes[0].parentJoint)
-    for shape in shapes:
-        center = np.array(shape.placement.translation)
-        if hasattr(shape.geometry, "halfLength"):
-            half = shape.placement.rotation[:, 2] * shape.geometry.halfLength
-            cylinders.append((center - half, center + half, float(shape.geometry.radius)))
-        else:
-            spheres.append((center, float(shape.geometry.radius)))
-    bodies = []
-    for start, end, radius in cylinders:
-        caps = [
-            next((s for s in spheres if _is_cap(s, point, radius)), None) for point in (start, end)
-        ]
-        round_ends = caps[0] is not None and caps[1] is not None
-        if round_ends:
-            spheres = [sphere for sphere in spheres if not any(sphere is cap for cap in caps)]
-        bodies.append(Body(link, joint, start, end, radius, flat=not round_ends))
-    bodies.extend(Body(link, joint, at, at, radius, flat=False) for at, radius in spheres)
-    return bodies
-
-
-def _is_cap(sphere: tuple[Array, float], point: Array, radius: float) -> bool:
-    center, own = sphere
-    return abs(own - radius) < _SAME and float(np.linalg.norm(center - point)) < _SAME
-
-
-def _tested_pairs(urdf: Urdf, bodies: tuple[Body, ...]) -> tuple[tuple[int, int], ...]:
-    """All pairs but those within a link or between links with no solid link in between."""
+    So may neighbors, links with no solid link in between.
+    """
+    for number, pair in enumerate(may_touch):
+        for link in pair:
+            if link not in urdf.shapes:
+                message = f"no link {link!r} with a collision shape"
+                raise InputError(None, f"robot.may_touch[{number}]", message)
+    allowed = {frozenset(pair) for pair in may_touch}
     solid_above = {}
     for link in urdf.shapes:
         above = [other for other in urdf.chain(link)[:-1] if other in urdf.shapes]
@@ -220,6 +239,8 @@ def _tested_pairs(urdf: Urdf, bodies: tuple[Body, ...]) -> tuple[tuple[int, int]
         for i, first in enumerate(bodies)
         for j, second in enumerate(bodies[i + 1 :], i + 1)
         if first.link != second.link
+        and first.joint != second.joint
+        and {first.link, second.link} not in allowed
         and solid_above[first.link] != second.link
         and solid_above[second.link] != first.link
     )

@@ -17,12 +17,11 @@ from scipy.optimize import minimize_scalar
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.ideal import Axes, idealized
+from cellcolor.frontend.arm.last_joint import MUST_LIE, pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["BRANCHES", "UrGeometry", "UrKinematics", "solve_inverse", "ur_geometry"]
+__all__ = ["BRANCHES", "UrGeometry", "solve_inverse", "ur_geometry"]
 
 BRANCHES = tuple(
     f"shoulder-{shoulder} elbow-{elbow} wrist-{wrist}"
@@ -37,7 +36,7 @@ Elbow up: with the upper arm horizontal and the wrist out in front, the forearm 
 Wrist unflipped and flipped: canonical angle of joint 5 positive and negative.
 """
 
-_TOLERANCE = 1e-6  # m and rad; a calibrated arm's deviations are far larger and are refused
+_TOLERANCE = 1e-6  # m and rad; a calibrated arm's deviations are far larger
 _ROUNDING = 1e-12  # how far a cosine may exceed 1 and still count as 1
 
 
@@ -90,27 +89,32 @@ class UrGeometry:
         return np.array([self.shoulder, self.shoulder + arm * self.frame[:, 2]])
 
 
-def ur_geometry(robot: Robot) -> UrGeometry:
+def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
     """Derive the constants from the joint axes at zero.
+
+    Args:
+        tolerance: what axes that are parallel, at right angles or meet may be off by, m and rad.
 
     Raises:
         InputError: the arm is not UR-type, or the tool is not on the axis of joint 6; names
             the joint.
     """
-    poses = forward(robot, np.zeros((1, len(robot.axis))))
+    poses = pose_at_zero(robot)
     w, p = poses.axis[0], poses.origin[0, 1:]
+    if tolerance > _TOLERANCE:
+        p = idealized(Axes(w, p), tolerance).points
 
     def refuse(joint: int, message: str) -> InputError:
         name = robot.joint_names[joint]
         return InputError(str(robot.files[0]), f"joint[{name}]", f"not a UR-type arm: {message}")
 
     for joint, other in ((2, 1), (3, 1)):
-        if float(np.linalg.norm(np.cross(w[joint], w[other]))) > _TOLERANCE:
+        if float(np.linalg.norm(np.cross(w[joint], w[other]))) > tolerance:
             raise refuse(joint, f"its axis is not parallel to that of joint {other + 1}")
     for joint, other in ((1, 0), (4, 3), (5, 4)):
-        if abs(float(w[joint] @ w[other])) > _TOLERANCE:
+        if abs(float(w[joint] @ w[other])) > tolerance:
             raise refuse(joint, f"its axis is not at right angles to that of joint {other + 1}")
-        if abs(float((p[joint] - p[other]) @ np.cross(w[joint], w[other]))) > _TOLERANCE:
+        if abs(float((p[joint] - p[other]) @ np.cross(w[joint], w[other]))) > tolerance:
             raise refuse(joint, f"its axis does not meet that of joint {other + 1}")
 
     shoulder, wrist, knuckle = (_crossing(p[i], w[i], p[j]) for i, j in _MEETING)
@@ -119,8 +123,8 @@ def ur_geometry(robot: Robot) -> UrGeometry:
     z5 = w[4] * np.sign((knuckle - wrist) @ w[4])
     z6 = poses.tool_axis[0]
     off_axis = np.cross(poses.tip[0] - knuckle, w[5])
-    if np.linalg.norm(np.cross(z6, w[5])) > _TOLERANCE or np.linalg.norm(off_axis) > _TOLERANCE:
-        raise refuse(5, "the tool tip and its z axis must lie on this joint's axis")
+    if np.linalg.norm(np.cross(z6, w[5])) > tolerance or np.linalg.norm(off_axis) > tolerance:
+        raise refuse(5, MUST_LIE)
     upper_arm = _across(p[2] - shoulder, z2)
     forearm = _across(p[3] - p[2], z2)
     lengths = {
@@ -172,43 +176,13 @@ def _angle(start: Array, end: Array, about: Array) -> float:
     return float(np.arctan2(np.cross(start, end) @ about, start @ end))
 
 
-class UrKinematics(InverseKinematics):
-    """UR-type arms; joint 6, which the task leaves free, is locked."""
-
-    joints = 6
-    branches = BRANCHES
-
-    def __init__(self, robot: Robot, files: RobotFiles) -> None:
-        """The constants of the arm, and the angle of the locked joint."""
-        locked = files.locked_joint_6_rad
-        if locked is None:
-            raise InputError(None, "robot.locked_joint_6_rad", "Field required")
-        if not robot.lower[5] <= locked <= robot.upper[5]:
-            message = "outside the limits of the sixth joint"
-            raise InputError(None, "robot.locked_joint_6_rad", message)
-        self.geometry, self._locked = ur_geometry(robot), locked
-        self.lever, self.viewpoints = self.geometry.reach, self.geometry.viewpoints
-        self.reach = self.geometry.arm_reach
-        if self.lever > abs(self.geometry.a2) + abs(self.geometry.a3):
-            raise InputError(
-                str(robot.files[1]),
-                f"link[{files.tip_link}]",
-                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
-            )
-
-    def solve(
-        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
-    ) -> Array:
-        """See :func:`solve_inverse`."""
-        return solve_inverse(self.geometry, points, directions, self._locked, branches)
-
-
 def solve_inverse(
     geometry: UrGeometry,
     points: Array,
     directions: Array,
     locked_angle: float,
     branches: NDArray[np.intp] | None = None,
+    slack: float = 0.0,
 ) -> Array:
     """All configurations that put the tip on a point with the tool along a direction.
 
@@ -217,6 +191,8 @@ def solve_inverse(
         directions: (n, 3) unit vectors from the flange to the tip.
         locked_angle: the angle of joint 6 in rad, which the task leaves free.
         branches: (n,) the only one wanted of each point; all without it.
+        slack: by how much a cosine may exceed 1 and still count as 1, where solutions of an arm
+            next to this one are looked for.
 
     Returns:
         (n, 8, 6), or (n, 1, 6) with ``branches``: angles in (-pi, pi], NaN where a branch has no
@@ -240,7 +216,7 @@ def solve_inverse(
     # Joint 1: the wrist plane keeps the distance d4 from the base axis.
     distance = np.hypot(knuckle[:, 0], knuckle[:, 1])
     with np.errstate(divide="ignore", invalid="ignore"):
-        spread = _arccos(g.d4 / distance)
+        spread = _arccos(g.d4 / distance, slack)
     heading = np.arctan2(knuckle[:, 1], knuckle[:, 0]) + np.pi / 2
     t1 = _wide(heading) + _wide(spread) * left
 
@@ -250,14 +226,14 @@ def solve_inverse(
     up = _wide(tool[:, 2])
 
     # Joint 5, wrist unflipped or flipped; then the direction of the wrist in the arm's plane.
-    t5 = _arccos(aside) * unflipped
+    t5 = _arccos(aside, slack) * unflipped
     side = np.where(t5 >= 0, 1.0, -1.0)
     total = np.arctan2(-up * side, -along * side)  # joints 2 + 3 + 4
 
     # Joints 2 and 3: a planar arm of two links.
     px = c1 * _wide(knuckle[:, 0]) + s1 * _wide(knuckle[:, 1]) - g.d5 * np.sin(total)
     py = _wide(knuckle[:, 2]) + g.d5 * np.cos(total)
-    bend = _arccos((px**2 + py**2 - g.a2**2 - g.a3**2) / (2 * g.a2 * g.a3))
+    bend = _arccos((px**2 + py**2 - g.a2**2 - g.a3**2) / (2 * g.a2 * g.a3), slack)
     # Elbow up is a left turn for the left shoulder, which reaches out along -x1, and a right
     # turn for the right one.
     t3 = bend * (left * elbow_up)
@@ -276,9 +252,9 @@ def _wide(values: Array) -> Array:
     return values[:, None, None, None]
 
 
-def _arccos(cosine: Array) -> Array:
-    """arccos with NaN out of reach; rounding beyond 1 counts as 1."""
-    near = np.abs(cosine) <= 1.0 + _ROUNDING
+def _arccos(cosine: Array, slack: float) -> Array:
+    """arccos with NaN out of reach; what exceeds 1 by rounding and slack counts as 1."""
+    near = np.abs(cosine) <= 1.0 + _ROUNDING + slack
     return np.arccos(np.where(near, np.clip(cosine, -1.0, 1.0), np.nan))
 
 

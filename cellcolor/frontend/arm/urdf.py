@@ -8,17 +8,35 @@ error. So the XML is held to what the front end relies on here, and every fault 
 from __future__ import annotations
 
 import math
+import re
 import xml.etree.ElementTree as ET
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
+from cellcolor.frontend.arm.link_shapes import LinkShape, shapes_of
+from cellcolor.frontend.arm.urdf_fields import check_origin, finite, named, number, triple
 
-__all__ = ["Urdf", "load_urdf", "mount", "parse_urdf"]
+__all__ = ["CONTINUOUS", "PRISMATIC", "Follower", "Urdf", "check_urdf", "load_urdf", "parse_urdf"]
 
-_SHAPES = {"cylinder": ("radius", "length"), "sphere": ("radius",)}
+CONTINUOUS, PRISMATIC = "continuous", "prismatic"
+_MOVING = ("revolute", CONTINUOUS, PRISMATIC)
 _THING = ("inertial", "visual")  # what a link that is more than a frame has
+
+
+@dataclass(frozen=True)
+class Follower:
+    """A joint with ``<mimic>``: its position is ``multiplier`` times the leader's plus ``offset``.
+
+    It has been fixed where it stands at zero; ``kind`` is the type that it had.
+    """
+
+    leader: str
+    kind: str
+    multiplier: float
+    offset: float
 
 
 @dataclass(frozen=True)
@@ -26,26 +44,37 @@ class Urdf:
     """A checked URDF tree.
 
     Attributes:
+        folder: what relative file names in it are relative to.
         root: the link that nothing carries.
         parent: the link that carries each other link.
         joint_above: the name of the joint between a link and its parent.
-        moving: names of the revolute joints, in the order of the file.
-        shapes: number of collision shapes of each link that has any.
+        kinds: the type of each joint that can move, in the order of the file.
+        shapes: the collision shapes of each link that has any.
         shapeless: the links without one that are things all the same: they have a mass or a
             picture, or a joint moves them.
-        locked: joints that would follow another one (``<mimic>``); they are fixed where they
-            stand at zero.
+        weightless: why the force constraint cannot be tested: what is wrong with the mass of
+            links that a joint moves, and with the effort of joints.
+        locked: joints that would follow another one (``<mimic>``) and are fixed at zero instead.
+        followers: all joints that have followed another one.
     """
 
     file: Path
+    folder: Path
     xml: ET.Element
     root: str
     parent: dict[str, str]
     joint_above: dict[str, str]
-    moving: tuple[str, ...]
-    shapes: dict[str, int]
+    kinds: dict[str, str]
+    shapes: dict[str, tuple[LinkShape, ...]]
     shapeless: tuple[str, ...]
+    weightless: tuple[InputError, ...]
     locked: tuple[str, ...]
+    followers: Mapping[str, Follower]
+
+    @property
+    def moving(self) -> tuple[str, ...]:
+        """Names of the joints that can move, in the order of the file."""
+        return tuple(self.kinds)
 
     def chain(self, link: str) -> tuple[str, ...]:
         """The links from the root to ``link``, both included."""
@@ -54,10 +83,6 @@ class Urdf:
             links.append(self.parent[links[-1]])
         return tuple(reversed(links))
 
-    def text(self) -> str:
-        """The XML as one string."""
-        return ET.tostring(self.xml, encoding="unicode")
-
 
 def load_urdf(file: Path) -> Urdf:
     """Read and check a URDF file.
@@ -65,71 +90,78 @@ def load_urdf(file: Path) -> Urdf:
     Raises:
         InputError: not readable, or what :func:`parse_urdf` refuses.
     """
-    return parse_urdf(read_text(file), file)
+    return parse_urdf(read_text(file), file, file.parent)
 
 
-def parse_urdf(text: str, file: Path) -> Urdf:
+def parse_urdf(text: str, file: Path, folder: Path = Path()) -> Urdf:
     """Check a URDF text.
 
     Args:
         text: the XML.
         file: what errors name; it is not read.
+        folder: what relative file names in it are relative to.
 
     Raises:
-        InputError: not XML, not one tree, a moving joint that is not revolute or
-            has no usable limits, a solid link without mass, a collision shape other than
-            cylinder or sphere, numbers that are not finite.
+        InputError: not XML, a xacro file, or what :func:`check_urdf` refuses.
     """
+    _refuse_xacro(text, file)
     try:
         xml = ET.fromstring(text)
     except ET.ParseError as error:
         raise InputError(str(file), None, f"not XML: {error}") from error
     if xml.tag != "robot":
         raise InputError(str(file), xml.tag, "the outermost element of a URDF is <robot>")
-    locked = _lock(xml)
-    return replace(_checked(file, xml), locked=locked)
+    followers = _followers(file, xml)
+    return check_urdf(file, folder, xml, tuple(followers), followers)
 
 
-def mount(arm: Urdf, flange: str, tool: Urdf) -> Urdf:
-    """The tool's tree fixed to the arm's flange link, without an offset.
-
-    Raises:
-        InputError: the arm has no such link, or arm and tool share a name.
-    """
-    if flange != arm.root and flange not in arm.parent:
-        raise InputError(str(arm.file), f"link[{flange}]", "the flange link is not in the arm")
-    xml = ET.Element("robot", {"name": arm.xml.get("name", "arm")})
-    xml.extend(list(arm.xml))
-    taken = {(element.tag, element.get("name")) for element in arm.xml}
-    for element in tool.xml:
-        if element.tag in ("link", "joint") and (element.tag, element.get("name")) in taken:
-            field = f"{element.tag}[{element.get('name')}]"
-            raise InputError(str(tool.file), field, f"{arm.file.name} has that name too")
-        xml.append(element)
-    joint = ET.SubElement(xml, "joint", {"name": "tool_mount", "type": "fixed"})
-    ET.SubElement(joint, "parent", {"link": flange})
-    ET.SubElement(joint, "child", {"link": tool.root})
-    return replace(_checked(arm.file, xml), locked=arm.locked + tool.locked)
+def _refuse_xacro(text: str, file: Path) -> None:
+    """Refuse what has to be expanded first; the declaration of xacro's name alone is harmless."""
+    without = re.sub(r"""xmlns:xacro\s*=\s*("[^"]*"|'[^']*')""", "", text)
+    without = re.sub(r"<!--.*?-->", "", without, flags=re.DOTALL)
+    if re.search(r"</?xacro:|=\s*[\"'][^\"']*\$[{(]", without):
+        out = file.name.removesuffix(".xacro").removesuffix(".urdf") + ".urdf"
+        message = f"is a xacro file; expand it first: xacro {file.name} -o {out}"
+        raise InputError(str(file), "robot", message)
 
 
-def _lock(xml: ET.Element) -> tuple[str, ...]:
+def _followers(file: Path, xml: ET.Element) -> dict[str, Follower]:
     """Fix the joints that follow another one, and name them."""
-    locked = []
+    found = {}
     for joint in xml.findall("joint"):
         mimic = joint.find("mimic")
         if mimic is not None:
+            name = joint.get("name", "")
+            where = f"joint[{name}].mimic"
+            factor, offset = (
+                finite(file, f"{where}.{attribute}", mimic.get(attribute, usual))
+                for attribute, usual in (("multiplier", "1"), ("offset", "0"))
+            )
+            kind = joint.get("type", "")
+            found[name] = Follower(mimic.get("joint", ""), kind, factor, offset)
             joint.remove(mimic)
             joint.set("type", "fixed")
-            locked.append(joint.get("name", ""))
-    return tuple(locked)
+    return found
 
 
-def _checked(file: Path, xml: ET.Element) -> Urdf:
-    links = _named(file, xml, "link")
-    joints = _named(file, xml, "joint")
+def check_urdf(
+    file: Path,
+    folder: Path,
+    xml: ET.Element,
+    locked: tuple[str, ...],
+    followers: Mapping[str, Follower],
+) -> Urdf:
+    """Check a tree; arguments as of :class:`Urdf`.
+
+    Raises:
+        InputError: not one tree, a joint that floats or has no usable limits, a collision shape of
+            an unknown kind, numbers that are not finite.
+    """
+    links = named(file, xml, "link")
+    joints = named(file, xml, "joint")
     parent: dict[str, str] = {}
     joint_above: dict[str, str] = {}
-    moving: list[str] = []
+    kinds: dict[str, str] = {}
     driven: set[str] = set()
     for name, joint in joints.items():
         ends = []
@@ -143,91 +175,76 @@ def _checked(file: Path, xml: ET.Element) -> Urdf:
         if below in parent:
             raise InputError(str(file), f"joint[{name}].child", f"{below!r} hangs on two joints")
         parent[below], joint_above[below] = above, name
-        _origin(file, f"joint[{name}]", joint)
-        kind = joint.get("type")
-        if kind == "revolute":
-            _limits(file, name, joint)
+        check_origin(file, f"joint[{name}]", joint)
+        kind = joint.get("type", "")
+        if kind in _MOVING:
+            if kind != CONTINUOUS:
+                _limits(file, name, joint)
             _axis(file, name, joint)
-            moving.append(name)
+            kinds[name] = kind
             driven.add(below)
         elif kind != "fixed":
-            raise InputError(
-                str(file), f"joint[{name}].type", f"{kind!r}: only revolute and fixed joints"
-            )
+            message = f"{kind!r}: only revolute, continuous, prismatic and fixed joints"
+            raise InputError(str(file), f"joint[{name}].type", message)
     roots = [link for link in links if link not in parent]
     if len(roots) != 1:
         raise InputError(str(file), "robot", f"needs one root link, has {len(roots)}: {roots}")
     shapes, shapeless = {}, []
     for name, element in links.items():
-        count = _shapes(file, name, element)
-        if count:
-            shapes[name] = count
+        own = shapes_of(file, name, element)
+        if own:
+            shapes[name] = own
         elif name in driven or any(element.find(tag) is not None for tag in _THING):
             shapeless.append(name)
-        if count or name in driven:
-            _inertial(file, name, element)
-    return Urdf(
-        file, xml, roots[0], parent, joint_above, tuple(moving), shapes, tuple(shapeless), ()
-    )
+    tree = Urdf(
+        file, folder, xml, roots[0], parent, joint_above, kinds, shapes, tuple(shapeless), (),
+        locked, followers,
+    )  # fmt: skip
+    return replace(tree, weightless=tuple(_weightless(tree, links, joints, driven)))
 
 
-def _named(file: Path, xml: ET.Element, tag: str) -> dict[str, ET.Element]:
-    found: dict[str, ET.Element] = {}
-    for element in xml.findall(tag):
-        name = element.get("name")
-        if not name or name in found:
-            fault = "stands twice" if name else "has no name"
-            raise InputError(str(file), f"{tag}[{name or len(found)}]", fault)
-        found[name] = element
-    return found
-
-
-def _number(file: Path, field: str, element: ET.Element | None, attribute: str) -> float:
-    text = None if element is None else element.get(attribute)
-    if text is None:
-        raise InputError(str(file), field, f"{attribute!r} is missing")
-    return _finite(file, f"{field}.{attribute}", text)
-
-
-def _finite(file: Path, field: str, text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError as error:
-        raise InputError(str(file), field, f"{text!r} is not a number") from error
-    if not math.isfinite(value):
-        raise InputError(str(file), field, f"{text!r} is not finite")
-    return value
-
-
-def _triple(file: Path, field: str, text: str) -> list[float]:
-    values = [_finite(file, field, part) for part in text.split()]
-    if len(values) != 3:
-        raise InputError(str(file), field, f"needs three numbers, has {len(values)}")
-    return values
-
-
-def _origin(file: Path, field: str, element: ET.Element) -> None:
-    origin = element.find("origin")
-    if origin is not None:
-        for attribute in ("xyz", "rpy"):
-            _triple(file, f"{field}.origin.{attribute}", origin.get(attribute, "0 0 0"))
+def _weightless(
+    tree: Urdf, links: dict[str, ET.Element], joints: dict[str, ET.Element], driven: set[str]
+) -> Iterator[InputError]:
+    """What keeps the force constraint from being tested; what nothing moves may weigh anything."""
+    for name in tree.moving:
+        fault = _effort(tree.file, name, joints[name])
+        if fault is not None:
+            yield fault
+    for name, element in links.items():
+        carried = any(link in driven for link in tree.chain(name))
+        if carried and (name in tree.shapes or name in driven):
+            try:
+                _inertial(tree.file, name, element)
+            except InputError as error:
+                yield error
 
 
 def _limits(file: Path, name: str, joint: ET.Element) -> None:
     field = f"joint[{name}].limit"
     limit = joint.find("limit")
-    lower = _number(file, field, limit, "lower")
-    upper = _number(file, field, limit, "upper")
+    lower = number(file, field, limit, "lower")
+    upper = number(file, field, limit, "upper")
     if lower >= upper:
         raise InputError(str(file), field, f"lower {lower} is not below upper {upper}")
-    if _number(file, field, limit, "effort") <= 0:
-        raise InputError(str(file), f"{field}.effort", "must be positive")
+
+
+def _effort(file: Path, name: str, joint: ET.Element) -> InputError | None:
+    """What is wrong with a joint's effort; vendors write 0 where they do not say it."""
+    field = f"joint[{name}].limit"
+    try:
+        effort = number(file, field, joint.find("limit"), "effort")
+    except InputError as error:
+        return error
+    if effort <= 0:
+        return InputError(str(file), f"{field}.effort", f"is {effort:g}, must be positive")
+    return None
 
 
 def _axis(file: Path, name: str, joint: ET.Element) -> None:
     axis = joint.find("axis")
     field = f"joint[{name}].axis"
-    values = _triple(file, field, "1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
+    values = triple(file, field, "1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
     if abs(math.hypot(*values) - 1) > 1e-6:
         raise InputError(str(file), field, "must have length 1")
 
@@ -237,29 +254,8 @@ def _inertial(file: Path, name: str, link: ET.Element) -> None:
     inertial = link.find("inertial")
     if inertial is None:
         raise InputError(str(file), field, "is missing: the link would weigh nothing")
-    _origin(file, field, inertial)
-    if _number(file, f"{field}.mass", inertial.find("mass"), "value") <= 0:
+    check_origin(file, field, inertial)
+    if number(file, f"{field}.mass", inertial.find("mass"), "value") <= 0:
         raise InputError(str(file), f"{field}.mass", "must be positive")
     for entry in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
-        _number(file, f"{field}.inertia", inertial.find("inertia"), entry)
-
-
-def _shapes(file: Path, name: str, link: ET.Element) -> int:
-    collisions = link.findall("collision")
-    for index, collision in enumerate(collisions):
-        field = f"link[{name}].collision[{index}]"
-        _origin(file, field, collision)
-        geometry = collision.find("geometry")
-        shapes = [] if geometry is None else list(geometry)
-        if len(shapes) != 1 or shapes[0].tag not in _SHAPES:
-            found = ", ".join(f"<{shape.tag}>" for shape in shapes) or "nothing"
-            raise InputError(
-                str(file),
-                field,
-                f"must be one cylinder or sphere, is {found} "
-                "(write a capsule as a cylinder and two spheres)",
-            )
-        for attribute in _SHAPES[shapes[0].tag]:
-            if _number(file, field, shapes[0], attribute) <= 0:
-                raise InputError(str(file), f"{field}.{attribute}", "must be positive")
-    return len(collisions)
+        number(file, f"{field}.inertia", inertial.find("inertia"), entry)

@@ -1,29 +1,35 @@
 """Collisions of many configurations at once: of the arm with itself and with the ground.
 
-Shapes are capsules and flat-ended cylinders (:class:`~cellcolor.frontend.arm.robot.Body`), given in
-the world by the ends of their axes. Capsules are settled in numpy. A cylinder lies between two
-capsules, one around and one inside it; only where these disagree, fcl decides.
+Shapes are capsules, flat-ended cylinders and solids with flat faces
+(:class:`~cellcolor.frontend.arm.body.Body`), given in the world by the ends of their axes.
+Capsules are settled in numpy. A cylinder lies between two capsules, one around and one inside it;
+only where these disagree, fcl decides. It decides of a solid where the capsule around that meets
+another body, and no plane is found between the box around that and the other body.
 """
 
 from __future__ import annotations
 
-import fcl
 import numpy as np
+from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.kinematics import Poses, turned
 from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.contact.fcl_bodies import bodies_touch, body_poses, lowest_points
+from cellcolor.frontend.contact.gaps import gap_between
+from cellcolor.frontend.contact.plane import HalfSpace
 
 __all__ = [
     "body_ends",
-    "body_poses",
-    "body_shape",
     "hits_ground",
     "hits_itself",
     "longest_steps",
     "segment_distance",
+    "tracked_points",
+    "tracked_steps",
 ]
 
+_ROUNDING = 1e-6  # m; of boxes around solids
 _DEPTH = 0.00065  # m; a tool of 20 mm radius may move by 10 mm, the upper arm by 17
 
 
@@ -37,8 +43,13 @@ def body_ends(robot: Robot, poses: Poses) -> Array:
     return ends
 
 
-def hits_itself(robot: Robot, ends: Array) -> Mask:
-    """Whether any tested pair of bodies overlaps, (n,)."""
+def hits_itself(robot: Robot, ends: Array, poses: Poses | None = None) -> Mask:
+    """Whether any tested pair of bodies overlaps, (n,).
+
+    Args:
+        ends: of the bodies, see :func:`body_ends`.
+        poses: of the joints; robots without solids do not need them.
+    """
     hit = np.zeros(ends.shape[2], dtype=bool)
     centers = ends.mean(axis=1)
     for i, j in robot.tested_pairs:
@@ -51,28 +62,63 @@ def hits_itself(robot: Robot, ends: Array) -> Mask:
             continue
         a, b = ends[i][:, rows], ends[j][:, rows]
         close = segment_distance(a[0], a[1], b[0], b[1]) <= radii
-        if not (first.flat or second.flat):
+        solid = first.solid is not None or second.solid is not None
+        if not (first.flat or second.flat or solid):
             hit[rows[close]] = True
             continue
         rows = rows[close]
+        if solid:
+            assert poses is not None  # who has solids hands the poses down
+            rows = rows[gap_between(robot, (i, j), ends, poses, rows) <= _ROUNDING]
+            hit[rows] = _overlap(robot, (i, j), ends, poses, rows)
+            continue
         (a0, a1, ra), (b0, b1, rb) = _inside(first, a[:, close]), _inside(second, b[:, close])
         sure = np.asarray(segment_distance(a0, a1, b0, b1) <= ra + rb)
         hit[rows[sure]] = True
         rest = rows[~sure]
-        hit[rest] = _overlap(first, ends[i][:, rest], second, ends[j][:, rest])
+        hit[rest] = _overlap(robot, (i, j), ends, poses, rest)
     return hit
 
 
-def hits_ground(robot: Robot, ends: Array, height: float, exempt: tuple[str, ...]) -> Mask:
-    """Whether any body but those of the exempt links reaches below ``height`` (m), (n,)."""
+def _overlap(
+    robot: Robot, pair: tuple[int, int], ends: Array, poses: Poses | None, rows: NDArray[np.intp]
+) -> Mask:
+    """Whether two bodies touch in some of the configurations, (rows,), by fcl."""
+    chosen = None if poses is None or not robot.has_solids else poses.take(rows)
+    first, second = (robot.bodies[index] for index in pair)
+    at_first, at_second = (
+        body_poses(robot.bodies[index], ends[index][:, rows], chosen) for index in pair
+    )
+    return bodies_touch(first, at_first, second, at_second)
+
+
+def hits_ground(
+    robot: Robot,
+    ends: Array,
+    ground: HalfSpace,
+    exempt: tuple[str, ...],
+    poses: Poses | None = None,
+) -> Mask:
+    """Whether any body but those of the exempt links reaches into the ground, (n,).
+
+    ``poses`` of the joints are not needed by robots without solids.
+    """
     hit = np.zeros(ends.shape[2], dtype=bool)
     for body, (start, end) in zip(robot.bodies, ends, strict=True):
         if body.link not in exempt:
             below = np.full(len(start), body.radius)
             if body.flat:
-                upright = (end - start)[:, 2] / body.length
+                upright = ground.along(end - start) / body.length
                 below *= np.sqrt(np.maximum(1 - upright**2, 0.0))
-            hit |= np.minimum(start[:, 2], end[:, 2]) - below < height
+            lower = np.minimum(ground.along(start), ground.along(end))
+            low = lower - below < ground.offset_m
+            if body.solid is not None:
+                assert poses is not None
+                low &= ~hit
+                rows = np.flatnonzero(low)
+                at = (poses.rotation[rows, body.joint], poses.origin[rows, body.joint])
+                low[rows] = lowest_points(body.solid, at, ground) - body.skin < ground.offset_m
+            hit |= low
     return hit
 
 
@@ -97,27 +143,6 @@ def segment_distance(p0: Array, p1: Array, q0: Array, q1: Array) -> Array:
     return _norm(r + s[:, None] * d1 - t[:, None] * d2)
 
 
-def body_shape(body: Body) -> fcl.CollisionGeometry:
-    """The body's shape for fcl, about the origin and along z."""
-    if body.flat:
-        return fcl.Cylinder(body.radius, body.length)
-    return fcl.Capsule(body.radius, body.length) if body.length else fcl.Sphere(body.radius)
-
-
-def body_poses(body: Body, ends: Array) -> tuple[Array, Array]:
-    """Rotations (n, 3, 3) and centers (n, 3) of that shape, from the ends (2, n, 3) of its axis.
-
-    All shapes are symmetric about their axis, so any rotation that turns z onto it will do.
-    """
-    start, end = ends
-    if not body.length:
-        return np.tile(np.eye(3), (len(start), 1, 1)), start
-    z = (end - start) / body.length
-    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z), axis=1)])
-    x /= np.linalg.norm(x, axis=1, keepdims=True)
-    return np.stack([x, np.cross(z, x), z], axis=2), (start + end) / 2
-
-
 def _inside(body: Body, ends: Array) -> tuple[Array, Array, float]:
     """Ends and radius of the largest capsule along the axis that lies inside the body."""
     start, end = ends
@@ -126,20 +151,6 @@ def _inside(body: Body, ends: Array) -> tuple[Array, Array, float]:
     radius = min(body.radius, body.length / 2)
     inset = (end - start) * (radius / body.length)
     return start + inset, end - inset, radius
-
-
-def _overlap(first: Body, first_ends: Array, second: Body, second_ends: Array) -> Mask:
-    """By fcl, one after the other: ends (2, n, 3) to (n,)."""
-    if not first_ends.shape[1]:
-        return np.zeros(0, dtype=bool)
-    a, b = (fcl.CollisionObject(body_shape(body), fcl.Transform()) for body in (first, second))
-    request, hit = fcl.CollisionRequest(), np.zeros(first_ends.shape[1], dtype=bool)
-    poses = zip(*body_poses(first, first_ends), *body_poses(second, second_ends), strict=True)
-    for row, (turn_a, center_a, turn_b, center_b) in enumerate(poses):
-        a.setTransform(fcl.Transform(turn_a, center_a))
-        b.setTransform(fcl.Transform(turn_b, center_b))
-        hit[row] = fcl.collide(a, b, request, fcl.CollisionResult())
-    return hit
 
 
 def _dot(a: Array, b: Array) -> Array:
@@ -160,3 +171,44 @@ def longest_steps(radii: Array) -> Array:
     """
     depth = np.minimum(_DEPTH, radii)
     return np.asarray(2 * np.sqrt(depth * (2 * radii - depth)))
+
+
+def tracked_points(robot: Robot, ends: Array, poses: Poses) -> Array:
+    """Points of all bodies that can move, in the world, (points, n, 3), m.
+
+    No point of a body's axis moves farther than one of its ends, and none of a solid farther than
+    a corner of the box around it: its displacement is a mean of theirs.
+    """
+    points = []
+    for body, both in zip(robot.bodies, ends, strict=True):
+        if body.joint == 0:
+            continue
+        if body.solid is None:
+            points.append(both)
+            continue
+        corners = turned(poses.rotation[:, body.joint], body.solid.corners.T)
+        place = corners.transpose(2, 0, 1) + poses.origin[:, body.joint]
+        points.append(place)
+    return np.concatenate([np.empty((0, *ends.shape[2:])), *points])
+
+
+def tracked_steps(robot: Robot, margin: float, between: float) -> Array:
+    """How far each of the tracked points may move between two tests, (points,), m.
+
+    Of a solid, which may have sharp edges, what stands still reaches at most half a step less the
+    margin in which nothing may be: 0.65 mm here as for other bodies (:func:`longest_steps`). Of
+    two solids that both move it is a whole step less their margin: 1.3 mm.
+
+    Args:
+        margin: the least that is kept from everything that stands still, m.
+        between: what is kept between links, m.
+    """
+    steps: list[float] = []
+    for body in robot.bodies:
+        if body.joint == 0:
+            continue
+        if body.solid is None:
+            steps += longest_steps(np.array([body.radius])).tolist() * 2
+        else:
+            steps += [2 * _DEPTH + min(2 * margin, between)] * 8
+    return np.array(steps)

@@ -50,6 +50,10 @@ OBSTACLES: Registry[Obstacle] = Registry(
         "box": "cellcolor.frontend.contact.primitives:BoxObstacle",
         "cylinder": "cellcolor.frontend.contact.primitives:CylinderObstacle",
         "sphere": "cellcolor.frontend.contact.primitives:SphereObstacle",
+        "cone": "cellcolor.frontend.contact.cone:ConeObstacle",
+        "capsule": "cellcolor.frontend.contact.capsule:CapsuleObstacle",
+        "half-space": "cellcolor.frontend.contact.half_space:HalfSpaceObstacle",
+        "box-grid": "cellcolor.frontend.contact.box_grid:BoxGridObstacle",
         "mesh": "cellcolor.frontend.contact.mesh_obstacle:MeshObstacle",
     },
 )

@@ -18,11 +18,11 @@ from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length
 
-__all__ = ["BoxObstacle", "CylinderObstacle", "SphereObstacle"]
+__all__ = ["BoxObstacle", "CylinderObstacle", "Primitive", "SphereObstacle"]
 
 
-class _Primitive(Obstacle):
-    """A shape that is centered on its position."""
+class Primitive(Obstacle):
+    """A filled shape that is centered on its position."""
 
     @abstractmethod
     def _shape(self) -> fcl.CollisionGeometry:
@@ -62,7 +62,7 @@ class _Primitive(Obstacle):
         return Solid(placed, sorted(self._extents())[1], distances)
 
 
-class BoxObstacle(_Primitive):
+class BoxObstacle(Primitive):
     """A solid box, centered on its position."""
 
     kind: Literal["box"] = "box"
@@ -81,7 +81,7 @@ class BoxObstacle(_Primitive):
         return trimesh.creation.box(self.size_m)
 
 
-class CylinderObstacle(_Primitive):
+class CylinderObstacle(Primitive):
     """A solid cylinder about its own z axis, centered on its position."""
 
     kind: Literal["cylinder"] = "cylinder"
@@ -104,7 +104,7 @@ class CylinderObstacle(_Primitive):
         return whole.subdivide_to_size(max(self.height_m / 4, self.radius_m))
 
 
-class SphereObstacle(_Primitive):
+class SphereObstacle(Primitive):
     """A solid sphere, centered on its position."""
 
     kind: Literal["sphere"] = "sphere"

@@ -19,14 +19,23 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.arm.kinematics import Poses
+from cellcolor.frontend.arm.polyhedron import one_of_each_part
 from cellcolor.frontend.arm.robot import Body, Robot
-from cellcolor.frontend.contact.collision import body_poses, body_shape
+from cellcolor.frontend.contact.fcl_bodies import (
+    Thing,
+    body_poses,
+    mesh_model,
+    points_of,
+    touch_thing,
+)
 from cellcolor.frontend.contact.samples import sample_mesh
 from cellcolor.frontend.parts.surface import Faces
 
-__all__ = ["Solid", "mesh_solid"]
+__all__ = ["Distances", "Solid", "mesh_solid"]
 
 _FINEST = 0.002  # m; half a slice that is left to fcl rather than halved again
+_FINEST_AROUND = 0.02  # m; the same of the capsule around a solid, which is not close anyway
 _CLOSE = 0.025  # m; half a slice from which on the nearest sample is worth its price
 _SPACING = 0.003  # m; wanted distance of a mesh's points to the nearest sample
 _SAMPLES = 500_000  # at most about so many; large objects are sampled more coarsely
@@ -56,16 +65,20 @@ class Solid:
         width: float,
         distances: Distances,
         near: Near | None = None,
+        parts: Array | None = None,
     ) -> None:
+        """``parts`` has a point (k, 3) of each part of it; the middle of the shape without."""
         self.width = width
-        self._shape, self._distances, self._near = shape, distances, near
-        self._request = fcl.CollisionRequest()
+        self._distances, self._near = distances, near
+        middle = np.array([shape.getTranslation()])
+        self._thing = Thing(shape, middle if parts is None else parts)
 
-    def hits(self, robot: Robot, ends: Array) -> Mask:
+    def hits(self, robot: Robot, ends: Array, poses: Poses | None = None) -> Mask:
         """Whether any moving body touches the solid, (n,).
 
         Args:
             ends: (bodies, 2, n, 3), see :func:`~cellcolor.frontend.contact.collision.body_ends`.
+            poses: of the joints; robots without solids do not need them.
         """
         hit = np.zeros(ends.shape[2], dtype=bool)
         # From the tool to the base: what is near the object is asked first.
@@ -73,33 +86,53 @@ class Solid:
             if body.joint == 0:
                 continue
             rows = np.flatnonzero(~hit)
-            hit[rows] = self.touched_by(body, ends[index][:, rows])
+            chosen = None if poses is None or body.solid is None else poses.take(rows)
+            hit[rows] = self.touched_by(body, ends[index][:, rows], chosen)
         return hit
 
-    def touched_by(self, body: Body, ends: Array) -> Mask:
+    def touched_by(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
         """Whether one body touches the solid, (n,); ``ends`` (2, n, 3) are those of its axis."""
         touching, open_ = self._sweep(body, ends)
+        if body.solid is not None:
+            touching |= self._encloses(body, ends, poses, open_)
+            open_ &= ~touching
         asked = np.flatnonzero(open_)
         if len(asked):
-            touching[asked] = self._touches(body, ends[:, asked])
+            chosen = None if poses is None or body.solid is None else poses.take(asked)
+            touching[asked] = self._touches(body, ends[:, asked], chosen)
         return touching
+
+    def _encloses(self, body: Body, ends: Array, poses: Poses | None, asked: Mask) -> Mask:
+        """Whether a point of a part of a body is inside what is filled, (n,), where asked.
+
+        What is filled is at no distance there; with a shell that never comes out.
+        """
+        rows = np.flatnonzero(asked)
+        turns, origins = body_poses(body, ends, poses)
+        points = points_of(body, (turns[rows], origins[rows]))
+        inside = np.zeros(len(asked), dtype=bool)
+        at_most = self._distances(points.reshape(-1, 3))[1].reshape(points.shape[:2])
+        inside[rows] = (at_most <= 0.0).any(axis=1)
+        return inside
 
     def at_least(self, points: Array) -> Array:
         """Lower bounds (k,) of the distances of points (k, 3), m."""
         return self._distances(points)[0]
 
-    def touched_by_fixed(self, robot: Robot, ends: Array) -> str | None:
+    def touched_by_fixed(self, robot: Robot, ends: Array, poses: Poses | None = None) -> str | None:
         """The link of the robot that cannot move and touches the solid, if there is one."""
         for body, both in zip(robot.bodies, ends, strict=True):
-            if body.joint == 0 and self._touches(body, both).any():
+            if body.joint == 0 and self._touches(body, both, poses).any():
                 return body.link
         return None
 
     def _sweep(self, body: Body, ends: Array) -> tuple[Mask, Mask]:
         """Sure hits (n,), and what is left open (n,); the others are clear.
 
-        A body is made of slices across its axis and, if its ends are round, of two balls there.
+        A body is made of slices across its axis and, if its ends are round, of two balls there. Of
+        the capsule around a body with flat faces no hit is sure.
         """
+        finest = _FINEST if body.solid is None else _FINEST_AROUND
         start, along = ends[0], ends[1] - ends[0]
         hit, left_open = np.zeros(len(start), dtype=bool), np.zeros(len(start), dtype=bool)
 
@@ -107,7 +140,9 @@ class Solid:
             """Are balls of the radius ``around`` about points of the axis in doubt?"""
             # A ball about a point of the axis lies in the body if it does not leave its ends.
             inside = np.full(len(rows), body.radius)
-            if body.flat:
+            if body.solid is not None:
+                inside = np.full(len(rows), -1.0)
+            elif body.flat:
                 inside = np.minimum(inside, body.length * np.minimum(place, 1 - place))
             points = start[rows] + place[:, None] * along[rows]
             near, far = self._distances(points)
@@ -138,7 +173,7 @@ class Solid:
         while len(rows):
             doubtful = ask(rows, place, half, float(np.hypot(half, body.radius)))
             doubtful &= ~hit[rows]
-            if half <= _FINEST:
+            if half <= finest:
                 left_open[rows[doubtful]] = True
                 break
             half /= 2
@@ -147,14 +182,9 @@ class Solid:
             place = (place[doubtful][:, None] + [-step, step]).ravel()
         return hit, left_open & ~hit
 
-    def _touches(self, body: Body, ends: Array) -> Mask:
+    def _touches(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
         """By fcl, one after the other: ends (2, n, 3) to (n,)."""
-        other = fcl.CollisionObject(body_shape(body), fcl.Transform())
-        touching = np.zeros(ends.shape[1], dtype=bool)
-        for row, (turn, center) in enumerate(zip(*body_poses(body, ends), strict=True)):
-            other.setTransform(fcl.Transform(turn, center))
-            touching[row] = fcl.collide(self._shape, other, self._request, fcl.CollisionResult())
-        return touching
+        return touch_thing(body, body_poses(body, ends, poses), self._thing)
 
 
 def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Solid:
@@ -164,10 +194,7 @@ def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Sol
         OutOfTime: the deadline came first.
     """
     deadline.check()
-    model = fcl.BVHModel()
-    model.beginModel(len(faces), len(vertices))
-    model.addSubModel(vertices, faces)
-    model.endModel()
+    model = mesh_model(vertices, faces)
     deadline.check()
     samples, slack = sample_mesh(vertices, faces, _SPACING, _SAMPLES)
     lowest, highest = vertices.min(axis=0), vertices.max(axis=0)
@@ -208,4 +235,5 @@ def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Sol
         return np.sqrt(np.maximum(np.maximum(to_sample, 0.0) ** 2 - slack**2, 0.0))
 
     shape = fcl.CollisionObject(model, fcl.Transform())
-    return Solid(shape, sorted(extent.tolist())[1], distances, near)
+    parts = one_of_each_part(vertices, faces)
+    return Solid(shape, sorted(extent.tolist())[1], distances, near, parts)

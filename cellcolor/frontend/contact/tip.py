@@ -7,11 +7,14 @@ tool's pose alone, whatever the arm does.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import longest_steps
+from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.parts.surface import Faces, Surface, along_edges
 
@@ -26,13 +29,13 @@ class Tip:
     """
 
     def __init__(
-        self, robot: Robot, radius: float, obstacles: list[Solid], ground: float | None
+        self, robot: Robot, radius: float, obstacles: list[Solid], ground: HalfSpace | None
     ) -> None:
-        """``radius`` and ``ground``, the height of the ground if there is one, in m."""
+        """``radius`` in m, and the ground if there is one."""
         point, axis = robot.tip[:3, 3], robot.tip[:3, 2]
-        # How far behind the tip the axis of each body on the last link begins.
+        # How far behind the tip the axis of each body on the last link begins, or a solid itself.
         behind = [
-            min(float((point - end) @ axis) for end in (body.start, body.end))
+            min(float((point - end) @ axis) for end in _ends(body))
             for body in robot.bodies
             if body.joint == robot.joints
         ]
@@ -50,7 +53,8 @@ class Tip:
         ends = np.stack([points, points - self.body.length * directions])
         hit = np.zeros(len(points), dtype=bool)
         if self._ground is not None:
-            hit |= ends[:, :, 2].min(axis=0) - self.body.radius < self._ground
+            lower = self._ground.along(ends).min(axis=0)
+            hit |= lower - self.body.radius < self._ground.offset_m
         for obstacle in self._obstacles:
             hit[~hit] = obstacle.touched_by(self.body, ends[:, ~hit])
         return hit
@@ -78,3 +82,8 @@ class Tip:
         points, directions = along_edges(surface, edges[row], number / np.repeat(pieces, pieces))
         free[row[self.blocked(points, directions)]] = False
         return free
+
+
+def _ends(body: Body) -> Iterable[Array]:
+    """Points (3,) between which the body lies, as far as its axis goes or its solid."""
+    return (body.start, body.end) if body.solid is None else body.solid.outline

@@ -13,7 +13,7 @@ from cellcolor.frontend.parts.remesh import refine, repair
 from cellcolor.frontend.parts.surface import Faces, Surface, face_normals
 from cellcolor.frontend.sizes import check_vertices
 
-__all__ = ["mesh_surface"]
+__all__ = ["mesh_surface", "summed_normals"]
 
 _FARTHEST, _SMALLEST = 1e6, 1e-6  # m
 
@@ -51,9 +51,10 @@ def mesh_surface(
         face, corner = unknown[0]
         message = f"there is no vertex {faces[face, corner]}"
         raise InputError(None, f"faces[{face}][{corner}]", message)
-    if mend:
-        finite = np.isfinite(vertices).all()
-        vertices, faces = repair(vertices, faces) if finite else (vertices, faces)
+    if mend and len(faces) and np.isfinite(vertices).all():
+        # Sizes first: a triangle that is far too long for a unit looks like one without area.
+        _check_size(vertices[np.unique(faces)], meters_per_unit)
+        vertices, faces = repair(vertices, faces)
     if not len(faces):
         raise InputError(None, "faces", "there are none")
     _check_size(vertices, meters_per_unit)
@@ -69,7 +70,7 @@ def mesh_surface(
     if max_edge_m is not None:
         vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit, deadline)
     deadline.check()
-    normals = _vertex_normals(vertices, faces)
+    normals = summed_normals(vertices, faces)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
         vertex = np.argmin(size)
@@ -111,7 +112,7 @@ def _check_elements(vertices: Array, faces: Faces) -> None:
         raise InputError(None, f"faces[{np.argmax(flat)}]", "has no area")
 
 
-def _vertex_normals(vertices: Array, faces: Faces) -> Array:
+def summed_normals(vertices: Array, faces: Faces) -> Array:
     """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
 
     trimesh's own vertex normals have length 1 already, and so do not tell faces that cancel out.

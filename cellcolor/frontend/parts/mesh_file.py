@@ -20,8 +20,9 @@ from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import check_faces
 from cellcolor.frontend.tables import Positive
 
-__all__ = ["MeshObject", "load_mesh"]
+__all__ = ["MeshObject", "load_mesh", "read_mesh"]
 
+_MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory
 _HEADER = 4096  # bytes; where a PLY file names its elements
 
 
@@ -60,19 +61,29 @@ def load_mesh(
         InputError: missing or unreadable file, or the mesh cannot be used; names file and element.
         OutOfTime: the deadline came first.
     """
-    vertices, faces = _read_mesh(file, deadline)
     try:
+        vertices, faces = read_mesh(file, deadline)
+        check_faces(len(faces))
         return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
     except InputError as error:
         # Of halving edges the scene is to blame, which alone can say that it was asked for.
         raise error if error.field == "max_edge_m" else error.in_file(str(file)) from error
 
 
-def _read_mesh(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
+def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
+    """Vertices and faces of a mesh file as they are, of STL with equal corners as one vertex.
+
+    Raises:
+        InputError: missing or unreadable file, or more than 200 MB; names the file.
+        OutOfTime: the deadline came first; not looked at while another library reads the file.
+    """
     if not _is_file(file):
         raise InputError(str(file), None, "no such mesh file")
     if file.suffix.lower() not in (".stl", ".obj", ".ply"):
         raise InputError(str(file), None, "not a mesh format known here (STL, OBJ, PLY)")
+    if file.stat().st_size > _MOST_BYTES:
+        message = f"has {file.stat().st_size:,} bytes, at most {_MOST_BYTES:,} are read"
+        raise InputError(str(file), None, message)
     if file.suffix.lower() == ".obj":
         return read_obj(file, deadline)
     _check_container(file)
@@ -83,10 +94,6 @@ def _read_mesh(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
     except Exception as error:  # trimesh's readers raise whatever their parsers ran into
         raise InputError(str(file), None, f"trimesh cannot read it: {error!r}") from error
     deadline.check()
-    try:
-        check_faces(len(faces))
-    except InputError as error:
-        raise error.in_file(str(file)) from error
     if file.suffix.lower() == ".stl":
         vertices, index = np.unique(vertices, axis=0, return_inverse=True)
         faces = index.reshape(-1)[faces]

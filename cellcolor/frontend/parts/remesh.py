@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import numpy as np
-import trimesh
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.parts.cleaning import (
+    merged,
+    repeated_corners,
+    repeated_faces,
+    used,
+    without_flat,
+)
 from cellcolor.frontend.parts.surface import Faces, every_edge, face_normals
+from cellcolor.frontend.parts.topology import edge_table
+from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
 from cellcolor.frontend.sizes import check_refinement, check_vertices
 
 __all__ = ["refine", "repair"]
@@ -74,10 +82,9 @@ def repair(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
     which side is the outside nobody but its owner knows. What is still wrong afterwards (edges
     that are not manifold, holes) stays.
     """
-    mesh = trimesh.Trimesh(vertices, faces, process=False)
-    mesh.merge_vertices()
-    mesh.update_faces(mesh.nondegenerate_faces())
-    mesh.update_faces(mesh.unique_faces())
-    mesh.remove_unreferenced_vertices()
-    trimesh.repair.fix_normals(mesh, multibody=True)
-    return np.array(mesh.vertices, dtype=np.float64), np.array(mesh.faces, dtype=np.int64)
+    vertices, faces = merged(vertices, faces)
+    faces = faces[~repeated_corners(faces)]
+    faces = faces[~repeated_faces(faces)]
+    vertices, faces = used(vertices, without_flat(vertices, faces))
+    faces = turned(faces, against_the_others(faces, edge_table(faces))[0])
+    return vertices, turned(faces, inside_out(vertices, faces))

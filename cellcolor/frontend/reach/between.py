@@ -22,8 +22,8 @@ _AT_ONCE = 20_000  # configurations; a matter of memory: some kilobytes each
 _ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump
 
 Test = Callable[[Array, Array, NDArray[np.intp]], tuple[Mask, Array]]
-"""Points (k, 3), unit tool directions (k, 3) and branches (k,): are they valid (k,), and where are
-the ends of the bodies (ends, k, 3)?"""
+"""Points (k, 3), unit tool directions (k, 3) and the rows (k,) of edges that they are on: are the
+configurations there valid (k,), and where are the ends of the bodies (ends, k, 3)?"""
 
 
 def at_domain_border(edges: Index, valid: Mask) -> Mask:
@@ -94,7 +94,7 @@ def remains_valid(
             places[:, number == 0], places[:, number == count[part]] = near, far
             at = row[inner]
             points = along_edges(surface, edges[at], way[inner])
-            valid, places[:, inner] = test(*points, branches[at])
+            valid, places[:, inner] = test(*points, at)
             result[at[~valid]] = False
             stride = strides(places[:, :-1], places[:, 1:], longest)
             here = np.flatnonzero((number[1:] > 0) & (stride > 1) & result[row[1:]])

@@ -13,8 +13,10 @@ from cellcolor.frontend.arm.conditioning import Conditioning
 from cellcolor.frontend.arm.kinematics import Poses, forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import body_ends
+from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.contact.tip import Tip
+from cellcolor.frontend.contact.wider import wider
 from cellcolor.frontend.setup import Setup
 
 __all__ = ["Postures", "Workplace"]
@@ -26,7 +28,7 @@ class Workplace:
 
     Attributes:
         conditioning: the thresholds for this arm.
-        ground: its height in m, None without one.
+        ground: None without one.
         obstacles: see :class:`~cellcolor.frontend.contact.solids.Solid`.
         target: the object, as what must not be hit.
         tip: the region where the tool works.
@@ -35,10 +37,30 @@ class Workplace:
     robot: Robot
     setup: Setup
     conditioning: Conditioning
-    ground: float | None
+    ground: HalfSpace | None
     obstacles: tuple[Solid, ...]
     target: Solid
     tip: Tip
+
+    @cached_property
+    def near_object(self) -> Robot:
+        """The robot with all that the setup's margin keeps free of the object."""
+        return wider(self.robot, self.setup.margins.to_object_m)
+
+    @cached_property
+    def near_obstacles(self) -> Robot:
+        """The same of obstacles."""
+        return wider(self.robot, self.setup.margins.to_obstacles_m)
+
+    @cached_property
+    def near_ground(self) -> Robot:
+        """The same of the ground."""
+        return wider(self.robot, self.setup.margins.to_ground_m)
+
+    @cached_property
+    def near_itself(self) -> Robot:
+        """The same of other links: of two that keep a distance each keeps half of it."""
+        return wider(self.robot, self.setup.margins.between_links_m / 2)
 
 
 @dataclass(frozen=True)
@@ -68,7 +90,8 @@ class Postures:
         """The arm in configurations (k, joints) in rad."""
         poses = forward(workplace.robot, configurations)
         linear, angular = tip_jacobian(poses)
-        determinant = task_determinant(linear, angular, poses.tool_axis)
+        task = workplace.robot.task
+        determinant = task_determinant(linear, angular, poses.tool_axis, task)
         ends = body_ends(workplace.robot, poses)
         arm = _Arm(configurations, poses, linear, determinant, ends)
         return cls(workplace, arm, np.arange(len(configurations)))
@@ -109,6 +132,12 @@ class Postures:
     def determinant(self) -> Array:
         """(k,) the task determinant, m^3."""
         return self._arm.determinant[self._rows]
+
+    def ends_of(self, robot: Robot) -> Array:
+        """The ends of the axes of all bodies of the same robot, or of a wider one."""
+        if robot is self.workplace.robot:
+            return self.ends
+        return body_ends(robot, self.poses)
 
     @property
     def ends(self) -> Array:

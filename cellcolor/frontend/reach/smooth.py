@@ -18,7 +18,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.setup import Continuity
 
-__all__ = ["Measure", "Motions", "Probe", "follow_edges", "joint_step"]
+__all__ = ["Measure", "Motions", "Probe", "follow_edges", "joint_step", "shorter_way"]
 
 _TRUSTED = 0.5  # rad; a step in which a joint moves farther is always looked into
 _HALVINGS = 10  # of the probe spacing; what is too fast on the last one is a jump
@@ -42,6 +42,31 @@ class Measure:
     policy: Continuity
     near_singular: float
     lever: float
+
+    def changes(self, lengths: Array, turns: Array, low: Array, high: Array) -> Array:
+        """The change of the tool's pose (k,) in m on parts of edges, from where to where (0 to 1).
+
+        Args:
+            lengths, turns: (k,) of the whole edges, m and rad.
+        """
+        angle = _turned(turns, high) - _turned(turns, low)
+        return np.asarray(lengths * (high - low) + self.lever * angle)
+
+    def settled(self, step: Array, change: Array, nearest: Array) -> Mask:
+        """Which steps are so small that nothing has to be looked at in between, (k,).
+
+        Args:
+            step: (k,) how far a joint moves, rad.
+            change: (k,) of the tool's pose, m.
+            nearest: (k,) the smaller task determinant of both ends, m^3.
+        """
+        bound = self.policy.base_step_rad + self.policy.step_per_length_rad_per_m * change
+        clear = (nearest >= self.near_singular) & (step <= np.minimum(bound / 2, _TRUSTED))
+        return np.asarray(clear | ((change <= self.policy.probe_spacing_m) & (step <= bound)))
+
+    def too_short(self, change: Array) -> Mask:
+        """Which steps (k,) are so short that one that is not settled is a jump."""
+        return np.asarray(change <= self.policy.probe_spacing_m / 2**_HALVINGS)
 
 
 @dataclass(frozen=True)
@@ -93,7 +118,7 @@ class _Steps:
 
 def joint_step(first: Array, second: Array) -> Array:
     """The largest movement of a joint between configurations (..., joints), modulo 2 pi, in rad."""
-    return np.asarray(np.abs(_shorter_way(first, second)).max(axis=-1))
+    return np.asarray(np.abs(shorter_way(first, second)).max(axis=-1))
 
 
 def follow_edges(
@@ -115,22 +140,19 @@ def follow_edges(
         measure: what is a jump.
         probe: see :data:`Probe`; called with points in between.
     """
-    policy, lengths, turns = measure.policy, surface.lengths(edges), surface.turns(edges)
+    lengths, turns = surface.lengths(edges), surface.turns(edges)
     smooth = np.ones(len(edges), dtype=bool)
     settled: list[_Steps] = []
 
     def sort(steps: _Steps) -> list[_Steps]:
         """Keep what is settled, note jumps; what is open comes back in pieces."""
         row = steps.row
-        angle = _turned(turns[row], steps.high) - _turned(turns[row], steps.low)
-        change = lengths[row] * (steps.high - steps.low) + measure.lever * angle
+        change = measure.changes(lengths[row], turns[row], steps.low, steps.high)
         step = joint_step(steps.first, steps.last)
-        bound = policy.base_step_rad + policy.step_per_length_rad_per_m * change
         nearest = np.fmin(steps.first_determinant, steps.last_determinant)
-        clear = (nearest >= measure.near_singular) & (step <= np.minimum(bound / 2, _TRUSTED))
-        done = clear | ((change <= policy.probe_spacing_m) & (step <= bound))
+        done = measure.settled(step, change, nearest)
         settled.append(steps.take(done))
-        smooth[row[~done & (change <= policy.probe_spacing_m / 2**_HALVINGS)]] = False
+        smooth[row[~done & measure.too_short(change)]] = False
         rest = steps.take(~done)
         return [rest.take(slice(k, k + _AT_ONCE)) for k in range(0, len(rest), _AT_ONCE)]
 
@@ -153,7 +175,8 @@ def _turned(turns: Array, way: Array) -> Array:
     return np.arctan2(way * np.sin(turns), 1 - way + way * np.cos(turns))
 
 
-def _shorter_way(first: Array, second: Array) -> Array:
+def shorter_way(first: Array, second: Array) -> Array:
+    """How far each joint moves between configurations (..., joints), modulo 2 pi, in rad."""
     return np.asarray(np.remainder(second - first + np.pi, 2 * np.pi) - np.pi)
 
 
@@ -166,7 +189,7 @@ def _excursions(count: int, settled: list[_Steps]) -> tuple[Array, Array]:
     whole = settled[0]
     joints = whole.first.shape[1]
     lowest, highest = np.zeros((count, joints)), np.zeros((count, joints))
-    moved = _shorter_way(whole.first, whole.last)
+    moved = shorter_way(whole.first, whole.last)
     lowest[whole.row], highest[whole.row] = np.minimum(moved, 0.0), np.maximum(moved, 0.0)
     if not any(map(len, settled[1:])):
         return lowest, highest
@@ -175,7 +198,7 @@ def _excursions(count: int, settled: list[_Steps]) -> tuple[Array, Array]:
         for name in ("row", "low", "first", "last")
     )
     order = np.lexsort((low, row))
-    row, moved = row[order], _shorter_way(first[order], last[order])
+    row, moved = row[order], shorter_way(first[order], last[order])
     # Where each motion begins; a running total over all of them, less what was there before.
     start = np.flatnonzero(np.diff(row, prepend=-1))
     total = np.cumsum(moved, axis=0)

@@ -72,13 +72,14 @@ class Manipulability(StandardTest):
     """Near a singularity of the tip's position."""
 
     name = "manipulability"
-    sentence = "Yoshikawa's translational measure of the five task joints below its threshold"
+    sentence = "Yoshikawa's translational measure of the task's joints below its threshold"
     constraint = "conditioning"
 
     def failed(self, postures: Postures) -> Mask:
         """Those below the threshold."""
-        least = postures.workplace.conditioning.min_manipulability
-        return np.asarray(manipulability(postures.linear) < least)
+        place = postures.workplace
+        measure = manipulability(postures.linear, place.robot.task)
+        return np.asarray(measure < place.conditioning.min_manipulability)
 
 
 class TaskDeterminant(StandardTest):
@@ -86,8 +87,8 @@ class TaskDeterminant(StandardTest):
 
     name = "task determinant"
     sentence = (
-        "absolute determinant of the 5x5 Jacobian of tip position and tool direction below its"
-        " threshold"
+        "absolute determinant of the Jacobian of tip position, tool direction and, if it is given,"
+        " the tool's turn below its threshold"
     )
     constraint = "conditioning"
 
@@ -98,7 +99,7 @@ class TaskDeterminant(StandardTest):
 
 
 class GroundContact(StandardTest):
-    """The ground is the half space below its height."""
+    """The ground is a half space, below a plane that may be tilted."""
 
     name = "ground"
     sentence = "a link other than those of may_touch_ground reaches below the ground"
@@ -110,7 +111,8 @@ class GroundContact(StandardTest):
         if place.ground is None:
             return np.zeros(len(postures), dtype=bool)
         exempt = place.setup.robot.may_touch_ground
-        return hits_ground(place.robot, postures.ends, place.ground, exempt)
+        robot = place.near_ground
+        return hits_ground(robot, postures.ends_of(robot), place.ground, exempt, postures.poses)
 
 
 class SelfCollision(StandardTest):
@@ -122,7 +124,8 @@ class SelfCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which two links overlap."""
-        return hits_itself(postures.workplace.robot, postures.ends)
+        robot = postures.workplace.near_itself
+        return hits_itself(robot, postures.ends_of(robot), postures.poses)
 
 
 class ObstacleCollision(StandardTest):
@@ -134,9 +137,11 @@ class ObstacleCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which an obstacle is hit."""
-        hit, ends = np.zeros(len(postures), dtype=bool), postures.ends
+        robot, hit = postures.workplace.near_obstacles, np.zeros(len(postures), dtype=bool)
+        ends = postures.ends_of(robot)
         for obstacle in postures.workplace.obstacles:
-            hit[~hit] = obstacle.hits(postures.workplace.robot, ends[:, :, ~hit])
+            left = postures.without(hit)
+            hit[~hit] = obstacle.hits(robot, ends[:, :, ~hit], left.poses)
         return hit
 
 
@@ -149,7 +154,8 @@ class ObjectCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which the object is hit."""
-        return postures.workplace.target.hits(postures.workplace.robot, postures.ends)
+        robot = postures.workplace.near_object
+        return postures.workplace.target.hits(robot, postures.ends_of(robot), postures.poses)
 
 
 STANDARD_TESTS: tuple[StandardTest, ...] = (

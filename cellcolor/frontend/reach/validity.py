@@ -13,6 +13,8 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
+from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.reach.postures import Postures, Workplace
 from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
 from cellcolor.frontend.reach.validity_interface import ValidityTest
@@ -23,6 +25,7 @@ NO_SOLUTION = 1
 """The code where a branch does not reach the pose, so that there is nothing to test."""
 _NAMES = ("valid", "no solution")  # of the codes that no test stands for
 _AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
+_PAYS = 8  # parts of so many are worth a process of their own
 
 
 @dataclass(frozen=True)
@@ -57,15 +60,28 @@ class Verdicts:
         configurations: (k, joints) in rad, turned into the limits where possible.
         reasons: (k,) uint8 codes, which index :attr:`Judge.reason_names`.
         determinants: (k,) task determinant in m^3, NaN without solution.
-        ends: (ends, k, 3) of the axes of the bodies that can move, in the world, m; NaN as above.
-        seconds: wall time of forward kinematics and of each test.
+        tracked: (points, k, 3) of the bodies that can move, in the world, m, see
+            :func:`~cellcolor.frontend.contact.collision.tracked_points`; NaN as above.
+        seconds: of forward kinematics and of each test, those of several processes at a time
+            counted once.
     """
 
     configurations: Array
     reasons: NDArray[np.uint8]
     determinants: Array
-    ends: Array
+    tracked: Array
     seconds: dict[str, float]
+
+    def followed_by(self, others: Verdicts) -> Verdicts:
+        """These verdicts, and then those on other configurations."""
+        both = np.concatenate
+        return Verdicts(
+            both([self.configurations, others.configurations]),
+            both([self.reasons, others.reasons]),
+            both([self.determinants, others.determinants]),
+            both([self.tracked, others.tracked], axis=1),
+            {name: self.seconds[name] + others.seconds[name] for name in self.seconds},
+        )
 
 
 def turned_into_limits(robot: Robot, configurations: Array) -> Array:
@@ -86,7 +102,8 @@ class Judge:
     Attributes:
         reason_names: of the codes of verdicts: valid, no solution, and the tests in the order of
             testing, whether the setup leaves them out or not.
-        end_radii: (ends,) of the bodies of :attr:`Verdicts.ends`, m.
+        tracked_steps: (points,) how far those of :attr:`Verdicts.tracked` may move between two
+            tests, m.
     """
 
     def __init__(
@@ -111,29 +128,39 @@ class Judge:
         on = workplace.setup.constraints
         standard = (test for test in STANDARD_TESTS if getattr(on, test.constraint))
         self._tests: tuple[ValidityTest, ...] = (*standard, *added)
-        bodies = workplace.robot.bodies
-        self._moving = [index for index, body in enumerate(bodies) if body.joint > 0]
-        self.end_radii = np.repeat([bodies[index].radius for index in self._moving], 2)
+        margins = workplace.setup.margins
+        least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
+        self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)
 
     def __call__(self, configurations: Array) -> Verdicts:
         """Test configurations (k, joints) in rad, NaN where there is none."""
         count = len(configurations)
+        parts = range(0, count, _AT_ONCE)
         # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
+        # A solid has four times the points of a capsule, which single precision makes up for: a
+        # tenth of a micrometer does not matter to how far bodies move.
+        place = np.float32 if self._workplace.robot.has_solids else np.float64
+        new = np.zeros if len(parts) < 2 * _PAYS else shared
         whole = Verdicts(
-            np.empty_like(configurations),
-            np.empty(count, dtype=np.uint8),
-            np.empty(count),
-            np.empty((len(self.end_radii), count, 3)),
+            new(configurations.shape, np.float64),
+            new((count,), np.uint8),
+            new((count,), np.float64),
+            new((len(self.tracked_steps), count, 3), place),
             {},
         )
-        for first in range(0, count, _AT_ONCE):
+        timed = ("forward kinematics", *(test.name for test in self._tests))
+        seconds = new((len(parts), len(timed)), np.float64)
+
+        def judge(number: int) -> None:
             self._deadline.check()
-            rows = slice(first, first + _AT_ONCE)
+            rows = slice(parts[number], parts[number] + _AT_ONCE)
             part = self._judged(configurations[rows])
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
-            whole.determinants[rows], whole.ends[:, rows] = part.determinants, part.ends
-            for name, seconds in part.seconds.items():
-                whole.seconds[name] = whole.seconds.get(name, 0.0) + seconds
+            whole.determinants[rows], whole.tracked[:, rows] = part.determinants, part.tracked
+            seconds[number] = [part.seconds[name] for name in timed]
+
+        processes = share_out(judge, len(parts), at_least=_PAYS)
+        whole.seconds.update(zip(timed, (seconds.sum(axis=0) / processes).tolist(), strict=True))
         return whole
 
     def _judged(self, configurations: Array) -> Verdicts:
@@ -145,10 +172,11 @@ class Judge:
         postures = Postures.of(self._workplace, moved[solved])
         determinants, places = (
             np.full(count, np.nan),
-            np.full((len(self.end_radii), count, 3), np.nan),
+            np.full((len(self.tracked_steps), count, 3), np.nan),
         )
         determinants[solved] = postures.determinant
-        places[:, solved] = postures.ends[self._moving].reshape(len(places), len(solved), 3)
+        robot = self._workplace.robot
+        places[:, solved] = tracked_points(robot, postures.ends, postures.poses)
         seconds = {"forward kinematics": time.perf_counter() - started}
         reasons[solved] = self._first_failures(postures, seconds)
         return Verdicts(moved, reasons, determinants, places, seconds)

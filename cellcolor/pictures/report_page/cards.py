@@ -19,6 +19,7 @@ _KINDS = {
     "cover": "A segment lies in one region of a color, and every cell has to be in some segment: "
     "fewer regions do not reach all cells.",
     "conflicts": "With fewer segments, two of them would have to cross each other.",
+    "hubs": "More connections do not fit side by side into the cells with many edges.",
     "crossings": "The full model of divisions has no better one, and letting segments cross a "
     "border between two cells more often would not help.",
 }

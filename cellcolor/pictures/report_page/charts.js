@@ -8,15 +8,19 @@ class Charts {
   constructor(canvas, data, motion, chosen) {
     Object.assign(this, { canvas, data, motion });
     const { limits } = data;
-    this.strips = data.joint_names.map((name, joint) => ({
-      name: name.replace(/_joint$/, "").replaceAll("_", " "),
-      values: motion.joints.filter((_, k) => k % motion.count === joint),
-      low: limits.lower[joint],
-      high: limits.upper[joint],
-      marks: [limits.lower[joint], limits.upper[joint]],
-      written: degrees,
-      stepped: false,
-    }));
+    this.strips = data.joint_names.map((name, joint) => {
+      const values = motion.joints.filter((_, k) => k % motion.count === joint);
+      const [low, high] = [limits.lower[joint], limits.upper[joint]];  // null without a limit
+      return {
+        name: name.replace(/_joint$/, "").replaceAll("_", " "),
+        values,
+        low: low ?? Math.min(...values),
+        high: high ?? Math.max(...values),
+        marks: [low, high].filter((limit) => limit !== null),
+        written: degrees,
+        stepped: false,
+      };
+    });
     for (const name of ["determinant", "manipulability"]) {
       const values = unpack(data.frames[name]), least = limits[name];
       const most = Math.max(...values, least || 0);

@@ -74,12 +74,13 @@ class Space {
         low[axis] = Math.min(low[axis], points[k + axis]);
         high[axis] = Math.max(high[axis], points[k + axis]);
       }
-    const step = 0.1, z = this.data.ground, pieces = [], color = rgb("#C9CDD4");
+    const step = 0.1, [nx, ny, nz, offset] = this.data.ground, pieces = [], color = rgb("#C9CDD4");
     const [x0, y0] = low.map((value) => step * Math.floor((value - 0.25) / step));
     const [x1, y1] = high.map((value) => step * Math.ceil((value + 0.25) / step));
+    const on = (x, y) => [x, y, (offset - nx * x - ny * y) / nz];
     const add = (from, to) => pieces.push({ from, to, color, moments: [0, 0] });
-    for (let x = x0; x <= x1 + 1e-9; x += step) add([x, y0, z], [x, y1, z]);
-    for (let y = y0; y <= y1 + 1e-9; y += step) add([x0, y, z], [x1, y, z]);
+    for (let x = x0; x <= x1 + 1e-9; x += step) add(on(x, y0), on(x, y1));
+    for (let y = y0; y <= y1 + 1e-9; y += step) add(on(x0, y), on(x1, y));
     this.grid = this.painter.lines(pieces);
   }
 

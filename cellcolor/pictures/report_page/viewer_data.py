@@ -50,12 +50,13 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
     modes += [proof] if proof is not None else []
     frames = frames_of(trajectory, MOST_FRAMES)
     vertices, faces = painted.surface.vertices, painted.surface.faces
+    ground = prepared.workplace.ground
     return {
         "mesh": {"vertices": _packed(vertices, "f4"), "faces": _packed(faces, "u4")},
         "modes": [_mode(painted.surface, mode) for mode in modes],
         "arm": _arm(prepared.robot),
         "solids": _solids(prepared),
-        "ground": prepared.workplace.ground,
+        "ground": None if ground is None else [*ground.normal, ground.offset_m],
         "trace": _trace(trajectory, 0.05 * _edge(vertices, faces)),
         "frames": _frames(prepared, trajectory, frames),
         "limits": _limits(prepared),
@@ -116,8 +117,8 @@ def _solids(prepared: PreparedScene) -> list[dict[str, Any]]:
     """What stands around, in the world."""
     scene = prepared.scene
     meshes = [(_OBSTACLE, *obstacle_mesh(each, scene.folder)) for each in scene.obstacle]
-    if scene.collision_object is not None:
-        body = scene.collision_object.surface(scene.folder).placed(scene.placement)
+    if scene.solid_object is not None:
+        body = scene.solid_object.surface(scene.folder).placed(scene.placement)
         meshes.append((_BODY, body.vertices, body.faces))
     return [
         {"rgb": fill, "points": _packed(points, "f4"), "triangles": _packed(triangles, "u4")}
@@ -163,17 +164,22 @@ def _conditioning(robot: Robot, configurations: Array) -> dict[str, Array]:
     poses = forward(robot, configurations)
     linear, angular = tip_jacobian(poses)
     return {
-        "determinant": task_determinant(linear, angular, poses.tool_axis),
-        "manipulability": manipulability(linear),
+        "determinant": task_determinant(linear, angular, poses.tool_axis, robot.task),
+        "manipulability": manipulability(linear, robot.task),
     }
+
+
+def _finite(limits: Array) -> list[float | None]:
+    """Limits (joints,), null where a joint has none."""
+    return [limit if np.isfinite(limit) else None for limit in limits.tolist()]
 
 
 def _limits(prepared: PreparedScene) -> dict[str, Any]:
     least, robot = prepared.workplace.conditioning, prepared.robot
     tested = prepared.setup.constraints.conditioning
     return {
-        "lower": robot.lower.tolist(),
-        "upper": robot.upper.tolist(),
+        "lower": _finite(robot.lower),
+        "upper": _finite(robot.upper),
         "determinant": least.min_task_determinant if tested else None,
         "manipulability": least.min_manipulability if tested else None,
     }

@@ -155,12 +155,19 @@ def _strangers(instance: Instance, deadline: Deadline) -> list[int]:
     return sorted(_solve(model, chosen, CERTIFICATE_EFFORT, deadline).chosen or ())
 
 
-def greedy_strangers(instance: Instance) -> list[int]:
-    """Cells of which no two lie in one color region, found at once but not the most there are."""
-    touching = _touching(color_regions(instance), len(instance.cells))
+def greedy_strangers(instance: Instance, without: Collection[int] = ()) -> list[int]:
+    """Cells of which no two lie in one color region, found at once but not the most there are.
+
+    Args:
+        instance: the topological graph.
+        without: cells that are taken away first.
+    """
+    colors = [frozenset(() if c.id in without else c.colors) for c in instance.cells]
+    touching = _touching(color_regions(instance, colors), len(instance.cells))
     used: set[int] = set()
     found = []
-    for cell in sorted(range(len(touching)), key=lambda cell: len(touching[cell])):
+    left = (cell for cell in range(len(touching)) if cell not in without)
+    for cell in sorted(left, key=lambda cell: len(touching[cell])):
         if used.isdisjoint(touching[cell]):
             found.append(cell)
             used.update(touching[cell])

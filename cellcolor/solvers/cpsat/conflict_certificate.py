@@ -1,4 +1,4 @@
-"""What lets a checker without a solver verify that fewer segments would have to cross."""
+"""What lets a checker without a solver verify a bound by conflicts between segments or by hubs."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ MOST_CONFLICTS = 2_000
 def conflict_certificate(
     left_out: Iterable[LeftOut], parts: Sequence[PartSearch]
 ) -> dict[str, Any] | None:
-    """The certificate of a bound by conflicts (docs/formats.md); None if it would be too large.
+    """The certificate of a bound by conflicts or hubs (docs/formats.md); None if too large.
 
     Args:
         left_out: the color regions that were left out before the instance fell into parts.
@@ -38,6 +38,9 @@ def _part(part: PartSearch) -> dict[str, Any]:
     def cells(merged_cell: Iterable[int]) -> tuple[int, ...]:
         return tuple(sorted(whole[cell] for cell in merged_cell))
 
+    if part.hubs is not None:
+        hubs, hard = (cells(found) for found in (part.hubs.hubs, part.hubs.cells))
+        return {"value": part.surface_bound, "cells": hard, "conflicts": [], "hubs": hubs}
     conflicts = []
     for one, other, parting in part.planner.partings if part.planner is not None else ():
         for group, further in combinations(parting.groups, 2):

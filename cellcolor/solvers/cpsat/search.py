@@ -1,4 +1,4 @@
-"""The search for the fewest segments of one part: cover, plans, routes, and the full model.
+"""The search for the fewest segments of one part: bounds, plans, routes, and the full model.
 
 A part is what live edges connect (``parts``). A strand is one of the parallel corridors by which
 segments may cross an edge, or a seam between two loops of a cell (docs/semantics.md, sections 4
@@ -17,6 +17,7 @@ from cellcolor.data.solution import Seam
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
+from cellcolor.solvers.bounds.hubs import HubBound, hub_bound
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, widened
 from cellcolor.solvers.cpsat.model.full import (
     LARGEST_MODEL,
@@ -76,6 +77,7 @@ class PartSearch:
         cells: the cell of the whole instance that each cell of the part is.
         cover_bound: the size of a smallest cover, or what is proved of it.
         planner: what has planned its segments; None before.
+        hubs: what counting links in hubs proves; None unless that is more than all before it.
         notes: what was left out and why, a sentence each.
     """
 
@@ -94,6 +96,7 @@ class PartSearch:
         self.cells = part.cells
         self.cover_bound = self.bound
         self.planner: Planner | None = None
+        self.hubs: HubBound | None = None
         self.notes: list[str] = []
         self._running: int | None = None
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
@@ -130,6 +133,13 @@ class PartSearch:
         color_of = {cell: color for color, cells in found.regions for cell in cells}
         whole: Painting = [[Block(color_of[c.id], set())] for c in self.instance.cells]
         self._offer(self.best[0], whole)
+
+    def count_links(self, deadline: Deadline) -> None:
+        """A bound by what fits side by side in cells with many edges."""
+        found = hub_bound(self.instance, deadline)
+        if found.value > self.surface_bound:
+            self.hubs = found
+            self._raise(found.value)
 
     def route_plans(self, deadline: Deadline) -> None:
         """Divisions by routing what is planned; where nothing can be planned the bound rises."""
@@ -262,6 +272,8 @@ class PartSearch:
         if size * SECONDS_A_TERM > deadline.left:
             raise OutOfTime("building the model would take longer than there is time")
         built = full_model(graph, color_regions(self.instance, colors), deadline=deadline)
+        # What meets the bound ends the search; by itself the model would have to prove it first.
+        built.model.add(sum(built.variables.root) + sum(built.variables.alone) >= self.bound)
         self._hint(built, graph)
         solver = self._runner.solver(None if final else TRIAL_EFFORT, deadline)
         if final:

@@ -170,6 +170,7 @@ class _Search:
         return [
             PartSearch.cover,
             lambda part, deadline: part.route_plans(deadline.share(1 / 2)),
+            lambda part, deadline: part.count_links(deadline.share(1 / 4)),
             lambda part, deadline: part.improve_large(deadline.share(1 / 2)),
             PartSearch.solve_small_model,
             PartSearch.solve_model,
@@ -233,7 +234,7 @@ class _Search:
         return (
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
             Bound(
-                "conflicts",
+                "hubs" if any(part.hubs for part in self._parts) else "conflicts",
                 sum(part.surface_bound for part in self._parts),
                 "surface",
                 conflict_certificate(self._left_out, self._parts),

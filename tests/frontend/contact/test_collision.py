@@ -18,13 +18,17 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.contact.capsule import CapsuleObstacle
 from cellcolor.frontend.contact.collision import (
     body_ends,
     hits_ground,
     hits_itself,
     segment_distance,
 )
+from cellcolor.frontend.contact.cone import ConeObstacle
+from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
 from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.primitives import BoxObstacle, CylinderObstacle, SphereObstacle
 from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.parts.placement import Placement
@@ -68,13 +72,19 @@ def test_self_collision_agrees_with_coal(robot: Robot, wok: Surface, joints: Arr
     agree(hits_itself(robot, placed(robot, joints)), np.array(distances))
 
 
-def test_ground_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
+@pytest.mark.parametrize(
+    ("height", "normal"), [(-0.02, (0.0, 0.0, 1.0)), (0.05, (0.3, -0.5, 2.0)), (-0.1, (0.9, 0, 1))]
+)
+def test_ground_agrees_with_coal(
+    robot: Robot, wok: Surface, joints: Array, height: float, normal: tuple[float, float, float]
+) -> None:
     world = World(robot, wok.vertices, wok.faces)
     distances = []
     for q in joints:
         world.place(q)
-        distances.append(world.to_ground(-0.02, EXEMPT))
-    agree(hits_ground(robot, placed(robot, joints), -0.02, EXEMPT), np.array(distances))
+        distances.append(world.to_ground(height, EXEMPT, normal))
+    ground = HalfSpace.through(np.array([0.0, 0.0, height]), np.array(normal))
+    agree(hits_ground(robot, placed(robot, joints), ground, EXEMPT), np.array(distances))
 
 
 def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> None:
@@ -93,15 +103,19 @@ def test_object_agrees_with_coal(robot: Robot, wok: Surface, joints: Array) -> N
 
 
 ASIDE = {"position_m": (0.3, -0.1, 0.35), "rpy_rad": (0.4, -0.7, 1.1)}
+WALL = {"position_m": (0.6, 0.0, 0.0), "rpy_rad": (0.2, -1.4, 0.3)}
 OBSTACLES = [
     (BoxObstacle(kind="box", size_m=(0.1, 0.4, 0.2), **ASIDE), coal.Box(0.1, 0.4, 0.2)),
     (CylinderObstacle(kind="cylinder", radius_m=0.1, height_m=0.5, **ASIDE),
      coal.Cylinder(0.1, 0.5)),
     (SphereObstacle(kind="sphere", radius_m=0.2, **ASIDE), coal.Sphere(0.2)),
+    (ConeObstacle(kind="cone", radius_m=0.2, height_m=0.5, **ASIDE), coal.Cone(0.2, 0.5)),
+    (CapsuleObstacle(kind="capsule", radius_m=0.1, axis_m=0.5, **ASIDE), coal.Capsule(0.1, 0.5)),
+    (HalfSpaceObstacle(kind="half-space", **WALL), coal.Halfspace(np.array([0.0, 0.0, 1.0]), 0.0)),
 ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("obstacle", "shape"), OBSTACLES, ids=["box", "cylinder", "sphere"])
+@pytest.mark.parametrize(("obstacle", "shape"), OBSTACLES, ids=[one.kind for one, _ in OBSTACLES])
 def test_obstacles_agree_with_coal(
     robot: Robot, wok: Surface, joints: Array, obstacle: Obstacle, shape: coal.ShapeBase
 ) -> None:
@@ -149,8 +163,9 @@ def test_tool_body_is_flat_and_ends_above_the_tip(robot: Robot) -> None:
     poses = forward(robot, tool_down(0.0))
     assert poses.tool_axis[0, 2] == pytest.approx(-1)
     tip, arm = poses.tip[0, 2], (*EXEMPT, "upper_arm_link")
-    assert not hits_ground(robot, body_ends(robot, poses), tip + 0.0099, arm)[0]
-    assert hits_ground(robot, body_ends(robot, poses), tip + 0.0101, arm)[0]
+    for above, hit in ((0.0099, False), (0.0101, True)):
+        ground = HalfSpace((0.0, 0.0, 1.0), tip + above)
+        assert hits_ground(robot, body_ends(robot, poses), ground, arm)[0] == hit
 
 
 def test_only_the_tip_touches(robot: Robot) -> None:

@@ -16,7 +16,7 @@ from trimesh.proximity import closest_point_naive
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Body, Robot
-from cellcolor.frontend.contact.collision import body_poses, body_shape
+from cellcolor.frontend.contact.fcl_bodies import body_poses, body_shape
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.contact.samples import sample_mesh
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
@@ -79,9 +79,9 @@ def test_a_mesh_is_hit_where_fcl_says_so(
     asked = []
     touches = Solid._touches
 
-    def counted(self: Solid, body: Body, ends: Array) -> Array:
+    def counted(self: Solid, body: Body, ends: Array, *poses: object) -> Array:
         asked.append(ends.shape[1])
-        return touches(self, body, ends)
+        return touches(self, body, ends, *poses)
 
     monkeypatch.setattr(Solid, "_touches", counted)
     assert (mesh_solid(cap.vertices, cap.faces).hits(single, ends) == expected).all()

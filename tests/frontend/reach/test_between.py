@@ -128,15 +128,15 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
     solutions = prepared.inverse(surface.vertices, -surface.normals)
     found = prepared.judge(solutions.reshape(-1, 6))
     valid = (found.reasons == Reason.VALID).reshape(-1, 8)
-    ends = found.ends.reshape(-1, *valid.shape, 3)
-    longest = longest_steps(prepared.judge.end_radii)
+    ends = found.tracked.reshape(-1, *valid.shape, 3)
+    longest = prepared.judge.tracked_steps
     data = robot.model.createData()
     asked: list[Array] = []
 
-    def test(points: Array, directions: Array, branch: Array) -> tuple[Array, Array]:
+    def test(points: Array, directions: Array, at: Array) -> tuple[Array, Array]:
         asked.append(np.column_stack([points, directions]))
-        verdicts = prepared.judge(prepared.follow(points, directions, branch))
-        return verdicts.reasons == Reason.VALID, verdicts.ends
+        verdicts = prepared.judge(prepared.follow(points, directions, of[at]))
+        return verdicts.reasons == Reason.VALID, verdicts.tracked
 
     def axis_points(q: Array, share: Array) -> Array:
         pin.forwardKinematics(robot.model, data, q)

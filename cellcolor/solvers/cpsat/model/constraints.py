@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 
 from ortools.sat.python import cp_model
 
+from cellcolor.solvers.bounds import hubs
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.variables import Variables
@@ -138,25 +139,7 @@ def most_links(
             for link in v.links(one, other)
         ]
         if found:
-            model.add(sum(found) <= _best_merging([graph.darts[dart].colors for dart in cell]))
-
-
-def _best_merging(colors: Sequence[frozenset[int]]) -> int:
-    """Most links between darts with a common color that do not cross, by interval recursion.
-
-    ``best[i][j]`` is that of darts i to j: dart i is linked to no later one, or first to some
-    dart k, with everything between them on its own and dart k linked on.
-    """
-    count = len(colors)
-    best = [[0] * (count + 1) for _ in range(count + 1)]
-    for i in range(count - 1, -1, -1):
-        for j in range(i + 1, count):
-            best[i][j] = best[i + 1][j]
-            for k in range(i + 1, j + 1):
-                if colors[i] & colors[k]:
-                    between = best[i + 1][k - 1] if k > i + 1 else 0
-                    best[i][j] = max(best[i][j], between + 1 + best[k][j])
-    return best[0][count - 1] if count else 0
+            model.add(sum(found) <= hubs.most_links([graph.darts[dart].colors for dart in cell]))
 
 
 def fixed_roots(graph: DartGraph, regions: Sequence[Region]) -> set[int]:

@@ -1,0 +1,22 @@
+"""The commands and their options. What they do is imported only when one of them runs."""
+
+from cellcolor.cli.commands.group import cellcolor
+from cellcolor.cli.commands.minimum import build, check, show, solve
+from cellcolor.cli.commands.motion import cover, paint, plan
+from cellcolor.cli.commands.parts import inspect, repair
+from cellcolor.cli.commands.solvers import bench, campaign
+
+__all__ = [
+    "bench",
+    "build",
+    "campaign",
+    "cellcolor",
+    "check",
+    "cover",
+    "inspect",
+    "paint",
+    "plan",
+    "repair",
+    "show",
+    "solve",
+]

@@ -1,0 +1,99 @@
+"""The commands on meshes of parts: ``inspect`` and ``repair``."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import click
+
+from cellcolor.cli.commands.group import cellcolor
+from cellcolor.cli.commands.options import METRES, PATH, TIME_LIMIT
+
+__all__ = ["inspect", "repair"]
+
+_PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
+_UNIT = click.option(
+    "--unit",
+    type=click.Choice(["m", "mm"]),
+    help="Of the coordinates.  [default: what is likely by the size]",
+)
+_JSON = click.option("--json", "as_json", is_flag=True, help="One JSON object.")
+
+
+@cellcolor.command()
+@_PART
+@_UNIT
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT.(html|png|svg)",
+    type=PATH,
+    help="A picture with the faulty places marked.",
+)
+@TIME_LIMIT
+@_JSON
+def inspect(
+    part: Path, unit: str | None, output: Path | None, time_limit: float | None, as_json: bool
+) -> int:
+    """Look a part's mesh through: its size, and what is wrong with it.
+
+    Says why a scene would refuse it, and what repair would do about that. Nothing is changed.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.parts import inspect_part
+    from cellcolor.deadline import Deadline
+
+    return inspect_part(part, unit, output, Deadline.after(time_limit, begun), as_json)
+
+
+@cellcolor.command()
+@_PART
+@_UNIT
+@click.option("-o", "--output", metavar="MESH.obj", required=True, type=PATH, help="The mesh.")
+@click.option(
+    "--fill-holes", metavar="M", type=METRES, help="Fill holes with a border up to that length."
+)
+@click.option(
+    "--least-component",
+    metavar="SHARE",
+    type=click.FloatRange(0, 1),
+    default=0.01,
+    show_default=True,
+    help="Drop components with less than this share of the largest one's area.",
+)
+@click.option(
+    "--edge-length", metavar="M", type=METRES, help="Remesh to edges of about that length."
+)
+@TIME_LIMIT
+@_JSON
+def repair(
+    part: Path,
+    unit: str | None,
+    output: Path,
+    fill_holes: float | None,
+    least_component: float,
+    edge_length: float | None,
+    time_limit: float | None,
+    as_json: bool,
+) -> int:
+    """Repair a part's mesh, so that a scene can use it, or say why that cannot be done.
+
+    Lengths are in metres; the mesh keeps the unit of its coordinates. What was changed is listed.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.parts import repair_part
+    from cellcolor.deadline import Deadline
+
+    return repair_part(
+        part,
+        unit,
+        output,
+        fill_holes or 0.0,
+        least_component,
+        edge_length,
+        Deadline.after(time_limit, begun),
+        as_json,
+    )

@@ -1,0 +1,115 @@
+"""Verdicts as lines, for people."""
+
+from __future__ import annotations
+
+import json
+
+from cellcolor.cli.terminal import say
+from cellcolor.data.plan_verdict import PlanVerdict
+from cellcolor.data.solution_verdict import SolutionVerdict
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.data.wording import count
+
+__all__ = ["say_plan", "say_solution", "say_trajectory"]
+
+_FAULTS = 3  # of each kind
+_VERTICES = 10
+_SOLVERS = {"cp-sat": "CP-SAT", "cp-sat-model": "CP-SAT"}  # what has proved their bounds
+
+
+def say_plan(name: str, verdict: PlanVerdict) -> None:
+    """What is said of a plan.
+
+    Args:
+        name: of the plan.
+        verdict: on it.
+    """
+    say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
+    places = {f"vertex_colors[{found.vertex}]": found.place for found in verdict.violations}
+    for problem in verdict.problems[:_VERTICES]:
+        place = places.get(problem.partition(": ")[0])
+        where = "" if place is None else " at ({:.3f}, {:.3f}, {:.3f}) m".format(*place)
+        say(f"  {problem}{where}")
+    if len(verdict.problems) > _VERTICES:
+        say(f"  {len(verdict.problems) - _VERTICES} more")
+    if verdict.segments is None or verdict.lift_offs is None:
+        return
+    say(f"  {count(verdict.segments, 'segment')}, {count(verdict.lift_offs, 'lift-off')}")
+    if verdict.lower_bound is None:
+        return
+    lower, upper = verdict.lower_bound, verdict.upper_bound
+    least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"
+    say(f"  fewest segments on this surface: {least}")
+    if verdict.optimal:
+        say("  optimal" + ("" if verdict.why is None else f", because {verdict.why}"))
+    elif verdict.beatable_by:
+        say(f"  {verdict.beatable_by} fewer are enough")
+    else:
+        say("  not known to be optimal, not known to be beatable")
+    if (found := verdict.improvement) is not None:
+        (one, other), (near, far) = found.joined, found.places
+        say(f"  segments {one} and {other} (at vertices {near} and {far}) can be joined")
+        if found.segments_on_mesh > found.segments:
+            fewest = count(found.segments_on_mesh, "segment")
+            say(f"  this mesh is coarse: on it {fewest} are the fewest found")
+
+
+def say_solution(name: str, verdict: SolutionVerdict) -> None:
+    """What is said of a solution.
+
+    Args:
+        name: of the solution.
+        verdict: on it.
+    """
+    say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
+    for problem in verdict.problems:
+        say(f"  {problem}")
+    if verdict.segments is not None and verdict.lift_offs is not None:
+        say(f"  {count(verdict.segments, 'segment')}, {count(verdict.lift_offs, 'lift-off')}")
+    say(f"  status {verdict.status}")
+    if verdict.schemes is not None:
+        say(f"  {count(verdict.schemes, 'scheme')}")
+    _say_bounds(verdict)
+    if verdict.claimed:
+        claimed = (f"{name} {json.dumps(value)}" for name, value in verdict.claimed.items())
+        say(f"  claimed, not verified: {', '.join(claimed)}")
+
+
+def _say_bounds(verdict: SolutionVerdict) -> None:
+    """What came of verifying each bound, and how many of them rest on the solver."""
+    solver = _SOLVERS.get(verdict.solver, verdict.solver)
+    for bound in verdict.bounds:
+        tried = f"{bound.tried} of {bound.budget} choices tried"
+        more = {"verified": tried, "refused": bound.reason}.get(bound.outcome, f"by {solver}")
+        say(f"  at least {bound.value} by {bound.kind}: {bound.outcome}, {more}")
+    if verdict.bounds_by_solver:
+        bounds = count(len(verdict.bounds), "bound")
+        say(f"  {verdict.bounds_by_solver} of {bounds} by {solver}")
+
+
+def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
+    """What is said of a trajectory.
+
+    Args:
+        name: of the trajectory.
+        verdict: on it.
+    """
+    said = count(sum(verdict.fault_counts.values()), "fault")
+    say(f"{name}: {'valid' if verdict.valid else f'not valid, {said}'}")
+    for kind, number in verdict.fault_counts.items():
+        first = verdict.of_kind(kind)[:_FAULTS]
+        for fault in first:
+            say(f"  {fault}")
+        if number > len(first):
+            say(f"  {kind}: {number - len(first)} more")
+    seconds = "" if verdict.seconds is None else f", {verdict.seconds:.1f} s"
+    tested = f"{count(verdict.samples, 'sample')}, {count(verdict.tested, 'configuration')} tested"
+    say(f"  {count(verdict.strokes, 'stroke')}, {count(verdict.lift_offs, 'lift-off')}{seconds}")
+    say(f"  {tested}")
+    if verdict.minimum_lift_offs is not None:
+        extra = f"{verdict.claimed_extra} more stated, {verdict.unclaimed_extra} more not stated"
+        say(f"  fewest lift-offs on this surface, proved: {verdict.minimum_lift_offs}; {extra}")
+    if verdict.covered is not None:
+        say(f"  {verdict.covered}")
+    for note in verdict.notes:
+        say(f"  {note}")

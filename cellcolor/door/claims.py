@@ -1,0 +1,80 @@
+"""What is claimed of a surface: a plan, a solution or a trajectory, told by its file or type."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from os import PathLike
+from typing import Any
+
+import numpy as np
+
+from cellcolor.data import plan as plan_file
+from cellcolor.data import trajectory as trajectory_file
+from cellcolor.data.plan import Plan
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.door.trajectories import ReadTrajectory, is_table, read_trajectory
+from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document
+
+__all__ = ["color_numbers", "format_of_claim", "read_claim"]
+
+
+def format_of_claim(file: str | PathLike[str]) -> str | None:
+    """The format of what is to be checked; tables are told by their suffix, None if unreadable."""
+    if is_table(file):
+        return trajectory_file.FORMAT
+    try:
+        form = read_document(file).get("format")
+    except InputError:
+        return None
+    return form if isinstance(form, str) else None
+
+
+def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
+    """A plan, a trajectory, or else a solution, whichever the file says it is.
+
+    Raises:
+        InputError: it cannot be used; names file and member.
+    """
+    form = format_of_claim(file)
+    if form == trajectory_file.FORMAT:
+        return read_trajectory(file)
+    return Plan.read(file) if form == plan_file.FORMAT else Solution.read(file)
+
+
+def color_numbers(surface: LabelledSurface, plan: Any) -> Any:
+    """One color per vertex as a plan has them; what is no such thing is left to the plan.
+
+    Args:
+        plan: numbers, names, or None for none; in an array of integers -1 for none.
+
+    Raises:
+        InputError: an array of another kind, or a name that the surface does not have.
+    """
+    if isinstance(plan, np.ndarray) and plan.ndim == 1 and plan.dtype.kind == "i":
+        return [None if color == -1 else color for color in plan.tolist()]
+    if isinstance(plan, np.ndarray) and plan.ndim == 2:
+        message = (
+            f"is an array {plan.shape}; joint angles are handed in as cellcolor.JointPlan, a row "
+            "for each vertex, or as cellcolor.ContactPath, a row for each sample"
+        )
+        raise InputError(None, "vertex_colors", message)
+    if isinstance(plan, np.ndarray):
+        if plan.dtype.kind not in "iuUO":
+            wanted = "color numbers (-1 for none) or names"
+            message = f"must be {wanted}, is an array of {plan.dtype}"
+            raise InputError(None, "vertex_colors", message)
+        plan = plan.tolist()
+    if not isinstance(plan, Sequence) or isinstance(plan, (bytes, bytearray)):
+        return plan
+    number = {name: color for color, name in enumerate(surface.colors)}
+    colors = []
+    for vertex, color in enumerate(plan):
+        if isinstance(color, str):
+            if color not in number:
+                message = f"the surface has no color {color!r}"
+                raise InputError(None, f"vertex_colors[{vertex}]", message)
+            color = number[color]
+        colors.append(color)
+    return colors

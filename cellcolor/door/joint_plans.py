@@ -1,0 +1,146 @@
+"""Plans in joint angles at the front door: what they come to in colors of their scene."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.data.joint_plan import ContactPath, JointPlan
+from cellcolor.data.plan import Plan
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_csv import TrajectoryTable
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.door.extras import extras_for
+from cellcolor.door.subject import Subject
+from cellcolor.errors import InputError
+from cellcolor.oracle.contact_coloring import ContactColoring, coloring_of
+from cellcolor.oracle.joint_verdicts import JointViolation
+
+if TYPE_CHECKING:
+    from cellcolor.frontend import BuildResult
+
+__all__ = ["AnyPath", "PathColors", "colors_of_joints", "colors_of_path"]
+
+AnyPath: TypeAlias = ContactPath | Trajectory | TrajectoryTable
+"""A tool path with its joints."""
+
+_NO_COLOR = -1  # in a plan: a configuration of no color, which no vertex has
+
+
+@dataclass(frozen=True)
+class PathColors:
+    """What a path comes to.
+
+    Attributes:
+        path: its samples.
+        coloring: what its contacts make of the surface.
+        violations: the vertices that get no contact in a color of theirs.
+        problems: the same in sentences, after those about samples.
+        reachable: how many vertices have colors.
+    """
+
+    path: ContactPath
+    coloring: ContactColoring
+    violations: tuple[JointViolation, ...]
+    problems: tuple[str, ...]
+    reachable: int
+
+
+def colors_of_joints(
+    subject: Subject, plan: JointPlan, deadline: Deadline = NEVER
+) -> tuple[Plan, tuple[JointViolation, ...]]:
+    """The plan in colors that a configuration for each vertex comes to, and what is wrong in it.
+
+    In the plan -1 stands for a configuration of no color, which no vertex has.
+
+    Raises:
+        InputError: the subject is no scene, or has other numbers of vertices or joints.
+        OutOfTime: the deadline came first.
+    """
+    built = _built(subject)
+    with extras_for("a plan in joint angles"):
+        from cellcolor.trajectory_checker.at_vertices import at_vertices
+
+    surface, joints = built.surface, plan.joints
+    if len(joints) != len(surface.vertices):
+        message = f"{len(joints)} rows for {len(surface.vertices)} vertices"
+        raise InputError(None, "joints", message)
+    given = np.flatnonzero(~np.isnan(joints).all(axis=1))
+    found = at_vertices(built, given, joints[given], deadline)
+    colors: list[int | None] = [None] * len(joints)
+    reasons: dict[int, str] = {
+        vertex: f"no configuration, but colors {list(own)} reach it"
+        for vertex, own in enumerate(surface.vertex_colors)
+        if own
+    }
+    for row, (vertex, color) in enumerate(zip(given.tolist(), found.color.tolist(), strict=True)):
+        colors[vertex] = color if color >= 0 else _NO_COLOR
+        reasons.pop(vertex, None)
+        if color < 0:
+            reasons[vertex] = found.why_none(row)
+    violations = tuple(
+        _violation(surface.vertices[vertex], vertex, reasons[vertex], joints[vertex])
+        for vertex in sorted(reasons)
+    )
+    return Plan(tuple(colors)), violations
+
+
+def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -> PathColors:
+    """What a tool path comes to in colors, and which vertices it does not touch in any of theirs.
+
+    Raises:
+        InputError: the subject is no scene, or the path is of another arm.
+        OutOfTime: the deadline came first.
+    """
+    built = _built(subject)
+    with extras_for("a tool path in joint angles"):
+        from cellcolor.trajectory_checker.at_vertices import touches
+
+    names = built.robot.joint_names
+    if isinstance(given, Trajectory) and given.joint_names != names:
+        message = f"must be {', '.join(names)}, are {', '.join(given.joint_names)}"
+        raise InputError(None, "joint_names", message)
+    path = given if isinstance(given, ContactPath) else ContactPath.of(given)
+    found = touches(built, path, deadline)
+    surface = built.surface
+    coloring = coloring_of(surface, found.contacts)
+    reachable = [vertex for vertex, own in enumerate(surface.vertex_colors) if own]
+    missing = [v for v in reachable if coloring.plan.vertex_colors[v] is None]
+    rows: dict[int, int] = {}  # the first contact of each vertex in no color
+    for row, vertex in enumerate(found.in_no_color.vertex.tolist()):
+        rows.setdefault(vertex, row)
+    violations = []
+    for vertex in missing:
+        joints: Array | None = None
+        if vertex in rows:
+            row = rows[vertex]
+            sample = int(found.sample[row])
+            joints = path.joints[sample]
+            reason = f"in contact at sample {sample}, but {found.in_no_color.why_none(row)}"
+        elif np.isinf(found.nearest[vertex]):
+            reason = "no contact"
+        else:
+            reason = f"no contact nearer than {1000 * found.nearest[vertex]:.4g} mm"
+        violations.append(_violation(surface.vertices[vertex], vertex, reason, joints))
+    misplaced = [
+        f"points[{sample}]: the joints put the tip {1000 * by:.4g} mm from there"
+        for sample, by in zip(found.misplaced.tolist(), found.misplaced_by.tolist(), strict=True)
+    ]
+    problems = (*misplaced, *map(str, violations))
+    return PathColors(path, coloring, tuple(violations), problems, len(reachable))
+
+
+def _violation(place: Array, vertex: int, reason: str, joints: Array | None) -> JointViolation:
+    x, y, z = place.tolist()
+    own = None if joints is None or np.isnan(joints).any() else tuple(joints.tolist())
+    return JointViolation(vertex, None, (x, y, z), reason, own)
+
+
+def _built(subject: Subject) -> BuildResult:
+    if subject.built is None:
+        message = "need the scene with its arm, and this is a labelled surface or an instance alone"
+        raise InputError(None, "joints", message)
+    return subject.built

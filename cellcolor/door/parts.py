@@ -1,0 +1,161 @@
+"""``cellcolor.inspect`` and ``cellcolor.repair``: meshes of parts before they go into a scene."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cellcolor.deadline import Deadline
+from cellcolor.door.drawing import Drawing
+from cellcolor.door.extras import extras_for
+from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
+
+if TYPE_CHECKING:
+    from cellcolor.frontend.parts.inspected import Inspection
+    from cellcolor.frontend.parts.repaired import RepairedPart
+
+__all__ = ["draw_inspection", "inspect", "inspect_by", "repair", "repair_by"]
+
+Telling = Callable[[str], None]
+
+
+def inspect(part: Any, *, unit: str | None = None, time_limit: float | None = None) -> Inspection:
+    """What a part's mesh has, what is wrong with it, and what a repair would do about that.
+
+    Args:
+        part: a mesh file (STL, OBJ, PLY), a ``trimesh.Trimesh``, or vertices (n, 3) and faces
+            (m, 3).
+        unit: ``m`` or ``mm``; without it the likely one is taken, and said.
+        time_limit: in seconds.
+
+    Raises:
+        InputError: it cannot be read or looked through; names file and element.
+        OutOfTime: the time limit came first.
+    """
+    return inspect_by(part, unit, Deadline.after(time_limit))
+
+
+def inspect_by(
+    part: Any, unit: str | None, deadline: Deadline, tell: Telling = lambda _: None
+) -> Inspection:
+    """:func:`inspect` for who has a deadline, and is told what is being done."""
+    name, file = _name(part)
+    with extras_for(name):
+        from cellcolor.frontend.parts.inspected import inspect_mesh
+
+        vertices, faces = _mesh(part, deadline, tell)
+        try:
+            return inspect_mesh(name, vertices, faces, unit, deadline, tell)
+        except InputError as error:
+            raise _named(error, file) from error
+
+
+def repair(
+    part: Any,
+    *,
+    unit: str | None = None,
+    fill_holes_m: float = 0.0,
+    least_component: float | None = None,
+    edge_length_m: float | None = None,
+    time_limit: float | None = None,
+) -> RepairedPart:
+    """A part's mesh repaired, so that a scene can use it.
+
+    Args:
+        part: as of :func:`inspect`.
+        unit: ``m`` or ``mm``; without it the likely one.
+        fill_holes_m: holes with a border up to that length are filled.
+        least_component: components with less than this share of the largest one's area are
+            dropped; a hundredth if it is not given.
+        edge_length_m: remesh to edges of about that length; needs the extra ``parts``.
+        time_limit: in seconds.
+
+    Raises:
+        InputError: it cannot be read or made good; names file and element.
+        OutOfTime: the time limit came first.
+    """
+    deadline = Deadline.after(time_limit)
+    return repair_by(part, unit, fill_holes_m, least_component, edge_length_m, deadline)
+
+
+def repair_by(
+    part: Any,
+    unit: str | None,
+    fill_holes_m: float,
+    least_component: float | None,
+    edge_length_m: float | None,
+    deadline: Deadline,
+    tell: Telling = lambda _: None,
+) -> RepairedPart:
+    """:func:`repair` for who has a deadline, and is told what is being done."""
+    name, file = _name(part)
+    with extras_for(name):
+        from cellcolor.frontend.parts.repaired import repair_mesh
+        from cellcolor.frontend.parts.repairing import LEAST_SHARE
+        from cellcolor.frontend.parts.units import UNITS
+
+        vertices, faces = _mesh(part, deadline, tell)
+        try:
+            scale = UNITS[_unit(vertices, unit)]
+            share = LEAST_SHARE if least_component is None else least_component
+            return repair_mesh(
+                vertices, faces, scale, fill_holes_m, share, edge_length_m, deadline, tell
+            )
+        except InputError as error:
+            raise _named(error, file) from error
+
+
+def draw_inspection(inspection: Inspection) -> Drawing:
+    """The part with its faulty places marked."""
+    with extras_for("a picture"):
+        from cellcolor.pictures.faulty_part import faulty_part
+
+        return Drawing(faulty_part(inspection))
+
+
+def _name(part: Any) -> tuple[str, str | None]:
+    """What to call a part, and its file if it has one."""
+    if isinstance(part, str | PathLike):
+        path = path_of(part)
+        return path.name, str(path)
+    return "part", None
+
+
+def _mesh(part: Any, deadline: Deadline, tell: Telling) -> tuple[Any, Any]:
+    """Vertices and faces of a file or a value."""
+    from cellcolor.frontend.parts.arrays import ArraysObject
+    from cellcolor.frontend.parts.mesh_file import read_mesh
+
+    if isinstance(part, str | PathLike):
+        tell("reading")
+        return read_mesh(Path(path_of(part)), deadline)
+    own = ArraysObject.of(part)
+    return own.vertices, own.faces
+
+
+def _unit(vertices: Any, unit: str | None) -> str:
+    """The given unit, or the likely one.
+
+    Raises:
+        InputError: no such unit, or none is likely.
+    """
+    from cellcolor.frontend.parts.units import UNITS, likely_unit
+
+    if unit is not None:
+        if unit not in UNITS:
+            raise InputError(None, "unit", f"must be one of {', '.join(UNITS)}, is {unit!r}")
+        return unit
+    extent = float(np.ptp(vertices, axis=0).max()) if len(vertices) else 0.0
+    likely, reason = likely_unit(extent)
+    if likely is None:
+        raise InputError(None, "unit", reason)
+    return likely
+
+
+def _named(error: InputError, file: str | None) -> InputError:
+    return error if error.file or file is None else error.in_file(file)

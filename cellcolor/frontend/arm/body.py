@@ -1,0 +1,145 @@
+"""Collision shapes of links, as bodies that hang on joints."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.capsules import capsule_around, capsules_around
+from cellcolor.frontend.arm.polyhedron import Polyhedron, box, convex_hull
+from cellcolor.frontend.setup import MeshCollision
+
+__all__ = [
+    "Body",
+    "Primitive",
+    "StandIn",
+    "box_body",
+    "mesh_bodies",
+    "round_bodies",
+]
+
+_SAME = 1e-6  # m; a sphere's center and a cylinder's end nearer than this are one point
+
+
+@dataclass(frozen=True)
+class Body:
+    """A collision shape: all points within ``radius`` of a segment, or a flat-ended cylinder.
+
+    ``start`` and ``end`` (3,) in m are in the frame of ``joint`` (0 is the world, the
+    others are the frames behind the joints). A sphere is a capsule whose ends coincide.
+
+    With a ``solid``, which hangs on the same frame, the body is instead all that is within ``skin``
+    (m) of that, and the capsule is one around it.
+    """
+
+    link: str
+    joint: int
+    start: Array
+    end: Array
+    radius: float
+    flat: bool
+    solid: Polyhedron | None = None
+    skin: float = 0.0
+
+    @cached_property
+    def length(self) -> float:
+        """Distance between the ends in m."""
+        return float(np.linalg.norm(self.end - self.start))
+
+
+@dataclass(frozen=True)
+class Primitive:
+    """A cylinder, sphere or capsule in the frame of a joint; ``turn`` (3, 3), ``center`` (3,)."""
+
+    kind: str
+    center: Array
+    turn: Array
+    radius: float
+    length: float
+
+
+@dataclass(frozen=True)
+class StandIn:
+    """What collides in the place of a link's mesh.
+
+    Attributes:
+        link, file: the link, and the file of its mesh.
+        chosen: hull, exact or capsules.
+        vertices, faces: the mesh, in the frame of the joint that carries it, m.
+        bodies: what collides.
+    """
+
+    link: str
+    file: Path
+    chosen: MeshCollision
+    vertices: Array
+    faces: Index
+    bodies: tuple[Body, ...]
+
+
+def mesh_bodies(
+    link: str, joint: int, file: Path, vertices: Array, faces: Index, chosen: MeshCollision
+) -> StandIn:
+    """What stands for a mesh, given in the frame of its joint, m.
+
+    Raises:
+        InputError: the mesh lies in a plane, so there is no hull of it.
+    """
+    if chosen == "capsules":
+        capsules = capsules_around(vertices, faces)
+        bodies = tuple(Body(link, joint, *capsule, flat=False) for capsule in capsules)
+        return StandIn(link, file, chosen, vertices, faces, bodies)
+    solid: Polyhedron | None = Polyhedron(vertices, faces)
+    if chosen == "hull":
+        solid = convex_hull(vertices)
+        if solid is None:
+            message = "the mesh lies in a plane, so it has no hull: choose 'exact' for its link"
+            raise InputError(str(file), None, message)
+    assert solid is not None
+    return StandIn(link, file, chosen, vertices, faces, (_polyhedral(link, joint, solid),))
+
+
+def box_body(link: str, joint: int, size: tuple[float, ...], turn: Array, center: Array) -> Body:
+    """A box whose middle is at ``center`` (3,) and whose sides lie along ``turn`` (3, 3)."""
+    vertices, faces = box(size)
+    return _polyhedral(link, joint, Polyhedron(vertices @ turn.T + center, faces))
+
+
+def _polyhedral(link: str, joint: int, solid: Polyhedron) -> Body:
+    return Body(link, joint, *capsule_around(solid.vertices), flat=False, solid=solid)
+
+
+def round_bodies(link: str, joint: int, primitives: list[Primitive]) -> list[Body]:
+    """Bodies of a link's cylinders, spheres and capsules.
+
+    A cylinder with a sphere of its radius on both ends is a capsule.
+    """
+    spheres = [(each.center, each.radius) for each in primitives if each.kind == "sphere"]
+    bodies = []
+    for each in primitives:
+        if each.kind == "sphere":
+            continue
+        half = each.turn[:, 2] * (each.length / 2)
+        start, end, radius = each.center - half, each.center + half, each.radius
+        round_ends = each.kind == "capsule"
+        if not round_ends:
+            caps = [
+                next((s for s in spheres if _is_cap(s, point, radius)), None)
+                for point in (start, end)
+            ]
+            round_ends = caps[0] is not None and caps[1] is not None
+            if round_ends:
+                spheres = [sphere for sphere in spheres if not any(sphere is c for c in caps)]
+        bodies.append(Body(link, joint, start, end, radius, flat=not round_ends))
+    bodies.extend(Body(link, joint, at, at, radius, flat=False) for at, radius in spheres)
+    return bodies
+
+
+def _is_cap(sphere: tuple[Array, float], point: Array, radius: float) -> bool:
+    center, own = sphere
+    return abs(own - radius) < _SAME and float(np.linalg.norm(center - point)) < _SAME

@@ -1,0 +1,181 @@
+"""Arms of six revolute joints that EAIK solves in closed form, all solutions, in batches.
+
+EAIK finds out by itself which axes meet and which are parallel, and takes the inverse kinematics
+apart into subproblems (Ostermeier, Kuelz and Althoff, Automatic Geometric Decomposition for
+Analytical Inverse Kinematics, 2025): spherical wrists, three parallel axes, and others.
+
+It solves for a whole pose. A task of five dimensions leaves the turn of the tool about its axis
+free; with the tool on the axis of joint 6 and this joint locked, any one turn will do: a
+configuration that has the tip on the point and the tool along the direction is turned by joint 6
+alone to the turn that is asked for, with the same first five joints. So the first five joints of
+all solutions for one turn are those for every turn, and no solution of the task is missed. Two
+solutions that differ in joint 6 only would be the same; they are merged.
+
+Of a calibrated arm, whose axes nearly meet or are nearly parallel, EAIK solves the ideal one, and
+Newton's method does the rest (:mod:`cellcolor.frontend.arm.candidates`).
+"""
+
+from __future__ import annotations
+
+import os
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.candidates import (
+    CALIBRATION,
+    branches_of_calibrated,
+    exact_solutions,
+    solutions_of_calibrated,
+)
+from cellcolor.frontend.arm.ideal import Axes, idealized
+from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.last_joint import check_tool_on_last_axis, locked_angle, pose_at_zero
+from cellcolor.frontend.arm.lost import remark_on_calibration
+from cellcolor.frontend.arm.reach import farthest_reach
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.signs import BRANCHES, nearest_points, signs_of
+from cellcolor.frontend.setup import RobotFiles
+
+__all__ = ["EaikKinematics"]
+
+_TOLERANCE = 1e-6  # m and rad; axes farther off are neither parallel nor do they meet
+
+
+class EaikKinematics(InverseKinematics):
+    """Any arm that EAIK knows; joint 6, which the task leaves free, is locked.
+
+    The branches have names where the signs of shoulder, elbow and wrist tell the solutions apart
+    (:mod:`cellcolor.frontend.arm.signs`), and none otherwise.
+    """
+
+    joints = 6
+
+    def __init__(self, robot: Robot, files: RobotFiles) -> None:
+        """The arm's closed form, or that of the ideal arm, and the angle of the locked joint."""
+        self._robot, self._locked = robot, locked_angle(robot, files)
+        poses = pose_at_zero(robot)
+        check_tool_on_last_axis(robot, poses, "not an arm of the family eaik")
+        axes = Axes(poses.axis[0], poses.origin[0, 1:])
+        self._solver = _solver(axes)
+        self._off: tuple[float, float] | None = None
+        if self._solver is None:
+            ideal = idealized(axes, CALIBRATION)
+            self._solver, self._off = _solver(ideal), ideal.off(axes)
+            if self._solver is None or max(self._off) > CALIBRATION:
+                raise InputError(str(robot.files[0]), "robot", _UNKNOWN)
+            axes = ideal
+        along = np.sign(axes.directions[5] @ poses.tool_axis[0])
+        self._tool_at_zero = _frames(along * axes.directions[5:6])[0]
+        # The tip as it is on the ideal arm: at its height on the last axis.
+        height = float((poses.tip[0] - axes.points[5]) @ axes.directions[5])
+        self._tip = height * axes.directions[5]
+        self._set_sizes(axes, poses.tip[0], files)
+        tolerance = _TOLERANCE if self._off is None else 2 * CALIBRATION
+        self._signs = signs_of(robot, self.reach, tolerance)
+        self.branches = () if self._signs is None else BRANCHES
+
+    def _set_sizes(self, axes: Axes, tip: Array, files: RobotFiles) -> None:
+        lines = list(zip(axes.points, axes.directions, strict=True))
+        shoulder = nearest_points(*lines[0], *lines[1])[0]
+        wrist = nearest_points(*lines[5], *lines[4])[0]
+        self.reach = farthest_reach(self._robot, shoulder)
+        self.lever = float(np.linalg.norm(tip - wrist))
+        if self.lever > self.reach - self.lever:
+            raise InputError(
+                str(self._robot.files[1]),
+                f"link[{files.tip_link}]",
+                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
+            )
+        first = axes.directions[0]
+        up = -first if first[2] < 0 else first
+        self.viewpoints = np.array([shoulder, shoulder + (self.reach - self.lever) * up])
+
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
+
+        What EAIK finds is held by forward kinematics, after steps of Newton's method where it is
+        not exact. Its own mark of least-squares answers is not asked: of arms with a spherical
+        wrist and no parallel axes it marks exact solutions as well.
+        """
+        candidates = self._closed_form(points, directions)
+        if self._off is not None and branches is not None and self._signs is not None:
+            one = branches_of_calibrated(
+                self._robot,
+                lambda rows, _: candidates[rows],
+                points,
+                directions,
+                self._signs,
+                branches,
+                np.arange(len(BRANCHES)),
+            )
+            return one[:, None]
+        finish = exact_solutions if self._off is None else solutions_of_calibrated
+        found = finish(self._robot, candidates, points, directions, self._signs)
+        return found if branches is None else found[np.arange(len(points)), branches][:, None]
+
+    def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
+        """How a calibrated arm is solved, and what is missing."""
+        if self._off is None:
+            return ()
+        return (remark_on_calibration(self._robot, self._off, self.solve(points, directions)),)
+
+    def _closed_form(self, points: Array, directions: Array) -> Array:
+        """EAIK's answers (n, s, 6) in rad, joint 6 locked, NaN after the last of each pose."""
+        counts = np.zeros(len(points), dtype=np.int64)
+        asked = np.flatnonzero(np.isfinite(points + directions).all(axis=1))
+        if not len(asked):
+            return np.empty((len(points), 0, 6))
+        flanges = self._flanges(points[asked], directions[asked])
+        answers = self._solver.IK_batched(flanges, os.cpu_count() or 1)
+        every = [np.asarray(answer.Q).reshape(-1, 6) for answer in answers]
+        counts[asked] = [len(each) for each in every]
+        found = np.full((len(points), int(counts.max()), 6), np.nan)
+        found[np.arange(found.shape[1]) < counts[:, None]] = np.concatenate(every)
+        found[:, :, 5] = np.where(np.isnan(found[:, :, 0]), np.nan, self._locked)
+        return found
+
+    def _flanges(self, points: Array, directions: Array) -> list[Array]:
+        """Poses (4, 4) of the last frame, turned as the world at zero, for any one turn."""
+        poses = np.tile(np.eye(4), (len(points), 1, 1))
+        poses[:, :3, :3] = _frames(directions) @ self._tool_at_zero.T
+        poses[:, :3, 3] = points - poses[:, :3, :3] @ self._tip
+        return list(poses)
+
+
+_UNKNOWN = (
+    "EAIK knows no closed form for this arm: its axes neither meet in a wrist nor are three of "
+    "them parallel; an own solver can be named (docs/how-to/add-a-family-of-arms.md)"
+)
+
+
+def _frames(directions: Array) -> Array:
+    """Right-handed frames (n, 3, 3) with unit vectors (n, 3) as their z axes."""
+    across = np.cross(directions, np.eye(3)[np.argmin(np.abs(directions), axis=1)])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    return np.stack([across, np.cross(directions, across), directions], axis=2)
+
+
+def _solver(axes: Axes):  # type: ignore[no-untyped-def]  # EAIK has no types
+    """EAIK's view of an arm, None if it knows no closed form.
+
+    Raises:
+        InputError: EAIK is not installed.
+    """
+    try:
+        from eaik.IK_HP import HPRobot
+    except ImportError as error:
+        raise InputError(
+            None,
+            "robot.kinematics",
+            "the family 'eaik' needs the package EAIK (the extra 'arms'), which has no wheel for "
+            "every Python; 'ur' and own solvers work without it "
+            "(docs/how-to/add-a-family-of-arms.md)",
+        ) from error
+    steps = np.diff(axes.points, axis=0, prepend=np.zeros((1, 3)))
+    solver = HPRobot(axes.directions, np.vstack([steps, np.zeros((1, 3))]))
+    return solver if solver.hasKnownDecomposition() else None

@@ -1,0 +1,136 @@
+"""Newton's method on the arm as its URDF has it: candidates of a closed form become solutions.
+
+The task has five rows, the tip's position and the tool's direction, and the last of six joints is
+locked, so that five joints are left. Of a calibrated arm a closed form only knows the ideal
+geometry; from there a few steps lead to the true one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.arm.kinematics import TASK_JOINTS, Poses, forward, task_jacobian
+from cellcolor.frontend.arm.robot import Robot
+
+__all__ = ["REACHED", "both_sides_of_folds", "merged", "misses", "polished"]
+
+REACHED = 1e-9  # m, and for the unit vector of the tool's direction: what counts as a solution
+_STEPS = 25
+_GOOD = 1e-12  # m and rad; nothing is gained from there on
+_LARGEST = 0.3  # rad; no step moves a joint farther
+_SAME = 1e-6  # rad; two solutions nearer than this are one
+_FOLDED = 0.05  # smallest singular value from which on down two solutions are about to meet
+_APART = 0.1  # rad, to both sides of there
+_AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
+
+
+def misses(poses: Poses, points: Array, directions: Array) -> Array:
+    """By how much poses miss their targets, (k,): the larger of position in m and direction."""
+    off = np.linalg.norm(poses.tip - points, axis=1)
+    return np.asarray(np.maximum(off, np.linalg.norm(poses.tool_axis - directions, axis=1)))
+
+
+def polished(
+    robot: Robot, start: Array, points: Array, directions: Array, farthest: float
+) -> Array:
+    """Solutions near some configurations.
+
+    Steps are damped by the square of what is left to go (Levenberg and Marquardt), which near a
+    singularity keeps them short and elsewhere leaves the convergence quadratic.
+
+    Args:
+        start: (k, joints) in rad, NaN where there is none.
+        points: (k, 3) where the tip has to be, m.
+        directions: (k, 3) unit vectors of the tool.
+        farthest: what misses by more at the start is not tried; see :func:`misses`.
+
+    Returns:
+        (k, joints) in rad, NaN where the tip or the direction misses by more than ``REACHED``.
+    """
+    found = np.full_like(start, np.nan)
+    there = np.flatnonzero(~np.isnan(start[:, 0]))
+    for first in range(0, len(there), _AT_ONCE):
+        rows = there[first : first + _AT_ONCE]
+        found[rows] = _polished(robot, start[rows], points[rows], directions[rows], farthest)
+    return found
+
+
+def _polished(
+    robot: Robot, start: Array, points: Array, directions: Array, farthest: float
+) -> Array:
+    q, missed = start.copy(), np.empty(len(start))
+    rows, most = np.arange(len(start)), farthest
+    for step in range(_STEPS + 1):
+        poses = forward(robot, q[rows])
+        missed[rows] = misses(poses, points[rows], directions[rows])
+        going = np.flatnonzero((missed[rows] > _GOOD) & (missed[rows] <= most))
+        if step == _STEPS or not len(going):
+            break
+        rows, poses, most = rows[going], poses.take(going), np.inf
+        q[rows, :TASK_JOINTS] += _step(poses, points[rows], directions[rows])
+    q[missed > REACHED] = np.nan
+    return q
+
+
+def _step(poses: Poses, points: Array, directions: Array) -> Array:
+    rows, across = task_jacobian(poses)
+    turn = np.cross(poses.tool_axis, directions)
+    error = np.concatenate([points - poses.tip, np.einsum("nij,nj->ni", across, turn)], axis=1)
+    # A half turn has no unique axis, and its cross product is zero: that is no solution.
+    damping = np.minimum(np.einsum("ni,ni->n", error, error), 1e-3)
+    gram = rows @ rows.transpose(0, 2, 1) + (damping + 1e-14)[:, None, None] * np.eye(5)
+    step = (rows.transpose(0, 2, 1) @ np.linalg.solve(gram, error[:, :, None]))[:, :, 0]
+    longest = np.abs(step).max(axis=1, keepdims=True)
+    return np.asarray(step * np.minimum(1.0, _LARGEST / np.maximum(longest, _LARGEST)))
+
+
+def both_sides_of_folds(robot: Robot, candidates: Array) -> Array:
+    """Candidates (k, s, joints), and two more beside each that is next to a singularity.
+
+    There two solutions meet, and where the ideal arm just does not reach the true one may have
+    both. They lie on both sides, in the direction in which the task does not move.
+
+    Returns:
+        (k, 3 s, joints) in rad, NaN where there is none.
+    """
+    shape = candidates.shape
+    flat = candidates.reshape(-1, shape[2])
+    beside = np.full((2, *flat.shape), np.nan)
+    there = np.flatnonzero(~np.isnan(flat[:, 0]))
+    rows, _ = task_jacobian(forward(robot, flat[there]))
+    _, sizes, turned = np.linalg.svd(rows)
+    folded = sizes[:, -1] < _FOLDED
+    for side, way in zip(beside, (_APART, -_APART), strict=True):
+        side[there[folded]] = flat[there[folded]]
+        side[there[folded], :TASK_JOINTS] += way * turned[folded, -1]
+    return np.concatenate([candidates, *beside.reshape(2, *shape)], axis=1)
+
+
+def merged(solutions: Array) -> Array:
+    """Solutions (n, s, joints) with each once, those that there are first, NaN after them.
+
+    Angles are compared modulo full circles, and the first of equal ones stays. Joints after the
+    fifth only turn the tool about its axis, and are not compared.
+    """
+    packed = _packed(solutions, ~np.isnan(solutions[:, :, 0]))
+    kept = ~np.isnan(packed[:, :, 0])
+    for first in range(0, len(packed), _AT_ONCE):
+        five = packed[first : first + _AT_ONCE, :, :TASK_JOINTS]
+        own = kept[first : first + _AT_ONCE]
+        for later in range(1, five.shape[1]):
+            off = five[:, :later] - five[:, later : later + 1]
+            off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+            own[:, later] &= ~((off < _SAME) & own[:, :later]).any(axis=1)
+    return _packed(packed, kept)
+
+
+def _packed(solutions: Array, kept: Mask) -> Array:
+    """Those of the solutions that are kept, first ones first, NaN after them."""
+    order: NDArray[np.intp] = np.argsort(~kept, axis=1, kind="stable")
+    order = order[:, : int(kept.sum(axis=1).max(initial=0))]
+    rows = np.arange(len(kept))[:, None]
+    packed = solutions[rows, order]
+    packed[~kept[rows, order]] = np.nan
+    return np.asarray(packed)

@@ -1,0 +1,99 @@
+"""Whole poses of the tool, reduced to those of a tool on the last joint's axis."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.kinematics import forward, turned
+from cellcolor.frontend.arm.last_joint import pose_at_zero
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.signs import nearest_points
+from cellcolor.frontend.arm.task_space import FREE_TURN
+from cellcolor.frontend.arm.tool_turn import angle_about
+
+__all__ = ["last_frames", "on_last_axis", "shoulder_of", "with_last_joint", "wrist_of"]
+
+_PARALLEL = 1e-6  # rad
+_LEAST = 0.01  # m; no tool on the axis ends nearer to the wrist than this
+
+
+def wrist_of(robot: Robot) -> Array:
+    """Where the last axis is nearest to the one before it, (3,) with all joints at zero, m.
+
+    If they are parallel, where it is nearest to the tip.
+    """
+    poses = pose_at_zero(robot)
+    axes, origins = poses.axis[0], poses.origin[0, 1:]
+    if np.linalg.norm(np.cross(axes[-1], axes[-2])) < _PARALLEL:
+        return np.asarray(origins[-1] + ((poses.tip[0] - origins[-1]) @ axes[-1]) * axes[-1])
+    return nearest_points(origins[-1], axes[-1], origins[-2], axes[-2])[0]
+
+
+def shoulder_of(robot: Robot) -> Array:
+    """The same of the first axis and the second."""
+    poses = pose_at_zero(robot)
+    axes, origins = poses.axis[0], poses.origin[0, 1:]
+    if np.linalg.norm(np.cross(axes[0], axes[1])) < _PARALLEL:
+        return np.asarray(origins[0] + ((poses.tip[0] - origins[0]) @ axes[0]) * axes[0])
+    return nearest_points(origins[0], axes[0], origins[1], axes[1])[0]
+
+
+def last_frames(
+    robot: Robot, points: Array, directions: Array, across: Array
+) -> tuple[Array, Array]:
+    """Where the frame behind the last joint is, with the tool in some poses.
+
+    Args:
+        points: (n, 3) of the tip, m.
+        directions, across: (n, 3) unit vectors of the tool's z and x axis, at right angles.
+
+    Returns:
+        Rotations (n, 3, 3) and origins (n, 3) in m.
+    """
+    tools = np.stack([across, np.cross(directions, across), directions], axis=2)
+    rotation = tools @ robot.tip[:3, :3].T
+    return rotation, points - turned(rotation, robot.tip[:3, 3])
+
+
+def on_last_axis(robot: Robot) -> Robot:
+    """The same arm with another tool, whose turn is free: on the last axis, beside the true tip.
+
+    Its z axis goes along the last axis, away from the wrist, to the true tip's side.
+    """
+    poses, wrist = pose_at_zero(robot), wrist_of(robot)
+    axis = poses.axis[0, -1]
+    out = float((poses.tip[0] - wrist) @ axis)
+    sense = -1.0 if out < 0 else 1.0
+    foot = wrist + sense * max(abs(out), _LEAST) * axis
+    within = poses.rotation[0, -1].T
+    tip = np.eye(4)
+    z = within @ (sense * axis)
+    x = _any_across(z)
+    tip[:3, :3] = np.column_stack([x, np.cross(z, x), z])
+    tip[:3, 3] = within @ (foot - poses.origin[0, -1])
+    return dataclasses.replace(robot, tip=tip, task=FREE_TURN)
+
+
+def with_last_joint(robot: Robot, configurations: Array, rotation: Array) -> Array:
+    """Configurations (k, joints) with the last joint turned so that the frame behind it fits.
+
+    Args:
+        configurations: in rad; their last joint is not looked at.
+        rotation: (k, 3, 3) the frame as it shall be; about the last axis it is turned to.
+    """
+    found = configurations.copy()
+    found[:, -1] = 0.0
+    poses = forward(robot, found)
+    across = _any_across(robot.axis[-1])
+    have, wanted = turned(poses.rotation[:, -1], across), turned(rotation, across)
+    found[:, -1] = angle_about(poses.axis[:, -1], have, wanted)
+    return found
+
+
+def _any_across(direction: Array) -> Array:
+    """A unit vector (3,) at right angles to another one."""
+    across = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
+    return np.asarray(across / np.linalg.norm(across))

@@ -1,0 +1,155 @@
+"""An arm whose tool has its turn by a rule, with a family of branches for each turn of a set.
+
+A whole pose of the tool is one of the frame behind the last joint, hence one of another tool that
+is on the last joint's axis. Its tip and its direction leave the last joint free, so the other
+joints are those that the arm's family finds for them, and there are no more solutions. The last
+joint makes the turn, in exactly one way.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.last_joint import pose_at_zero
+from cellcolor.frontend.arm.reach import farthest_reach
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.tool_pose import (
+    last_frames,
+    on_last_axis,
+    shoulder_of,
+    with_last_joint,
+    wrist_of,
+)
+from cellcolor.frontend.arm.tool_turn import turn_at, turned_about
+from cellcolor.frontend.setup import RobotFiles, Turn
+
+__all__ = ["TurnedKinematics"]
+
+
+class TurnedKinematics(InverseKinematics):
+    """Inverse kinematics of a point and a direction, where a rule adds the tool's turn.
+
+    Its branches are those of the arm's family, or those of each turn of a set, one turn after the
+    other: along a motion the tool does not get from one turn to another.
+
+    Attributes:
+        own: the arm's family, for a tool on the last joint's axis.
+        turn: the rule.
+    """
+
+    def __init__(
+        self, family: type[InverseKinematics], robot: Robot, files: RobotFiles, turn: Turn
+    ) -> None:
+        """An arm of a family with any tool, and the rule.
+
+        Raises:
+            InputError: as the family; the last joint is locked; the tool is longer than the arm;
+                or the solutions of the arm have no names, and a set of turns needs some.
+        """
+        if files.locked_joint_6_rad is not None:
+            message = "no joint is locked with the tool's turn given (task.turn): leave it out"
+            raise InputError(None, "robot.locked_joint_6_rad", message)
+        self._robot, self.turn = robot, turn
+        self._straight = on_last_axis(robot)
+        # What the last joint is locked at does not matter: it is solved for afterwards.
+        locked = float(np.clip(0.0, robot.lower[-1], robot.upper[-1]))
+        self.own = family(self._straight, files.varied(locked_joint_6_rad=locked))
+        poses = pose_at_zero(robot)
+        self.reach = farthest_reach(robot, shoulder_of(robot))
+        self.viewpoints = self.own.viewpoints
+        self.lever = float(np.linalg.norm(poses.tip[0] - wrist_of(robot)))
+        if self.lever > self.reach - self.lever:
+            raise InputError(
+                str(robot.files[1]),
+                f"link[{files.tip_link}]",
+                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
+            )
+        self._angles = np.radians(turn.degrees)
+        self.branches = self.own.branches
+        if turn.is_choice:
+            if not self.own.branches:
+                message = "the solutions of this arm have no names, which a set of turns needs"
+                raise InputError(None, "task.turn", message)
+            self.branches = tuple(
+                f"turn {degrees:.10g}° {name}"
+                for degrees in turn.degrees
+                for name in self.own.branches
+            )
+
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """No solution where the rule says nothing.
+
+        See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
+        """
+        count, across = len(points), turn_at(self.turn, points, directions)
+        rows = np.flatnonzero(~np.isnan(across[:, 0]))
+        points, directions, across = points[rows], directions[rows], across[rows]
+        if branches is not None:
+            number, branch = np.divmod(branches[rows], len(self.own.branches))
+            turned = turned_about(directions, across, self._angles[number])
+            found = self.solve_pose(points, directions, turned, branch)
+            return _spread(found, rows, count)
+        every = [
+            self.solve_pose(
+                points, directions, turned_about(directions, across, np.full(len(rows), angle))
+            )
+            for angle in self._angles
+        ]
+        return _spread(np.concatenate(every, axis=1), rows, count)
+
+    def solve_pose(
+        self,
+        points: Array,
+        directions: Array,
+        across: Array,
+        branches: NDArray[np.intp] | None = None,
+    ) -> Array:
+        """All configurations that put the whole tool into a pose, its turn included.
+
+        Args:
+            points, directions: as in
+                :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
+            across: (n, 3) unit vectors of the tool's x axis, at right angles to the directions.
+            branches: (n,) the only one of the family's wanted of each pose; all without it.
+        """
+        rotation, tips, axes = self._straightened(points, directions, across)
+        found = self.own.solve(tips, axes, branches)
+        row, branch = np.nonzero(~np.isnan(found[:, :, 0]))
+        found[row, branch] = with_last_joint(self._robot, found[row, branch], rotation[row])
+        return found
+
+    def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
+        """Those of the arm's family on all turns of the tool together."""
+        across = turn_at(self.turn, points, directions)
+        rows = np.flatnonzero(~np.isnan(across[:, 0]))
+        every = [
+            self._straightened(
+                points[rows],
+                directions[rows],
+                turned_about(directions[rows], across[rows], np.full(len(rows), angle)),
+            )
+            for angle in self._angles
+        ]
+        _, tips, axes = (np.concatenate(each) for each in zip(*every, strict=True))
+        return self.own.remarks(tips, axes)
+
+    def _straightened(
+        self, points: Array, directions: Array, across: Array
+    ) -> tuple[Array, Array, Array]:
+        """Rotations of the last frame, and tips and directions of the tool on the last axis."""
+        rotation, origin = last_frames(self._robot, points, directions, across)
+        tip = self._straight.tip
+        return rotation, origin + rotation @ tip[:3, 3], rotation @ tip[:3, 2]
+
+
+def _spread(found: Array, rows: NDArray[np.intp], count: int) -> Array:
+    """What was found (k, s, joints) in some rows of (count, s, joints), NaN in the others."""
+    spread = np.full((count, *found.shape[1:]), np.nan)
+    spread[rows] = found
+    return spread

@@ -1,0 +1,155 @@
+"""Bodies as fcl sees them: one configuration after the other, for what nothing quicker settles."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+from weakref import WeakKeyDictionary
+
+import fcl
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.kinematics import Poses
+from cellcolor.frontend.arm.polyhedron import Polyhedron
+from cellcolor.frontend.contact.plane import HalfSpace
+
+__all__ = [
+    "Placed",
+    "Thing",
+    "bodies_touch",
+    "body_poses",
+    "body_shape",
+    "lowest_points",
+    "mesh_model",
+    "points_of",
+    "touch_thing",
+]
+
+_MODELS: WeakKeyDictionary[Polyhedron, fcl.BVHModel] = WeakKeyDictionary()
+
+
+def mesh_model(vertices: Array, faces: Index) -> fcl.BVHModel:
+    """Triangles for fcl: a shell, whatever it encloses."""
+    model = fcl.BVHModel()
+    model.beginModel(len(faces), len(vertices))
+    model.addSubModel(vertices, faces)
+    model.endModel()
+    return model
+
+
+def body_shape(body: Body, wider: float = 0.0) -> fcl.CollisionGeometry:
+    """The body's shape for fcl, about the origin and along z; of a solid in the joint's frame.
+
+    Args:
+        wider: by so much what is no solid is made wider, a cylinder longer too, m.
+    """
+    if body.solid is not None:
+        if body.solid not in _MODELS:
+            _MODELS[body.solid] = mesh_model(body.solid.vertices, body.solid.faces)
+        return _MODELS[body.solid]
+    radius, length = body.radius + wider, body.length
+    if body.flat:
+        return fcl.Cylinder(radius, length + 2 * wider)
+    return fcl.Capsule(radius, length) if length else fcl.Sphere(radius)
+
+
+def body_poses(body: Body, ends: Array, poses: Poses | None = None) -> tuple[Array, Array]:
+    """Rotations (n, 3, 3) and origins (n, 3) of that shape, from the ends (2, n, 3) of its axis.
+
+    All shapes but solids are symmetric about their axis, so any rotation that turns z onto it will
+    do. Solids need the ``poses`` of the joints.
+    """
+    start, end = ends
+    if body.solid is not None:
+        assert poses is not None  # who has solids hands the poses down
+        return poses.rotation[:, body.joint], poses.origin[:, body.joint]
+    if not body.length:
+        return np.tile(np.eye(3), (len(start), 1, 1)), start
+    z = (end - start) / body.length
+    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z), axis=1)])
+    x /= np.linalg.norm(x, axis=1, keepdims=True)
+    return np.stack([x, np.cross(z, x), z], axis=2), (start + end) / 2
+
+
+Placed = tuple[Array, Array]
+"""Rotations (n, 3, 3) and origins (n, 3)."""
+
+
+class Thing(NamedTuple):
+    """What stands still: its shape in the world, and a point (parts, 3) of each part of it, m."""
+
+    shape: fcl.CollisionObject
+    points: Array
+
+
+def touch_thing(body: Body, placed: Placed, thing: Thing) -> Mask:
+    """Whether a body in n places touches a thing, (n,); a solid is filled, the thing need not be.
+
+    What is within a solid's skin counts as touching it.
+    """
+    other = fcl.CollisionObject(body_shape(body), fcl.Transform())
+    hit = np.zeros(len(placed[1]), dtype=bool)
+    for row, (turn, origin) in enumerate(zip(*placed, strict=True)):
+        other.setTransform(fcl.Transform(turn, origin))
+        hit[row] = _touch(thing.shape, other, body.skin)
+    if body.solid is not None:
+        points = np.broadcast_to(thing.points, (len(hit), *thing.points.shape))
+        hit |= _any_inside(body.solid, placed, points, ~hit)
+    return hit
+
+
+def lowest_points(solid: Polyhedron, placed: Placed, plane: HalfSpace) -> Array:
+    """How far the lowest point of a solid is along the normal of a half space, (n,), m."""
+    turns, origins = placed
+    up = np.asarray(plane.normal) @ turns
+    lowest = (up @ solid.outline.T).min(axis=1, initial=np.inf)
+    return np.asarray(lowest + plane.along(origins))
+
+
+def bodies_touch(first: Body, at: Placed, second: Body, second_at: Placed) -> Mask:
+    """Whether two bodies touch in each of n places, (n,); one may be wholly inside the other.
+
+    Distances between curved shapes are off by some tenths of a millimeter in fcl. So where there
+    is a skin it is given to the curved one of two shapes as far as there is one.
+    """
+    skin = first.skin + second.skin
+    curved = first.solid is None or second.solid is None
+    shapes = [body_shape(body, skin if body.solid is None else 0.0) for body in (first, second)]
+    a, b = (fcl.CollisionObject(shape, fcl.Transform()) for shape in shapes)
+    hit = np.zeros(len(at[1]), dtype=bool)
+    for row, (turn_a, origin_a, turn_b, origin_b) in enumerate(zip(*at, *second_at, strict=True)):
+        a.setTransform(fcl.Transform(turn_a, origin_a))
+        b.setTransform(fcl.Transform(turn_b, origin_b))
+        hit[row] = _touch(a, b, 0.0 if curved else skin)
+    for one, place, other, other_place in (
+        (first, at, second, second_at),
+        (second, second_at, first, at),
+    ):
+        if one.solid is not None and not hit.all():
+            hit |= _any_inside(one.solid, place, points_of(other, other_place), ~hit)
+    return hit
+
+
+def _touch(a: fcl.CollisionObject, b: fcl.CollisionObject, skin: float) -> bool:
+    if fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()):
+        return True
+    return bool(skin) and fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult()) < skin
+
+
+def points_of(body: Body, placed: Placed) -> Array:
+    """A point of each part of a body in the world, (n, parts, 3)."""
+    turns, origins = placed
+    if body.solid is None:
+        return origins[:, None]
+    return np.asarray(body.solid.one_of_each_part @ turns.transpose(0, 2, 1) + origins[:, None])
+
+
+def _any_inside(solid: Polyhedron, placed: Placed, points: Array, asked: Mask) -> Mask:
+    """Whether one of some points (n, k, 3) in the world is inside a solid, (n,), where asked."""
+    rows = np.flatnonzero(asked)
+    turns, origins = placed
+    local = (points[rows] - origins[rows, None]) @ turns[rows]
+    inside = np.zeros(len(asked), dtype=bool)
+    inside[rows] = solid.contains(local.reshape(-1, 3)).reshape(local.shape[:2]).any(axis=1)
+    return inside

@@ -1,0 +1,100 @@
+"""An arm whose solutions have no names: continuity tells them apart, and makes sheets of them.
+
+From here on a sheet is what a branch is for other arms: the stages that follow know no difference.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.candidate_table import VALID
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.reach.between import Test
+from cellcolor.frontend.reach.sheets import Sheets, linked_pairs, sheets_of
+from cellcolor.frontend.reach.tracking import Solutions
+from cellcolor.frontend.reach.validity import NO_SOLUTION, Candidates
+
+__all__ = ["Nameless", "arranged_in_sheets"]
+
+_AT_ONCE = 4_000  # mesh edges; all solutions of both ends are compared, tens of kilobytes an edge
+
+
+@dataclass(frozen=True)
+class Nameless:
+    """What continuity has made of solutions without names.
+
+    Attributes:
+        prepared: the scene.
+        sheets: which solution each sheet has, and where it is continuous.
+        solutions: (n, sheets) of all vertices.
+        candidates: the same as branches have it, a sheet each.
+        tracked: (points, n * sheets, 3) of the bodies at the vertices, m; NaN without a solution.
+    """
+
+    prepared: PreparedScene
+    sheets: Sheets
+    solutions: Solutions
+    candidates: Candidates
+    tracked: Array
+
+    def test_on(self, edges: Index, sheets: Index) -> Test:
+        """A test of sheets (k,) on mesh edges (k, 2), for :mod:`cellcolor.frontend.reach.between`.
+
+        A configuration on the way is found by following the sheet from the nearer end.
+        """
+        surface = self.prepared.surface
+
+        def test(points: Array, _: Array, at: Index) -> tuple[Mask, Array]:
+            ends = edges[at]
+            away = np.linalg.norm(surface.vertices[ends] - points[:, None], axis=2)
+            ends = np.where((away[:, 0] <= away[:, 1])[:, None], ends, ends[:, ::-1])
+            way = away.min(axis=1) / away.sum(axis=1)
+            start = self.solutions.take(ends[:, 0], sheets[at])
+            joints, _motions = self.prepared.tracker.walk(surface, ends, start, way)
+            verdicts = self.prepared.judge(joints)
+            return np.asarray(verdicts.reasons == VALID), verdicts.tracked
+
+        return test
+
+
+def arranged_in_sheets(prepared: PreparedScene, candidates: Candidates, tracked: Array) -> Nameless:
+    """Link solutions along mesh edges, and make sheets of them.
+
+    Args:
+        candidates: (n, s) all solutions, each vertex's in an order of its own.
+        tracked: (points, n * s, 3) of the bodies at the vertices, m.
+
+    Raises:
+        InputError: linked solutions are two of one vertex, or there are too many sheets.
+        OutOfTime: the deadline came first.
+    """
+    surface, robot, tracker = prepared.surface, prepared.robot, prepared.tracker
+    edges, nodes = surface.edges(), candidates.valid
+    limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
+    solutions = tracker.described(candidates.configurations)
+    pairs = [np.empty((0, 3), dtype=np.int64)]
+    for first in range(0, len(edges), _AT_ONCE):
+        prepared.deadline.check()
+        part = edges[first : first + _AT_ONCE]
+        found = linked_pairs(surface, part, nodes, solutions, tracker, prepared.measure, limits)
+        pairs.append(found + np.array([first, 0, 0]))
+    sheets = sheets_of(surface, edges, np.concatenate(pairs), nodes, solutions)
+    by_sheet = Candidates(
+        sheets.arranged(candidates.configurations, np.nan),
+        sheets.arranged(candidates.reasons, NO_SOLUTION),
+        sheets.arranged(candidates.determinants, np.nan),
+        candidates.reason_names,
+    )
+    arranged = Solutions(
+        by_sheet.configurations,
+        sheets.arranged(solutions.determinants, np.nan),
+        sheets.arranged(solutions.apart, np.inf),
+        sheets.arranged(solutions.good, False),
+    )
+    bodies = tracked.reshape(len(tracked), *nodes.shape, 3).transpose(1, 2, 0, 3)
+    moved = sheets.arranged(bodies, np.nan).transpose(2, 0, 1, 3)
+    moved = moved.reshape(len(tracked), by_sheet.reasons.size, 3)
+    return Nameless(prepared, sheets, arranged, by_sheet, moved)

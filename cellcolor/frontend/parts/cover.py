@@ -1,0 +1,207 @@
+"""Which faces of an object are to be covered; the others are only not to be hit."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Self
+
+import numpy as np
+from pydantic import Field, FiniteFloat, field_validator, model_validator
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.wording import count
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
+from cellcolor.files.documents import read_text
+from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.surface import Surface, face_normals
+from cellcolor.frontend.parts.topology import edge_table, face_areas, parts_of
+from cellcolor.frontend.tables import Position, Table, Vector
+
+__all__ = ["Cover"]
+
+Angle = Annotated[FiniteFloat, Field(gt=0, le=float(np.pi))]
+
+
+class NormalCone(Table):
+    """Faces whose outward normal is within an angle of a direction.
+
+    Attributes:
+        direction: (3,) of any length but 0.
+        within_rad: the angle.
+    """
+
+    direction: Vector
+    within_rad: Angle
+
+    @field_validator("direction")
+    @classmethod
+    def _no_zero(cls, direction: Vector) -> Vector:
+        if not np.linalg.norm(direction) > 0:
+            raise ValueError("has no direction: its length is 0")
+        return direction
+
+
+class Box(Table):
+    """Faces whose three corners are in a box along the axes.
+
+    Attributes:
+        low_m, high_m: its corners.
+    """
+
+    low_m: Position
+    high_m: Position
+
+
+class Region(Table):
+    """Faces that are reached from a point without crossing a sharp edge.
+
+    Attributes:
+        seed_m: the point; the region grows from the face nearest to it.
+        sharp_rad: an edge is sharp if the normals of its two faces are farther from each other.
+    """
+
+    seed_m: Position
+    sharp_rad: Angle
+
+
+class Cover(Table):
+    """The faces of an object that are to be covered, in the object's own frame.
+
+    Every key given has to hold; one at least is given. The whole object is what must not be hit,
+    unless the scene has a ``collision_object``.
+
+    Attributes:
+        component: the number of a component: faces that hang together by edges, numbered from the
+            largest area, 0, to the smallest.
+        faces_file: a text with the number of a face on each line, from 0.
+    """
+
+    normal: NormalCone | None = None
+    box: Box | None = None
+    component: Annotated[int, Field(ge=0)] | None = None
+    region: Region | None = None
+    faces_file: str | None = None
+
+    @model_validator(mode="after")
+    def _something(self) -> Self:
+        if all(getattr(self, key) is None for key in type(self).model_fields):
+            raise ValueError(f"needs one of {', '.join(type(self).model_fields)}")
+        return self
+
+    def patch(self, whole: Surface, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:
+        """The faces that are to be covered, as a surface of its own.
+
+        Vertices keep their order. Normals on the patch's border are those of its own faces: beside
+        a sharp edge the tool stands upright on the side that is covered.
+
+        Args:
+            whole: the object, in its own frame.
+            folder: what ``faces_file`` is relative to.
+            deadline: when to give up.
+
+        Raises:
+            InputError: no face is chosen, or every face of a closed object; the patch is no
+                manifold; there is no such component or face.
+            OutOfTime: the deadline came first.
+        """
+        chosen = self.chosen(whole, folder)
+        deadline.check()
+        if not chosen.any():
+            raise InputError(None, "cover", f"chooses none of {count(len(chosen), 'face')}")
+        faces = whole.faces[chosen]
+        if (edge_table(faces).count != 1).all():
+            raise InputError(None, "cover", "chooses a closed surface: a patch has a border")
+        used, compact = np.unique(faces, return_inverse=True)
+        compact = compact.reshape(-1, 3).astype(np.int64)
+        try:
+            patch = mesh_surface(whole.vertices[used], compact, deadline=deadline)
+        except InputError as error:
+            place = _in_whole(error.field, used, np.flatnonzero(chosen))
+            message = f"chooses a patch that cannot be covered: {place}{error.message}"
+            raise InputError(None, "cover", message) from error
+        inside = np.bincount(faces.ravel(), minlength=len(whole.vertices)) == np.bincount(
+            whole.faces.ravel(), minlength=len(whole.vertices)
+        )
+        normals = np.where(inside[used][:, None], whole.normals[used], patch.normals)
+        return Surface(patch.vertices, patch.faces, normals)
+
+    def chosen(self, whole: Surface, folder: Path = Path()) -> Mask:
+        """Which faces (m,) of the object are chosen; see :meth:`patch`."""
+        chosen = np.ones(len(whole.faces), dtype=bool)
+        normals = face_normals(whole.vertices, whole.faces)
+        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+        if self.normal is not None:
+            along = np.array(self.normal.direction) / np.linalg.norm(self.normal.direction)
+            chosen &= _angles(normals, along) <= self.normal.within_rad
+        if self.box is not None:
+            corners = whole.vertices[whole.faces]
+            inside = (corners >= self.box.low_m) & (corners <= self.box.high_m)
+            chosen &= inside.all(axis=(1, 2))
+        if self.component is not None:
+            chosen &= self._component(whole)
+        if self.region is not None:
+            chosen &= _grown(whole, normals, self.region)
+        if self.faces_file is not None:
+            chosen &= _listed(folder / self.faces_file, len(chosen))
+        return chosen
+
+    def _component(self, whole: Surface) -> Mask:
+        part = parts_of(whole.faces, edge_table(whole.faces))
+        area = np.bincount(part, face_areas(whole.vertices, whole.faces))
+        if self.component is None or self.component >= len(area):
+            message = f"there is no component {self.component}: the object has {len(area)}"
+            raise InputError(None, "cover.component", message)
+        return np.asarray(part == np.argsort(-area, kind="stable")[self.component])
+
+
+def _angles(normals: Array, other: Array) -> Array:
+    """Angles (m,) between unit vectors (m, 3) and (3,) or (m, 3), rad."""
+    chord = np.linalg.norm(normals - other, axis=1)
+    return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
+
+
+def _grown(whole: Surface, normals: Array, region: Region) -> Mask:
+    """The faces on the same side of all sharp edges as the face nearest to the seed."""
+    table = edge_table(whole.faces)
+    edges, sides = table.pairs()
+    sharp = np.zeros(len(table.ends), dtype=bool)
+    turned = _angles(normals[sides[:, 0] // 3], normals[sides[:, 1] // 3])
+    sharp[edges] = turned > region.sharp_rad
+    part = parts_of(whole.faces, table, sharp)
+    return np.asarray(part == part[_nearest_face(whole, np.array(region.seed_m))])
+
+
+def _nearest_face(whole: Surface, point: Array) -> int:
+    from trimesh.triangles import closest_point
+
+    triangles = whole.vertices[whole.faces]
+    nearest = closest_point(triangles, np.tile(point, (len(triangles), 1)))
+    return int(np.argmin(np.linalg.norm(nearest - point, axis=1)))
+
+
+def _listed(file: Path, faces: int) -> Mask:
+    """The faces whose numbers stand in a file, one on each line."""
+    listed = np.zeros(faces, dtype=bool)
+    for number, line in enumerate(read_text(file).splitlines(), start=1):
+        if not line.strip():
+            continue
+        try:
+            face = int(line)
+        except ValueError as error:
+            message = "needs the number of a face"
+            raise InputError(str(file), f"line {number}", message) from error
+        if not 0 <= face < faces:
+            message = f"there is no face {face}: the object has {faces:,}"
+            raise InputError(str(file), f"line {number}", message)
+        listed[face] = True
+    return listed
+
+
+def _in_whole(field: str | None, vertices: Index, faces: Index) -> str:
+    """``vertices[3]`` of the patch as that of the object, with a colon."""
+    for name, numbers in (("vertices", vertices), ("faces", faces)):
+        if field is not None and field.startswith(f"{name}["):
+            own = int(field.removeprefix(f"{name}[").partition("]")[0])
+            return f"{name}[{numbers[own]}]: "
+    return ""

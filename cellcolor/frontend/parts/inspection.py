@@ -1,0 +1,287 @@
+"""What a mesh has, and what is wrong with it, in numbers and places."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
+from cellcolor.frontend.parts.cleaning import (
+    flat_faces,
+    merged,
+    repeated_corners,
+    repeated_faces,
+    used,
+)
+from cellcolor.frontend.parts.crossings import crossing_pairs
+from cellcolor.frontend.parts.holes import border_groups
+from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.sharp import SHARP, sharp_edges
+from cellcolor.frontend.parts.splitting import fans
+from cellcolor.frontend.parts.surface import Faces
+from cellcolor.frontend.parts.topology import EdgeTable, edge_table, face_areas, parts_of
+from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
+
+__all__ = ["Component", "FaultyPlaces", "Hole", "MeshFacts", "facts_of"]
+
+Telling = Callable[[str], None]
+Place = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Hole:
+    """Border edges that hang together.
+
+    Attributes:
+        length_m: of all of them.
+        edges: how many.
+        place: the middle of their ends, m.
+    """
+
+    length_m: float
+    edges: int
+    place: Place
+
+
+@dataclass(frozen=True)
+class Component:
+    """Faces that hang together by edges.
+
+    Attributes:
+        faces: how many.
+        area_m2: of them.
+        closed: whether each of their edges has two faces.
+    """
+
+    faces: int
+    area_m2: float
+    closed: bool
+
+
+@dataclass(frozen=True)
+class FaultyPlaces:
+    """Where faults are, for pictures: points in m.
+
+    Attributes:
+        faces: by the fault's name, (k, 3, 3) corners of faces.
+        edges: by the fault's name, (k, 2, 3) ends of edges.
+        sharp: (k, 2, 3) ends of sharp edges, which are no fault.
+    """
+
+    faces: dict[str, Array]
+    edges: dict[str, Array]
+    sharp: Array
+
+
+@dataclass(frozen=True)
+class MeshFacts:
+    """A mesh in numbers; places in m.
+
+    Attributes:
+        triangles, vertices: how many; vertices that no face has are not counted.
+        unused_vertices: those.
+        merged_vertices: how many are in one place with an earlier one.
+        low_m, high_m: corners of the bounding box.
+        area_m2: of all faces.
+        components: from the largest area to the smallest.
+        holes: from the longest border to the shortest.
+        non_manifold_edges, non_manifold_vertices: places of edges of three faces or more, and of
+            vertices on no such edge around which the faces form several fans.
+        duplicate_faces: how many have the corners of an earlier one.
+        flat_faces: how many have no area.
+        mixed_winding: how many faces wind against those around them.
+        one_sided: whether no winding fits, as on a Moebius strip.
+        inside_out: how many closed components have a negative volume.
+        crossings: places of pairs of faces that cross; None if it was not affordable to look.
+        edge_lengths_m: least, lower quartile, median, upper quartile, greatest.
+        sharp_edges: how many, with faces that turn by 30 degrees or more.
+        sharp_length_m: of them.
+        genus: handles, of a mesh that is a manifold; None of another one.
+        refusal: why a scene could not use the mesh as it is; None if it could.
+    """
+
+    triangles: int
+    vertices: int
+    unused_vertices: int
+    merged_vertices: int
+    low_m: Place
+    high_m: Place
+    area_m2: float
+    components: tuple[Component, ...]
+    holes: tuple[Hole, ...]
+    non_manifold_edges: tuple[Place, ...]
+    non_manifold_vertices: tuple[Place, ...]
+    duplicate_faces: int
+    flat_faces: int
+    mixed_winding: int
+    one_sided: bool
+    inside_out: int
+    crossings: tuple[Place, ...] | None
+    edge_lengths_m: tuple[float, float, float, float, float]
+    sharp_edges: int
+    sharp_length_m: float
+    genus: int | None
+    refusal: str | None
+    places: FaultyPlaces = field(compare=False, repr=False)
+
+
+def facts_of(
+    vertices: Array,
+    faces: Faces,
+    deadline: Deadline = NEVER,
+    tell: Telling = lambda _: None,
+) -> MeshFacts:
+    """Look a mesh through, whatever is wrong with it.
+
+    Topology is looked at after vertices in one place are merged and faces left out that are there
+    twice or have no area, as a repair would do it first.
+
+    Args:
+        vertices: (n, 3) in m.
+        tell: told what is being looked at.
+
+    Raises:
+        InputError: coordinates that are not finite, a face of no vertex, no face with an area.
+        OutOfTime: the deadline came first.
+    """
+    tell("looking for faces without use")
+    refusal = _refusal(vertices, faces, deadline)
+    there = len(np.unique(faces))
+    points, clean = merged(vertices, faces)
+    twins = there - len(points)
+    clean = clean[~repeated_corners(clean)]
+    folded = len(faces) - len(clean)
+    twice = repeated_faces(clean)
+    double, clean = clean[twice], clean[~twice]
+    flat = flat_faces(points, clean)
+    thin, clean = clean[flat], clean[~flat]
+    if not len(clean):
+        raise InputError(None, "faces", "none has an area")
+    deadline.check()
+    tell("looking at edges and components")
+    table = edge_table(clean)
+    part = parts_of(clean, table)
+    area = face_areas(points, clean)
+    open_ = (table.count[table.of_face] != 2).any(axis=1)
+    turn, one_sided = against_the_others(clean, table)
+    wound = turned(clean, turn)
+    wrong = inside_out(points, wound, table)
+    holes = _holes(points, table)
+    many = table.ends[table.count > 2]
+    split = _several_fans(clean, table)
+    tell("looking for faces that cross")
+    crossing = crossing_pairs(points, clean, deadline)
+    deadline.check()
+    tell("measuring edges")
+    sharp = sharp_edges(points, clean, SHARP)
+    lengths = _lengths(points, table.ends)
+    ends = points[sharp]
+    manifold = not (len(many) or len(split))
+    crossed = np.zeros((0, 2), dtype=np.int64) if crossing is None else crossing
+    places = FaultyPlaces(
+        {
+            "faces there twice": points[double],
+            "faces without area": points[thin],
+            "faces wound against their neighbors": points[clean[turn]],
+            "closed components inside out": points[clean[wrong]],
+            "faces that cross": points[clean[np.unique(crossed)]],
+        },
+        {
+            "holes and borders": points[table.ends[table.count == 1]],
+            "edges of three faces and more": points[many],
+        },
+        ends,
+    )
+    return MeshFacts(
+        len(faces),
+        there,
+        len(vertices) - there,
+        twins,
+        _place(points.min(axis=0)),
+        _place(points.max(axis=0)),
+        float(area.sum()),
+        _components(part, area, open_),
+        holes,
+        tuple(map(_place, points[many].mean(axis=1))),
+        tuple(map(_place, points[split])),
+        len(double),
+        len(thin) + folded,
+        int(turn.sum()),
+        bool(one_sided.any()),
+        len(np.unique(part[wrong])),
+        None if crossing is None else _crossing_places(points, clean, crossing),
+        tuple(np.percentile(lengths, [0, 25, 50, 75, 100]).tolist()),
+        len(sharp),
+        float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()),
+        _genus(clean, table, len(holes), int(part.max()) + 1) if manifold else None,
+        refusal,
+        places,
+    )
+
+
+def _refusal(vertices: Array, faces: Faces, deadline: Deadline) -> str | None:
+    try:
+        mesh_surface(vertices, faces, deadline=deadline)
+    except InputError as error:
+        return f"{error.field}: {error.message}" if error.field else error.message
+    return None
+
+
+def _place(point: Array) -> Place:
+    x, y, z = point.tolist()
+    return x, y, z
+
+
+def _lengths(points: Array, edges: Index) -> Array:
+    return np.asarray(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1))
+
+
+def _components(part: Index, area: Array, open_: Mask) -> tuple[Component, ...]:
+    sizes, areas = np.bincount(part), np.bincount(part, area)
+    opened = np.bincount(part, open_) > 0
+    order = np.argsort(-areas, kind="stable").tolist()
+    return tuple(Component(int(sizes[k]), float(areas[k]), not opened[k]) for k in order)
+
+
+def _holes(points: Array, table: EdgeTable) -> tuple[Hole, ...]:
+    border, group = border_groups(table)
+    if not len(border):
+        return ()
+    lengths = _lengths(points, table.ends[border])
+    count, total = np.bincount(group), np.bincount(group, lengths)
+    middle = np.column_stack(
+        [
+            np.bincount(group, points[table.ends[border], axis].mean(axis=1)) / count
+            for axis in range(3)
+        ]
+    )
+    order = np.argsort(-total, kind="stable").tolist()
+    return tuple(Hole(float(total[k]), int(count[k]), _place(middle[k])) for k in order)
+
+
+def _several_fans(faces: Faces, table: EdgeTable) -> Index:
+    """Vertices on no edge of three faces and more around which the faces form several fans."""
+    _, sides = table.pairs()
+    fan = fans(faces, sides).ravel()
+    _, first = np.unique(fan, return_index=True)
+    vertex, count = np.unique(faces.ravel()[first], return_counts=True)
+    several = vertex[count > 1]
+    return several[~np.isin(several, table.ends[table.count > 2])]
+
+
+def _crossing_places(points: Array, faces: Faces, pairs: Index) -> tuple[Place, ...]:
+    """The middles of the smaller face of each pair."""
+    area = face_areas(points, faces)[pairs]
+    smaller = np.take_along_axis(pairs, np.argmin(area, axis=1)[:, None], axis=1)[:, 0]
+    return tuple(map(_place, points[faces[smaller]].mean(axis=1)))
+
+
+def _genus(faces: Faces, table: EdgeTable, borders: int, components: int) -> int:
+    """Handles of all components together, by Euler's formula."""
+    vertices, _ = used(np.zeros((int(faces.max()) + 1, 3)), faces)
+    euler = len(vertices) - len(table.ends) + len(faces)
+    return (2 * components - borders - euler) // 2

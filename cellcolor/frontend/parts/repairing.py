@@ -1,0 +1,266 @@
+"""A mesh repaired step by step, with a list of what was changed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.arrays import Array, Mask
+from cellcolor.data.wording import count
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
+from cellcolor.frontend.parts.cleaning import (
+    flat_faces,
+    merged,
+    repeated_corners,
+    repeated_faces,
+    used,
+    without_flat,
+)
+from cellcolor.frontend.parts.holes import MOST_EDGES, filling, loops
+from cellcolor.frontend.parts.mesh import summed_normals
+from cellcolor.frontend.parts.splitting import split
+from cellcolor.frontend.parts.surface import Faces
+from cellcolor.frontend.parts.topology import edge_table, face_areas, parts_of
+from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
+
+__all__ = ["LEAST_SHARE", "Change", "Mending", "Telling", "mended"]
+
+LEAST_SHARE = 0.01
+"""Components with less than this share of the largest one's area are dropped, if not asked."""
+
+_UPRIGHT = 1e-3  # summed normals of a vertex that are shorter nearly cancel out
+Telling = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Change:
+    """One thing that a repair has changed.
+
+    Attributes:
+        what: a sentence.
+        area_lost, area_gained: in the square of the mesh's unit.
+    """
+
+    what: str
+    area_lost: float = 0.0
+    area_gained: float = 0.0
+
+
+@dataclass(frozen=True)
+class Mending:
+    """What a repair is asked to do, lengths in the mesh's unit.
+
+    Attributes:
+        longest_hole: holes with a border up to that length are filled.
+        least_share: components with less than this share of the largest one's area are dropped.
+    """
+
+    longest_hole: float = 0.0
+    least_share: float = LEAST_SHARE
+
+
+def mended(
+    vertices: Array,
+    faces: Faces,
+    asked: Mending,
+    deadline: Deadline = NEVER,
+    tell: Telling = lambda _: None,
+) -> tuple[Array, Faces, list[Change]]:
+    """A mesh without the faults that can be mended, whatever others it has.
+
+    In this order: vertices in one place are merged; faces that are there twice or have no area are
+    dropped; neighbors are made to wind alike; the mesh is cut apart where it is no manifold; small
+    components are dropped; neighbors are made to wind alike where they were not neighbors before;
+    holes are filled; closed components are turned outward.
+
+    Args:
+        tell: told what is being done.
+
+    Raises:
+        InputError: coordinates that are not finite, a face of no vertex, nothing left.
+        OutOfTime: the deadline came first.
+    """
+    _check(vertices, faces)
+    changes: list[Change] = []
+
+    def step(name: str) -> None:
+        deadline.check()
+        tell(name)
+
+    step("merging vertices")
+    before = len(vertices)
+    there = len(np.unique(faces))
+    vertices, faces = merged(vertices, faces)
+    _note(changes, before - there, "vertex", "dropped that no face has", "vertices")
+    _note(changes, there - len(vertices), "vertex", "merged with another in its place", "vertices")
+    step("dropping useless faces")
+    vertices, faces = _without_useless(vertices, faces, changes)
+    step("making faces wind alike")
+    faces = _wound(faces, changes)
+    _check_two_sided(vertices, faces)
+    step("cutting apart what is no manifold")
+    vertices, faces = _manifold(vertices, faces, changes)
+    step("dropping small components")
+    vertices, faces = _large(vertices, faces, asked.least_share, changes)
+    faces = _wound(faces, changes)
+    step("filling holes")
+    faces = _filled(vertices, faces, asked.longest_hole, changes, deadline)
+    # A component that was open till now has an inside and an outside now.
+    step("turning closed components outward")
+    wrong = inside_out(vertices, faces)
+    if wrong.any():
+        parts = count(_parts(faces[wrong]), "closed component")
+        changes.append(Change(f"{parts} turned outside out: {count(int(wrong.sum()), 'face')}"))
+        faces = turned(faces, wrong)
+    return vertices, faces, changes
+
+
+def _check(vertices: Array, faces: Faces) -> None:
+    bad = np.argwhere(~np.isfinite(vertices))
+    if len(bad):
+        row, axis = bad[0]
+        raise InputError(None, f"vertices[{row}][{axis}]", "is not a finite number")
+    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
+    if len(unknown):
+        face, corner = unknown[0]
+        message = f"there is no vertex {faces[face, corner]}"
+        raise InputError(None, f"faces[{face}][{corner}]", message)
+    if not len(faces):
+        raise InputError(None, "faces", "there are none")
+
+
+def _note(changes: list[Change], number: int, one: str, what: str, many: str | None = None) -> None:
+    if number:
+        name = one if number == 1 else many or f"{one}s"
+        changes.append(Change(f"{number:,} {name} {what}"))
+
+
+def _parts(faces: Faces) -> int:
+    return int(parts_of(faces, edge_table(faces)).max(initial=-1)) + 1
+
+
+def _without_useless(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Array, Faces]:
+    folded = repeated_corners(faces)
+    _note(changes, int(folded.sum()), "face", "dropped: two corners in one place")
+    faces = faces[~folded]
+    twice = repeated_faces(faces)
+    if twice.any():
+        area = float(face_areas(vertices, faces[twice]).sum())
+        changes.append(Change(f"{count(int(twice.sum()), 'face')} dropped: there twice", area))
+    faces = faces[~twice]
+    flat = int(flat_faces(vertices, faces).sum())
+    if flat:
+        faces = without_flat(vertices, faces)
+        _note(changes, flat, "face", "dropped: without area; the face beside was parted instead")
+    if not len(faces):
+        raise InputError(None, "faces", "none is left that has an area and is no copy of another")
+    return used(vertices, faces)
+
+
+def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Array, Faces]:
+    number = len(faces)
+    area = float(face_areas(vertices, faces).sum())
+    while True:
+        parted, renumbered, moved = split(vertices, faces)
+        stuck = _stuck(parted, renumbered)
+        if not stuck.any():
+            break
+        vertices, faces = used(vertices, faces[~stuck])
+    before = float(face_areas(vertices, faces).sum())
+    if number > len(faces):
+        text = f"{count(number - len(faces), 'face')} dropped: in the way on edges of three faces"
+        changes.append(Change(f"{text} and more", area - before))
+    if len(parted) > len(vertices):
+        copies = len(parted) - len(vertices)
+        name = "1 vertex" if copies == 1 else f"{copies:,} vertices"
+        text = f"{name} added: the mesh cut apart where it was no manifold, and copies of a vertex "
+        changed = float(face_areas(parted, renumbered).sum() - before)
+        text += f"moved by up to {moved:.3g}"
+        changes.append(Change(text, max(-changed, 0.0), max(changed, 0.0)))
+    return parted, renumbered
+
+
+def _stuck(vertices: Array, faces: Faces) -> Mask:
+    """The smallest face (m,) on each edge that could not be cut apart: its ends hang together."""
+    table = edge_table(faces)
+    edges, sides = table.pairs()
+    forward = table.forward.ravel()
+    bad = table.count > 2
+    bad[edges[forward[sides[:, 0]] == forward[sides[:, 1]]]] = True
+    smallest = np.full(len(bad), np.inf)
+    area = face_areas(vertices, faces)
+    np.minimum.at(smallest, table.of_face, area[:, None])
+    return np.asarray((bad[table.of_face] & (area[:, None] <= smallest[table.of_face])).any(axis=1))
+
+
+def _large(
+    vertices: Array, faces: Faces, least: float, changes: list[Change]
+) -> tuple[Array, Faces]:
+    part = parts_of(faces, edge_table(faces))
+    area = np.bincount(part, face_areas(vertices, faces))
+    small = area < least * area.max()
+    if small.any():
+        gone = float(area[small].sum())
+        text = f"{count(int(small.sum()), 'component')} dropped: each with less than {least:.3g} of"
+        changes.append(Change(f"{text} the largest one's area", gone))
+    return used(vertices, faces[~small[part]])
+
+
+def _wound(faces: Faces, changes: list[Change]) -> Faces:
+    turn, _ = against_the_others(faces, edge_table(faces))
+    _note(changes, int(turn.sum()), "face", "turned to wind like those around")
+    return turned(faces, turn)
+
+
+def _check_two_sided(vertices: Array, faces: Faces) -> None:
+    _, one_sided = against_the_others(faces, edge_table(faces))
+    if one_sided.any():
+        face = int(np.argmax(one_sided))
+        message = "lies in a one-sided component, as a Moebius strip is: it has no outside"
+        place = ", ".join(f"{x:.4g}" for x in vertices[faces[face]].mean(axis=0))
+        raise InputError(None, f"faces near ({place})", message)
+
+
+def _filled(
+    vertices: Array, faces: Faces, longest: float, changes: list[Change], deadline: Deadline
+) -> Faces:
+    if not longest:
+        return faces
+    table = edge_table(faces)
+    edges = {(i, j) for i, j in table.ends.tolist()}
+    added: list[Faces] = []
+    left = 0
+    for loop in loops(faces):
+        deadline.check()
+        points = vertices[loop]
+        length = float(np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1).sum())
+        if length > longest:
+            continue
+        new = filling(vertices, loop, edges) if len(loop) <= MOST_EDGES else None
+        if new is None:
+            left += 1
+            continue
+        added.append(new)
+        edges |= {(i, j) for i, j in edge_table(new).ends.tolist()}
+    if added:
+        fitting = _without_folds(vertices, faces, added)
+        left += len(added) - len(fitting)
+        added = fitting
+    if added:
+        new = np.concatenate(added)
+        area = float(face_areas(vertices, new).sum())
+        text = f"{count(len(added), 'hole')} filled with {count(len(new), 'face')}"
+        changes.append(Change(text, 0.0, area))
+        faces = np.concatenate([faces, new])
+    _note(changes, left, "hole", f"left: more than {MOST_EDGES} edges, or nothing fits in")
+    return faces
+
+
+def _without_folds(vertices: Array, faces: Faces, added: list[Faces]) -> list[Faces]:
+    """Fillings of holes but those that fold back onto the faces around, as in a slit."""
+    normals = summed_normals(vertices, np.concatenate([faces, *added]))
+    folded = np.linalg.norm(normals, axis=1) < _UPRIGHT
+    return [new for new in added if not folded[new].any()]

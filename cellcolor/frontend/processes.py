@@ -1,0 +1,116 @@
+"""Long work in many independent parts, done by as many processes as there are cores.
+
+Python runs one thread at a time, and fcl's binding keeps it to that. So the process is forked:
+what the work looks at is there without being copied, and what it finds it writes into arrays in
+shared memory (:func:`shared`). Whatever a child does not finish, the process itself does, errors
+and time-outs included; so the result does not depend on how many there are.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import sys
+import warnings
+from collections.abc import Callable
+from mmap import mmap
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+__all__ = ["share_out", "shared"]
+
+_MOST = 16  # processes
+_working = False  # in a child, and while a process does its own share
+
+
+def shared(shape: tuple[int, ...], kind: DTypeLike) -> NDArray[Any]:
+    """An array of zeros that forked processes have in common."""
+    kind = np.dtype(kind)
+    size = int(np.prod(shape)) * kind.itemsize
+    return np.frombuffer(mmap(-1, max(size, 1)), kind, int(np.prod(shape))).reshape(shape)
+
+
+def share_out(work: Callable[[int], None], parts: int, at_least: int = 1) -> int:
+    """Do ``work(k)`` for every k below ``parts``; it writes into :func:`shared` arrays.
+
+    Only on Linux there are several processes: elsewhere libraries do not bear to be forked. Work
+    that is itself part of such work is not shared out again.
+
+    Args:
+        at_least: so many parts are worth a process of their own.
+
+    Returns:
+        How many processes there were.
+
+    Raises:
+        Exception: what the first part raises that cannot be done.
+    """
+    global _working
+    count = 1 if _working else max(min(_cores(), parts // at_least, _MOST), 1)
+    if count == 1:
+        for part in range(parts):
+            work(part)
+        return count
+    done = shared((parts,), np.bool_)
+    _working = True
+    children = [_forked(work, range(first, parts, count), done) for first in range(1, count)]
+    try:
+        _do(work, range(0, parts, count), done)
+        for child in children:
+            child.join()
+        _do(work, np.flatnonzero(~done).tolist(), done)
+    finally:
+        _working = False
+        for child in children:
+            child.kill()
+            child.join()
+    return count
+
+
+def _cores() -> int:
+    """How many processes there can be at a time."""
+    if sys.platform != "linux" or multiprocessing.current_process().daemon:
+        return 1  # a daemon must not have children
+    return len(os.sched_getaffinity(0))
+
+
+def _do(work: Callable[[int], None], parts: range | list[int], done: NDArray[np.bool_]) -> None:
+    for part in parts:
+        work(part)
+        done[part] = True
+
+
+def _forked(
+    work: Callable[[int], None], parts: range, done: NDArray[np.bool_]
+) -> multiprocessing.process.BaseProcess:
+    """A child that does some parts."""
+    context, parent = multiprocessing.get_context("fork"), os.getpid()
+
+    def in_child() -> None:
+        # A terminal's Ctrl-C reaches the child as well; it is the parent who ends it.
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        signal.signal(signal.SIGTERM, signal.SIG_DFL)
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for part in parts:
+            if os.getppid() != parent:
+                break
+            try:
+                work(part)
+            except Exception:  # the parent meets it too, and tells
+                break
+            done[part] = True
+        os._exit(0)  # nothing of the parent's is to be ended or written a second time
+
+    child = context.Process(target=in_child, daemon=True)
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    try:
+        with warnings.catch_warnings():
+            # Python warns of forking beside threads: numpy's have no locks that the work needs.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            child.start()
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    return child

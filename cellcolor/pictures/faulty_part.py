@@ -1,0 +1,55 @@
+"""A part with the places marked that are wrong with it."""
+
+from __future__ import annotations
+
+import textwrap
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.frontend.parts.inspected import Inspection
+from cellcolor.pictures.palette import FAINT
+from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
+
+__all__ = ["faulty_part"]
+
+_MOST = 60_000  # faces that are drawn of a part; of a larger one evenly so many
+_MOST_MARKS = 20_000  # of one kind
+_FILLS = ("#EE6677", "#AA3377", "#4477AA", "#228833", "#CCBB44")  # of faulty faces
+_LINES = ("#D55E00", "#CC0000")  # holes, edges of three faces and more
+_SHARP = "#555555"
+_WIDTH = 60  # characters of a note, which has no more room beside the picture
+
+
+def faulty_part(inspection: Inspection) -> Picture3D:
+    """The part, its sharp edges, and each kind of fault in a color of its own."""
+    faces, notes = inspection.faces, []
+    if len(faces) > _MOST:
+        notes.append(f"{_MOST:,} of {len(faces):,} faces are drawn.")
+        faces = faces[np.linspace(0, len(faces) - 1, _MOST).astype(np.int64)]
+    layers = [Layer("part", FAINT, *_compact(inspection.vertices, faces), solid=True)]
+    places = inspection.facts.places
+    for (name, corners), fill in zip(places.faces.items(), _FILLS, strict=True):
+        if len(corners):
+            some = corners[:_MOST_MARKS]
+            own = np.arange(3 * len(some)).reshape(-1, 3)
+            layers.append(Layer(f"{name}: {len(corners):,}", fill, some.reshape(-1, 3), own))
+    lines = []
+    for (name, ends), fill in zip(places.edges.items(), _LINES, strict=True):
+        if len(ends):
+            lines.append(SpaceLines(f"{name}: {len(ends):,} edges", fill, ends[:_MOST_MARKS]))
+    if len(places.sharp):
+        lines.append(SpaceLines("sharp edges", _SHARP, places.sharp[:_MOST_MARKS]))
+    usable = inspection.facts.refusal is None
+    text = "Usable as it is." if usable else f"Not usable as it is: {inspection.facts.refusal}"
+    notes += textwrap.wrap(text, _WIDTH)
+    eye = np.array([1.0, -1.6, 1.1])
+    title = f"{inspection.name}: what is wrong with it" if not usable else inspection.name
+    return Picture3D(
+        title, tuple(layers), tuple(lines), (), tuple(notes), eye / np.linalg.norm(eye)
+    )
+
+
+def _compact(vertices: Array, faces: Index) -> tuple[Array, Index]:
+    used, number = np.unique(faces, return_inverse=True)
+    return vertices[used], number.reshape(-1, 3).astype(np.int64)

@@ -1,0 +1,219 @@
+"""The colors that configurations have at the vertices of a scene's surface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.candidate_table import VALID
+from cellcolor.data.joint_plan import ContactPath
+from cellcolor.data.vertex_contacts import VertexContacts
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.build import BuildResult
+from cellcolor.trajectory_checker.dense import poses_of
+from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT, TURN
+from cellcolor.trajectory_checker.tool_turn import across_of, turns_off
+
+__all__ = ["AtVertices", "Touches", "at_vertices", "touches"]
+
+_AT_ONCE = 20_000  # configurations; some kilobytes each
+
+
+@dataclass(frozen=True)
+class AtVertices:
+    """Configurations, each held against one vertex.
+
+    Attributes:
+        built: the scene.
+        vertex: (k,) the vertices.
+        color: (k,) the color that each configuration has there, -1 for none.
+        off: (k,) how far the tip is from the vertex, m.
+        tilt: (k,) how far the tool is from the vertex's normal, rad.
+        turned: (k,) how far it is from the turn that the setup gives for the branch, rad; 0 if it
+            gives none.
+        branch: (k,) of the scene's configurations there the nearest.
+        apart: (k,) how far the joint that is farthest from it is, rad; infinite without any.
+    """
+
+    built: BuildResult
+    vertex: Index
+    color: Index
+    off: Array
+    tilt: Array
+    turned: Array
+    branch: Index
+    apart: Array
+
+    def why_none(self, row: int) -> str:
+        """Why a configuration has no color there, a clause."""
+        off, tilt, apart = float(self.off[row]), float(self.tilt[row]), float(self.apart[row])
+        if off > OFF_SURFACE:
+            most = f"{1000 * OFF_SURFACE:g}"
+            return f"the tip is {1000 * off:.4g} mm off the vertex, allowed are {most}"
+        if tilt > TILT:
+            most = f"{np.degrees(TILT):g}"
+            return f"the tool is {np.degrees(tilt):.4g} degrees off the normal, allowed are {most}"
+        if np.isinf(apart):
+            return "the scene has no configuration there"
+        vertex, branch = int(self.vertex[row]), int(self.branch[row])
+        name = self.built.branches[branch]
+        if apart > AT_VERTEX:
+            return (
+                f"the scene's nearest configuration there, {name!r}, is {apart:.4g} rad off, "
+                f"allowed are {AT_VERTEX:g}"
+            )
+        turned = float(np.degrees(self.turned[row]))
+        if self.turned[row] > TURN:
+            most = f"{np.degrees(TURN):g}"
+            return f"the tool is {turned:.4g} degrees off its turn there, allowed are {most}"
+        code = int(self.built.reasons[vertex, branch])
+        if code != VALID:
+            return f"{name!r} fails the test {self.built.reason_names[code]!r} there"
+        return f"{name!r} was taken away there by the sliver policy"
+
+
+@dataclass(frozen=True)
+class Touches:
+    """Where a path touches vertices, and where it does not.
+
+    Attributes:
+        contacts: those in a color of their vertex.
+        in_no_color: the others, each sample against the vertex that it is at.
+        sample: (m,) the samples of ``in_no_color``.
+        nearest: (n,) distance of each vertex from the nearest sample in contact, m; infinite if
+            there is none.
+        misplaced: samples, ascending, whose joints put the tip somewhere else than they say.
+        misplaced_by: how far, m.
+    """
+
+    contacts: VertexContacts
+    in_no_color: AtVertices
+    sample: Index
+    nearest: Array
+    misplaced: Index
+    misplaced_by: Array
+
+
+def at_vertices(
+    built: BuildResult, vertex: Index, joints: Array, deadline: Deadline = NEVER
+) -> AtVertices:
+    """The color that each configuration has at its vertex.
+
+    It has to put tip and tool there as in any contact. Then it is of the branch of the nearest of
+    the scene's configurations, which may be no farther than ``AT_VERTEX`` in any joint modulo
+    full circles. A last joint that only turns the tool about its axis is not compared: the scene
+    keeps it locked, and the task leaves it free. If the setup gives the turn, it is compared.
+
+    Args:
+        built: the scene.
+        vertex: (k,) vertices.
+        joints: (k, joints) in rad, finite.
+        deadline: when to give up.
+
+    Raises:
+        InputError: the arm has another number of joints.
+        OutOfTime: the deadline came first.
+    """
+    robot, surface = built.robot, built.stages.surface
+    _check_width(robot, joints)
+    tips, axes = poses_of(robot, joints, deadline)
+    off = np.linalg.norm(tips - surface.vertices[vertex], axis=1)
+    chord = np.linalg.norm(axes + surface.normals[vertex], axis=1)
+    tilt = 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0))
+    compared = _compared(robot)
+    branch, apart = np.zeros(len(joints), dtype=np.int64), np.full(len(joints), np.inf)
+    for first in range(0, len(joints), _AT_ONCE):
+        deadline.check()
+        rows = slice(first, first + _AT_ONCE)
+        way = built.configurations[vertex[rows]][:, :, compared] - joints[rows, None][..., compared]
+        way = np.abs(np.remainder(way + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+        way = np.where(np.isnan(way), np.inf, way)
+        branch[rows] = np.argmin(way, axis=1)
+        apart[rows] = way[np.arange(len(way)), branch[rows]]
+    turned = _turned(built, vertex, branch, joints, deadline)
+    reached = (off <= OFF_SURFACE) & (tilt <= TILT) & (apart <= AT_VERTEX) & (turned <= TURN)
+    color = np.where(reached, built.node_color[vertex, branch], -1)
+    return AtVertices(built, vertex, color, off, tilt, turned, branch, apart)
+
+
+def _turned(
+    built: BuildResult, vertex: Index, branch: Index, joints: Array, deadline: Deadline
+) -> Array:
+    """How far the tool is from the turn that the setup gives for the branch, (k,) rad."""
+    turn, surface = built.scene.setup.task.turn, built.stages.surface
+    if turn is None:
+        return np.zeros(len(vertex))
+    across = across_of(built.robot, joints, deadline)
+    off = turns_off(turn, surface.vertices[vertex], -surface.normals[vertex], across)
+    each = len(built.branches) // len(turn.degrees) if turn.is_choice else len(built.branches)
+    return np.asarray(off[np.arange(len(vertex)), branch // each])
+
+
+def touches(built: BuildResult, path: ContactPath, deadline: Deadline = NEVER) -> Touches:
+    """Where a path touches the vertices: the samples in contact whose tips are at one.
+
+    Args:
+        built: the scene.
+        path: its samples.
+        deadline: when to give up.
+
+    Raises:
+        InputError: the arm has another number of joints.
+        OutOfTime: the deadline came first.
+    """
+    _check_width(built.robot, path.joints)
+    tips, _ = poses_of(built.robot, path.joints, deadline)
+    misplaced, misplaced_by = np.zeros(0, dtype=np.int64), np.zeros(0)
+    if path.points is not None:
+        by = np.linalg.norm(tips - path.points, axis=1)
+        misplaced = np.flatnonzero(by > OFF_SURFACE)
+        misplaced_by = by[misplaced]
+    vertices, stroke = built.surface.vertices, path.stroke
+    rows = np.flatnonzero(stroke >= 0)
+    nearest = np.full(len(vertices), np.inf)
+    sample = vertex = np.zeros(0, dtype=np.int64)
+    if len(rows):
+        nearest = np.asarray(cKDTree(tips[rows]).query(vertices)[0])
+        tree = cKDTree(vertices)
+        near = tree.query_ball_point(tips[rows], OFF_SURFACE, return_sorted=True)
+        sample = np.repeat(rows, [len(found) for found in near])
+        vertex = np.fromiter((v for found in near for v in found), np.int64, len(sample))
+    found = at_vertices(built, vertex, path.joints[sample], deadline)
+    has = found.color >= 0
+    contacts = VertexContacts(stroke[sample[has]], vertex[has], found.color[has])
+    return Touches(contacts, _part(found, ~has), sample[~has], nearest, misplaced, misplaced_by)
+
+
+def _part(found: AtVertices, rows: Mask) -> AtVertices:
+    return AtVertices(
+        found.built,
+        found.vertex[rows],
+        found.color[rows],
+        found.off[rows],
+        found.tilt[rows],
+        found.turned[rows],
+        found.branch[rows],
+        found.apart[rows],
+    )
+
+
+def _check_width(robot: Robot, joints: Array) -> None:
+    if joints.shape[1] != robot.joints:
+        message = f"there are {joints.shape[1]} joints, the arm has {robot.joints}"
+        raise InputError(None, "joints", message)
+
+
+def _compared(robot: Robot) -> Mask:
+    """Which joints (joints,) tell configurations apart.
+
+    A last one about the tool's axis does not, if the tool's turn is free.
+    """
+    compared = np.ones(robot.joints, dtype=bool)
+    compared[-1] = robot.task.turn or not is_tool_on_last_axis(pose_at_zero(robot))
+    return compared

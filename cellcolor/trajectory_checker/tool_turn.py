@@ -1,0 +1,77 @@
+"""The tool's turn about its axis, where the setup gives it: which one it is, and how far off."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.arm.kinematics import forward, tool_across
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.tool_turn import angle_about, turn_at
+from cellcolor.frontend.setup import Turn
+from cellcolor.trajectory_checker.dense import Dense
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.tolerances import TURN
+
+__all__ = ["across_of", "judge_turn", "nearest_turns", "turns_off"]
+
+_AT_ONCE = 20_000  # configurations; a matter of memory: some kilobytes each
+
+
+def across_of(robot: Robot, joints: Array, deadline: Deadline = NEVER) -> Array:
+    """The tool's x axis (k, 3) in the world, in configurations (k, joints)."""
+    across = np.empty((len(joints), 3))
+    for first in range(0, len(joints), _AT_ONCE):
+        deadline.check()
+        rows = slice(first, first + _AT_ONCE)
+        across[rows] = tool_across(robot, forward(robot, joints[rows]))
+    return across
+
+
+def turns_off(turn: Turn, points: Array, directions: Array, across: Array) -> Array:
+    """How far the tool is from each of the turns that the setup gives, (k, turns) in rad.
+
+    Args:
+        points: (k, 3) the tip, m.
+        directions: (k, 3) unit vectors that the tool's z axis should have.
+        across: (k, 3) the tool's x axis.
+
+    Returns:
+        From 0 to pi; infinite where the setup's rule says nothing.
+    """
+    angle = angle_about(directions, turn_at(turn, points, directions), across)
+    off = angle[:, None] - np.radians(turn.degrees)
+    off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi)
+    return np.asarray(np.where(np.isnan(off), np.inf, off))
+
+
+def nearest_turns(turn: Turn, points: Array, directions: Array, across: Array) -> Index:
+    """Which of the turns that the setup gives is the nearest, (k,); see :func:`turns_off`."""
+    return np.asarray(np.argmin(turns_off(turn, points, directions, across), axis=1))
+
+
+def judge_turn(
+    turn: Turn, dense: Dense, rows: Index, normals: Array, across: Array, faults: FaultList
+) -> None:
+    """Note where the tool has none of the turns that the setup gives.
+
+    Args:
+        rows: (c,) those of ``dense`` in contact.
+        normals: (c, 3) of the surface there.
+        across: (c, 3) the tool's x axis there.
+    """
+    excess = np.zeros(len(dense))
+    off = turns_off(turn, dense.tips[rows], -normals, across).min(axis=1, initial=np.inf)
+    excess[rows] = np.degrees(off)
+    most = float(np.degrees(TURN))
+
+    def text(row: int) -> str:
+        if np.isinf(excess[row]):
+            return f"the setup's rule for the tool's turn says nothing here{dense.where(row)}"
+        return (
+            f"the tool is {excess[row]:.4g} degrees off the turn that the setup gives it, "
+            f"allowed are {most:.4g}{dense.where(row)}"
+        )
+
+    faults.add_stretches("turned", excess > most, excess, text, dense.tips, sample_of=dense.sample)

@@ -1,0 +1,106 @@
+"""The guide for planners in C++ and Rust, followed to the letter."""
+
+from __future__ import annotations
+
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from guides import ROOT, Block, blocks, follow
+
+import cellcolor
+from cellcolor.cli import main
+from cellcolor.data.plan import Plan
+
+GUIDE = "test-a-planner-in-cpp-or-rust"
+SURFACE, *REST = blocks(GUIDE)
+CPP = [block for block in REST if block.language in ("cpp", "cmake")]
+RUST = [block for block in REST if block.language in ("toml", "rust")]
+CPP_RUN, RUST_RUN = (block for block in REST if block.language == "sh")
+CPP_SAID, RUST_SAID = (block for block in REST if block.language == "text")
+
+
+@pytest.fixture
+def shell(tmp_path: Path) -> dict[str, str]:
+    """An environment that has this ``cellcolor``, and Rust where rustup puts it."""
+    programs = tmp_path / "programs"
+    programs.mkdir()
+    for name, arguments in (("cellcolor", "-m cellcolor"), ("python", "")):
+        program = programs / name
+        text = f'#!/bin/sh\nexec "{sys.executable}" {arguments} "$@"\n'
+        program.write_text(text, encoding="utf-8")
+        program.chmod(0o755)
+    places = [str(programs), os.environ["PATH"], str(Path.home() / ".cargo" / "bin")]
+    return os.environ | {"PATH": os.pathsep.join(places), "PYTHONPATH": str(ROOT)}
+
+
+def needs(*programs: str) -> None:
+    path = os.pathsep.join([os.environ["PATH"], str(Path.home() / ".cargo" / "bin")])
+    missing = [name for name in programs if shutil.which(name, path=path) is None]
+    if missing:
+        pytest.skip(f"not installed: {', '.join(missing)}")
+
+
+def run(block: Block, folder: Path, shell: dict[str, str]) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        ["sh", "-c", block.text],
+        cwd=folder,
+        env=shell,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+
+
+def fails_and_passes(
+    files: list[Block], command: Block, said: Block, folder: Path, shell: dict[str, str]
+) -> None:
+    """The last file is the mended planner, which replaces the first one."""
+    *files, mended = files
+    assert mended.introduced in [block.introduced for block in files]
+    made = run(SURFACE, folder, shell)
+    assert made.returncode == 0, made.stdout
+    for block in files:
+        follow(block, folder)
+    done = run(command, folder, shell)
+    assert done.returncode != 0 and said.text.strip() in done.stdout, done.stdout
+    follow(mended, folder)
+    done = run(command, folder, shell)
+    assert done.returncode == 0, done.stdout
+    # The proof of the one surface serves both plans.
+    (proofs,) = (path for path in folder.rglob("proofs") if path.is_dir())
+    assert len(list(proofs.iterdir())) == 1
+
+
+def test_the_messages(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """What the guide says that is printed, without compilers: of each vertex's first color."""
+    surface = cellcolor.read("half_pipe.surface.json")
+    plan = Plan([own[0] if own else None for own in surface.vertex_colors])
+    for options, said in (([], CPP_SAID), (["--json"], RUST_SAID)):
+        monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(plan.to_json().encode())))
+        command = ["check", "half_pipe.surface.json", "-", "--require-optimal", *options]
+        assert main(command) == 1
+        printed = capsys.readouterr().out
+        assert (json.loads(printed)["text"] if options else printed).strip() == said.text.strip()
+
+
+@pytest.mark.slow
+def test_cpp(tmp_path: Path, shell: dict[str, str]) -> None:
+    needs("cmake", "g++", "sh")
+    folder = tmp_path / "cpp"
+    folder.mkdir()
+    fails_and_passes(CPP, CPP_RUN, CPP_SAID, folder, shell)
+
+
+@pytest.mark.slow
+def test_rust(tmp_path: Path, shell: dict[str, str]) -> None:
+    needs("cargo", "sh")
+    folder = tmp_path / "rust"
+    folder.mkdir()
+    fails_and_passes(RUST, RUST_RUN, RUST_SAID, folder, shell | {"CARGO_NET_OFFLINE": "true"})

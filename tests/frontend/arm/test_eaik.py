@@ -1,0 +1,267 @@
+"""Any arm that EAIK solves: solutions against ssik and forward kinematics, names, refusals."""
+
+from __future__ import annotations
+
+import sys
+
+import dh_arms
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from independent import set_distance, wrapped
+from scipy.optimize import brentq
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.eaik import EaikKinematics
+from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.signs import BRANCHES
+from cellcolor.frontend.setup import RobotFiles
+
+LOCKED = 0.4
+NAMED = ("kr6", "irb120", "puma560", "ur5e")
+NAMELESS = ("passing", "cuspidal")
+REGULAR = 1e-5  # of reach^3; nearer to a singularity two solutions are about to meet
+
+
+def files(**keys: object) -> RobotFiles:
+    given = {"arm_urdf": "<", "flange_link": "flange", "tool_urdf": "<", "tip_link": "tool_tip"}
+    return RobotFiles(**(given | {"kinematics": "eaik", "locked_joint_6_rad": LOCKED} | keys))
+
+
+ROBOTS = {name: dh_arms.robot(dh_arms.urdf(name)) for name in (*NAMED, *NAMELESS)}
+FAMILIES = {name: EaikKinematics(robot, files()) for name, robot in ROBOTS.items()}
+
+
+def solved(name: str, points: Array, directions: Array) -> list[Array]:
+    """Joints 1 to 5 of all solutions of each pose."""
+    found = FAMILIES[name].solve(points, directions)
+    return [each[~np.isnan(each[:, 0]), :5] for each in found]
+
+
+def determinants(name: str, five: Array) -> Array:
+    poses = forward(ROBOTS[name], np.column_stack([five, np.zeros(len(five))]))
+    return task_determinant(*tip_jacobian(poses), poses.tool_axis) / FAMILIES[name].reach ** 3
+
+
+def same_sets(name: str, q: Array, regular_only: bool = False) -> int:
+    """Compare all solutions of the poses of some configurations; how many there were."""
+    from other_solver import Ssik  # only here: ssik may be missing
+
+    theirs_of, random = Ssik(ROBOTS[name]), np.random.default_rng(3)
+    poses, count = forward(ROBOTS[name], q), 0
+    for ours, point, direction in zip(
+        solved(name, poses.tip, poses.tool_axis), poses.tip, poses.tool_axis, strict=True
+    ):
+        theirs = theirs_of.solutions(point, direction, random.uniform(0, 6))
+        if regular_only:
+            ours, theirs = (each[determinants(name, each) > REGULAR] for each in (ours, theirs))
+        assert set_distance(ours, theirs) < 1e-5
+        count += len(ours)
+    return count
+
+
+@pytest.mark.parametrize("name", (*NAMED, *NAMELESS))
+def test_same_solutions_as_ssik(name: str) -> None:
+    pytest.importorskip("ssik")
+    q = np.random.default_rng(5).uniform(-np.pi, np.pi, (60, 6))
+    assert same_sets(name, q) >= 240
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", (*NAMED, *NAMELESS))
+def test_solutions_of_ssik_for_five_thousand_poses(name: str) -> None:
+    """None of ssik's is missing; now and then it has fewer, of arms whose signs have no names.
+
+    What is more here reaches the pose, as the test of all solutions holds.
+    """
+    pytest.importorskip("ssik")
+    from other_solver import Ssik
+
+    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (5000, 6))
+    poses, theirs_of = forward(ROBOTS[name], q), Ssik(ROBOTS[name])
+    more = 0
+    for ours, point, direction in zip(
+        solved(name, poses.tip, poses.tool_axis), poses.tip, poses.tool_axis, strict=True
+    ):
+        theirs = theirs_of.solutions(point, direction, 1.0)
+        gap = wrapped(theirs[:, None] - ours[None]).max(axis=2)
+        assert gap.min(axis=1).max(initial=0) < 1e-5
+        more += len(ours) > len(theirs)
+    assert more <= (0 if name in NAMED else 5)
+
+
+def near_singular(name: str, kind: str, off: float, count: int) -> Array:
+    """Configurations that are ``off`` rad in one joint from a singularity of a kind."""
+    signs = FAMILIES[name]._signs
+    assert signs is not None
+    joint, number = {"wrist": (4, 2), "elbow": (2, 1), "shoulder": (1, 0)}[kind]
+
+    def factor(angle: float, row: Array) -> float:
+        turned = np.array(row)
+        turned[joint] = angle
+        factors = signs.factors(forward(ROBOTS[name], turned[None]))[0]
+        # The elbow's factor changes its sign with the shoulder's as well.
+        return float(factors[number] * (np.sign(factors[0]) if number == 1 else 1.0))
+
+    rows, found = np.random.default_rng(29).uniform(-np.pi, np.pi, (20 * count, 6)), []
+    for row in rows:
+        turns = np.linspace(-3.1, 3.0, 20)
+        values = np.array([factor(turn, row) for turn in turns])
+        crossed = np.flatnonzero(values[1:] * values[:-1] < 0)
+        if len(crossed):
+            low, high = turns[crossed[0]], turns[crossed[0] + 1]
+            row[joint] = brentq(factor, low, high, args=(row,), xtol=1e-14) + off
+            found.append(row)
+        if len(found) == count:
+            break
+    assert len(found) == count
+    return np.array(found)
+
+
+@pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-7, 0.0])
+@pytest.mark.parametrize("kind", ["wrist", "elbow", "shoulder"])
+@pytest.mark.parametrize("name", ["kr6", "puma560"])
+def test_no_solution_is_lost_next_to_a_singularity(name: str, kind: str, off: float) -> None:
+    """Compared are those with a determinant above a share of reach^3; the own one always."""
+    pytest.importorskip("ssik")
+    q = near_singular(name, kind, off, 10)
+    same_sets(name, q, regular_only=True)
+    poses = forward(ROBOTS[name], q)
+    for own, ours in zip(q, solved(name, poses.tip, poses.tool_axis), strict=True):
+        if off >= 1e-4:
+            # Half of the digits are lost where two solutions meet.
+            assert wrapped(ours - own[:5]).max(axis=1).min(initial=9) < 1e-9 / off
+        # At the singularity itself rounding may say that there is nothing; no crash.
+        assert len(ours) <= 8
+
+
+@pytest.mark.parametrize("name", (*NAMED, *NAMELESS))
+def test_all_solutions_reach_the_pose_and_are_told_apart(name: str) -> None:
+    robot, random = ROBOTS[name], np.random.default_rng(4)
+    poses = forward(robot, random.uniform(-np.pi, np.pi, (500, 6)))
+    found = FAMILIES[name].solve(poses.tip, poses.tool_axis)
+    rows, columns = np.nonzero(~np.isnan(found[:, :, 0]))
+    reached = forward(robot, found[rows, columns])
+    assert np.abs(reached.tip - poses.tip[rows]).max() < 1e-9
+    assert np.abs(reached.tool_axis - poses.tool_axis[rows]).max() < 1e-9
+    assert (found[rows, columns, 5] == LOCKED).all()
+    for solutions in found:
+        there = solutions[~np.isnan(solutions[:, 0]), :5]
+        apart = wrapped(there[:, None] - there).max(axis=2) + 9 * np.eye(len(there))
+        assert apart.min(initial=9) > 1e-6
+
+
+@pytest.mark.parametrize("name", (*NAMED, *NAMELESS))
+def test_out_of_reach_there_is_nothing(name: str) -> None:
+    down = np.array([[0.0, 0.0, -1.0]])
+    for place in ([9.0, 0.0, 0.0], [1e6, 0.0, 0.0]):
+        assert np.isnan(FAMILIES[name].solve(np.array([place]), down)).all()
+    assert len(FAMILIES[name].solve(np.empty((0, 3)), np.empty((0, 3)))) == 0
+
+
+@pytest.mark.parametrize("name", NAMED)
+def test_a_branch_alone_is_the_same_as_among_all(name: str) -> None:
+    random = np.random.default_rng(7)
+    poses = forward(ROBOTS[name], random.uniform(-np.pi, np.pi, (50, 6)))
+    every = FAMILIES[name].solve(poses.tip, poses.tool_axis)
+    branches = random.integers(0, 8, 50)
+    alone = FAMILIES[name].solve(poses.tip, poses.tool_axis, branches)
+    assert alone.shape == (50, 1, 6)
+    assert np.array_equal(alone[:, 0], every[np.arange(50), branches], equal_nan=True)
+
+
+@given(
+    name=st.sampled_from(NAMED),
+    seed=st.integers(0, 2**32 - 1),
+    steps=st.integers(20, 60),
+)
+@settings(deadline=None, max_examples=40)
+def test_names_stay_the_same_without_a_singularity(name: str, seed: int, steps: int) -> None:
+    """On the straight way between two configurations, wherever no determinant is near zero."""
+    random = np.random.default_rng(seed)
+    first, last = random.uniform(-np.pi, np.pi, (2, 6))
+    fine = first + np.linspace(0, 1, 50 * steps)[:, None] * (last - first)
+    poses = forward(ROBOTS[name], fine)
+    determinant = task_determinant(*tip_jacobian(poses), poses.tool_axis)
+    # Where it is so large that it cannot have been zero between two points: it changes by less
+    # than its largest difference.
+    clear = determinant > 2 * np.abs(np.diff(determinant)).max()
+    signs = FAMILIES[name]._signs
+    assert signs is not None
+    branches = signs.branches(ROBOTS[name], fine)
+    together = clear[1:] & clear[:-1]
+    assert (branches[1:][together] == branches[:-1][together]).all()
+
+
+def test_branch_names_mean_what_they_say() -> None:
+    # Tool down on points in front of the arm, where all eight branches exist.
+    random = np.random.default_rng(8)
+    turn, out = random.uniform(-1.0, 1.0, 50), random.uniform(0.35, 0.45, 50)
+    points = np.column_stack([out * np.cos(turn), out * np.sin(turn), random.uniform(0.2, 0.3, 50)])
+    found = FAMILIES["irb120"].solve(points, np.tile([0.0, 0.0, -1.0], (50, 1)))
+    assert not np.isnan(found).any()
+    robot = ROBOTS["irb120"]
+    for branch, name in enumerate(BRANCHES):
+        poses = forward(robot, found[:, branch])
+        shoulder, elbow, wrist = (poses.origin[:, frame] for frame in (2, 3, 5))
+        # Shoulder front: leaning forwards by a positive angle of joint 2, from upright at -90.
+        forwards = np.stack([np.cos(found[:, branch, 0]), np.sin(found[:, branch, 0])], axis=1)
+        front = ((wrist[:, :2] * forwards).sum(axis=1)) > 0
+        assert (front == ("shoulder-front" in name)).all()
+        chord = wrist - shoulder
+        share = ((elbow - shoulder) * chord).sum(1) / (chord * chord).sum(1)
+        above = elbow[:, 2] > (shoulder + share[:, None] * chord)[:, 2]
+        assert (above == ("elbow-up" in name)).all()
+        # At zero of joint 5 the tool goes on in the direction of the forearm.
+        assert ((found[:, branch, 4] > 0) == ("wrist-unflipped" in name)).all()
+
+
+def test_reach_and_lever_of_an_arm_that_can_be_laid_straight() -> None:
+    # PUMA: upper arm .4318, forearm hypot(.4318, .0203) beside it by .15005, and then .156 of tool
+    # from the wrist, which makes the most of it straight away from the shoulder.
+    family = FAMILIES["puma560"]
+    out = 0.4318 + np.hypot(0.4318, 0.0203)
+    assert family.reach == pytest.approx(np.hypot(out, 0.15005) + 0.156, abs=1e-6)
+    assert family.lever == pytest.approx(0.056 + 0.1, abs=1e-12)
+
+
+def refused(robot: Robot, **keys: object) -> InputError:
+    with pytest.raises(InputError) as caught:
+        EaikKinematics(robot, files(**keys))
+    assert "\n" not in str(caught.value)
+    return caught.value
+
+
+def test_an_arm_without_closed_form_is_refused_with_the_way_out() -> None:
+    error = refused(dh_arms.robot(dh_arms.urdf("crx10ia")))
+    assert (error.file, error.field) == ("arm.urdf", "robot")
+    assert "no closed form" in error.message and "own solver" in error.message
+
+
+def test_a_tool_beside_the_last_axis_is_refused() -> None:
+    text = dh_arms.urdf("kr6").replace('<link name="flange"/>', "")
+    text = text.replace('child link="flange"', 'child link="wrist"').replace(
+        "</robot>",
+        '<link name="wrist"/><joint name="bend" type="fixed"><parent link="wrist"/>'
+        '<child link="flange"/><origin xyz="0.01 0 0"/></joint><link name="flange"/></robot>',
+    )
+    error = refused(dh_arms.robot(text))
+    assert error.field == "joint[j6]" and "must lie on this joint's axis" in error.message
+
+
+@pytest.mark.parametrize(
+    ("locked", "message"), [(None, "required"), (7.0, "outside the limits of the sixth joint")]
+)
+def test_the_locked_joint_is_needed(locked: float | None, message: str) -> None:
+    error = refused(ROBOTS["kr6"], locked_joint_6_rad=locked)
+    assert error.field == "robot.locked_joint_6_rad" and message in error.message.lower()
+
+
+def test_without_the_package_the_extra_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "eaik.IK_HP", None)
+    error = refused(ROBOTS["kr6"])
+    assert error.field == "robot.kinematics"
+    assert "extra 'arms'" in error.message and "own solvers" in error.message

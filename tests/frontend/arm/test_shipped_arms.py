@@ -1,0 +1,131 @@
+"""The arms of models/robots: files as their tables have them, and tables as makers have them."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from types import ModuleType
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from shipped import ROBOTS
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.contact.collision import body_ends, hits_itself
+from cellcolor.frontend.prepared import robot_of
+from cellcolor.frontend.setup import Setup
+
+UR = ("ur3e", "ur5e", "ur10e", "ur16e")
+# From axis 1 to the center of the wrist, arm stretched out sideways: the reach of the maker's
+# sheet. Staubli's, 0.67 m, is to the flange.
+REACH = {"kr6": 0.9015, "irb120": 0.58, "tx2_60": 0.6}
+CALIBRATED = "ur5e_calibrated"
+
+
+def module(name: str) -> ModuleType:
+    """A script beside the arms."""
+    sys.path.insert(0, str(ROBOTS))
+    try:
+        return importlib.import_module(name)
+    finally:
+        sys.path.remove(str(ROBOTS))
+
+
+TABLES, MAKE = module("tables"), module("make")
+
+
+def setup_of(name: str) -> Setup:
+    return Setup.read(ROBOTS / f"{name}_polishing.toml")
+
+
+def robot(name: str) -> Robot:
+    return robot_of(setup_of(name))
+
+
+def test_files_are_what_the_tables_give() -> None:
+    written = MAKE.written()
+    assert set(TABLES.ARMS) == {*UR, *REACH, CALIBRATED}
+    for name, text in written.items():
+        assert (ROBOTS / name).read_text(encoding="utf-8") == text, "run models/robots/make.py"
+    handmade = {"ur5.urdf", "polishing_tool.urdf", "camera.urdf", "kr6_r700_z200.urdf"}
+    assert handmade | set(written) >= {file.name for file in ROBOTS.glob("*.urdf")}
+
+
+def denavit_hartenberg(constants: tuple[float, ...], q: Array) -> list[Array]:
+    """Frames 0 to 6 of a UR-type arm, by the definition of the constants."""
+    d1, a2, a3, d4, d5, d6 = constants
+    frames = [np.diag([-1.0, -1.0, 1.0, 1.0])]  # the maker's base, turned by pi about z
+    table = zip(
+        (d1, 0, 0, d4, d5, d6), (0, a2, a3, 0, 0, 0), (90, 0, 0, 90, -90, 0), q, strict=True
+    )
+    for d, a, alpha, theta in table:
+        c, s = np.cos(theta), np.sin(theta)
+        ca, sa = np.cos(np.radians(alpha)), np.sin(np.radians(alpha))
+        turn = np.array([[c, -s * ca, s * sa], [s, c * ca, -c * sa], [0, sa, ca]])
+        step = np.eye(4)
+        step[:3, :3], step[:3, 3] = turn, (a * c, a * s, d)
+        frames.append(frames[-1] @ step)
+    return frames
+
+
+@pytest.mark.parametrize("name", UR)
+def test_ur_arms_are_those_of_the_published_constants(name: str) -> None:
+    """Flange and centers of mass, by Denavit-Hartenberg frames instead of the URDF's."""
+    arm, table = robot(name), TABLES.UR[name]
+    model, data = arm.model, arm.model.createData()
+    flange = model.getFrameId("tool0")
+    tool = np.array([0, 0, 0.045]), 0.5  # of polishing_tool.urdf, in the flange's frame
+    for q in np.random.default_rng(1).uniform(-np.pi, np.pi, (20, 6)):
+        frames = denavit_hartenberg(table.constants, q)
+        pin.framesForwardKinematics(model, data, q)
+        assert np.allclose(data.oMf[flange].homogeneous, frames[6], atol=1e-12)
+        pin.computeGeneralizedGravity(model, data, q)
+        for joint, (mass, center) in enumerate(zip(table.masses, table.centers, strict=True), 1):
+            expected = frames[joint] @ [*center, 1]
+            if joint == 6:
+                with_tool = expected[:3] * mass + (frames[6] @ [*tool[0], 1])[:3] * tool[1]
+                mass, expected = mass + tool[1], with_tool / (mass + tool[1])
+            found = data.oMi[joint].act(model.inertias[joint].lever)
+            assert np.allclose(found, expected[:3], atol=1e-12)
+            assert model.inertias[joint].mass == pytest.approx(mass)
+
+
+@pytest.mark.parametrize("name", REACH)
+def test_spherical_wrists_reach_as_far_as_published(name: str) -> None:
+    arm = robot(name)
+    data = arm.model.createData()
+    joints = np.zeros(6)
+    farthest = 0.0
+    for joints[1] in np.radians(np.arange(-180, 181, 5)):
+        for joints[2] in np.radians(np.arange(-180, 181, 0.5)):
+            pin.forwardKinematics(arm.model, data, joints)
+            x, y, _ = data.oMi[5].translation  # where axes 4, 5 and 6 meet
+            farthest = max(farthest, float(np.hypot(x, y if name != "tx2_60" else 0.0)))
+    assert farthest == pytest.approx(REACH[name], abs=5e-4)
+    axes = [(data.oMi[k].rotation @ arm.axis[k - 1], data.oMi[k].translation) for k in (4, 5, 6)]
+    for axis, origin in axes:
+        assert np.allclose(np.cross(data.oMi[5].translation - origin, axis), 0, atol=1e-12)
+
+
+@pytest.mark.parametrize("name", [*UR, *REACH, CALIBRATED])
+def test_at_home_nothing_is_hit_and_the_tool_looks_down(name: str) -> None:
+    setup, arm = setup_of(name), robot(name)
+    assert setup.motion is not None and setup.motion.home_rad is not None
+    home = np.array([setup.motion.home_rad])
+    assert ((arm.lower <= home) & (home <= arm.upper)).all()
+    poses = forward(arm, home)
+    assert not hits_itself(arm, body_ends(arm, poses), poses).any()
+    assert np.allclose(poses.tool_axis, [0, 0, -1], atol=0.01)
+    assert np.hypot(*poses.tip[0, :2]) > 0.2  # away from the base
+    assert arm.warnings == ()
+
+
+def test_the_calibrated_arm_differs_as_a_calibrated_arm_does() -> None:
+    plain, off = robot("ur5e"), robot(CALIBRATED)
+    turned = np.abs(off.placement[:, :3, :3] - plain.placement[:, :3, :3]).max(axis=(1, 2))
+    moved = np.abs(off.placement[:, :3, 3] - plain.placement[:, :3, 3]).max(axis=1)
+    assert (turned[1:] > 1e-4).all() and turned.max() < 2e-3
+    assert (moved[1:] > 1e-4).all() and moved.max() < 1e-3

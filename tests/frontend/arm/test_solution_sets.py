@@ -1,0 +1,70 @@
+"""Every shipped arm's solutions against ssik: 5,000 poses each in ``benchmarks/arms.py``."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from shipped import ROBOTS
+
+from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
+from cellcolor.frontend.setup import Setup
+
+pytest.importorskip("ssik")
+
+from solution_sets import KINDS, Arm
+
+ARMS = ("ur5", "ur3e", "ur5e", "ur10e", "ur16e", "kr6", "irb120", "tx2_60")
+
+
+def arm(name: str) -> Arm:
+    return Arm.of(Setup.read(ROBOTS / f"{name}_polishing.toml"))
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_the_same_solutions(name: str) -> None:
+    q = np.random.default_rng(5).uniform(-np.pi, np.pi, (40, 6))
+    found = arm(name).compared(q)
+    assert found.different == 0 and found.solutions > 5 * found.poses
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ARMS)
+def test_the_same_solutions_of_five_thousand_poses(name: str) -> None:
+    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (5000, 6))
+    found = arm(name).compared(q)
+    assert found.different == 0 and found.solutions > 5 * found.poses
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("name", ["ur3e", "irb120", "tx2_60"])
+def test_none_is_lost_next_to_a_singularity(name: str, kind: str) -> None:
+    """Beyond a determinant of 1e-5 of the cube of the reach sets are the same, at any distance."""
+    one = arm(name)
+    for off in (1e-2, 1e-4, 1e-7, 0.0):
+        q = one.near_singular(kind, off, 4)
+        assert one.compared(q).different == 0
+        if off >= 1e-4:  # half of the digits are lost where two solutions meet
+            assert one.lost(q, within=1e-9 / off) == 0
+
+
+def test_the_calibrated_arm_finds_its_own_configurations() -> None:
+    """Beyond a ninth of the setup's threshold on the task determinant; docs/arms.md has more."""
+    one = arm("ur5e_calibrated")
+    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (1000, 6))
+    poses = forward(one.robot, q)
+    determinant = task_determinant(*tip_jacobian(poses), poses.tool_axis)
+    well = q[determinant > 1e-4 * one.family.reach**3]
+    assert len(well) > 950 and one.lost(well, within=1e-6) == 0
+
+
+def test_a_lost_solution_is_noticed() -> None:
+    """One branch left out is a difference at every pose that has it."""
+    one = arm("kr6")
+    solve = one.family.solve
+
+    def without_the_first(points: np.ndarray, directions: np.ndarray) -> np.ndarray:
+        return solve(points, directions)[:, 1:]
+
+    one.family.solve = without_the_first  # type: ignore[method-assign, assignment]
+    q = np.random.default_rng(5).uniform(-np.pi, np.pi, (10, 6))
+    assert one.compared(q).different > 5

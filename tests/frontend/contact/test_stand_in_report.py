@@ -1,0 +1,71 @@
+"""By how much hulls and capsules are off, on shapes of which that is known."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import trimesh
+
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.body import mesh_bodies
+from cellcolor.frontend.contact.stand_in_report import StandInReport, report_on
+from cellcolor.frontend.setup import MeshCollision
+
+
+def reported(mesh: trimesh.Trimesh, chosen: MeshCollision) -> StandInReport:
+    vertices, faces = np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
+    return report_on(mesh_bodies("link", 1, Path("folder/link.stl"), vertices, faces, chosen))
+
+
+def test_the_hull_of_a_groove_is_off_by_half_its_width() -> None:
+    """Two boxes 40 mm apart: halfway between them the hull is 20 mm from both."""
+    boxes = [trimesh.creation.box((0.05, 0.1, 0.08)) for _ in range(2)]
+    boxes[1].apply_translation((0.09, 0, 0))
+    report = reported(trimesh.util.concatenate(boxes), "hull")
+    assert report.contains and report.shapes == 1
+    assert report.error_m - report.known_to_m <= 0.02 <= report.error_m
+    assert report.known_to_m < 0.002
+    assert str(report).startswith("'link': convex hull of link.stl, contains it, at most 2")
+
+
+def test_the_hull_of_what_is_convex_is_the_mesh() -> None:
+    report = reported(trimesh.creation.icosphere(radius=0.1), "hull")
+    assert report.contains and report.error_m <= report.known_to_m
+
+
+def test_the_mesh_itself_is_not_off() -> None:
+    report = reported(trimesh.creation.torus(0.1, 0.02), "exact")
+    assert report.error_m == 0 and report.contains
+    assert str(report) == "'link': link.stl, as it is"
+
+
+def test_of_an_open_mesh_that_is_said() -> None:
+    ring = trimesh.creation.cylinder(radius=0.1, height=0.1)
+    ring.update_faces(np.abs(ring.face_normals[:, 2]) < 0.5)
+    assert str(reported(ring, "exact")).endswith("what is all inside it goes unnoticed")
+
+
+def test_a_capsule_around_a_cylinder_is_off_at_its_ends() -> None:
+    """Of a cylinder of radius r and length l >> r the ends of a capsule are some of r beyond."""
+    report = reported(trimesh.creation.cylinder(radius=0.05, height=0.6, sections=48), "capsules")
+    assert report.contains
+    assert 0.02 < report.error_m < 0.06
+
+
+def test_capsules_are_not_off_where_they_overlap() -> None:
+    """Of an L two capsules follow the arms; what of one is inside the other does not count."""
+    arms = [trimesh.creation.capsule(height=0.4, radius=0.05) for _ in range(2)]
+    arms[1].apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
+    report = reported(trimesh.util.concatenate(arms), "capsules")
+    one = reported(trimesh.util.concatenate(arms).convex_hull, "capsules")
+    assert report.contains and report.shapes >= 2
+    assert report.error_m < 0.5 * one.error_m
+
+
+def test_a_flat_mesh_has_no_hull() -> None:
+    sheet = trimesh.Trimesh([[0, 0, 0], [1, 0, 0], [1, 1, 0]], [[0, 1, 2]])
+    with pytest.raises(InputError, match="'exact'") as caught:
+        reported(sheet, "hull")
+    assert caught.value.file == "folder/link.stl"

@@ -1,0 +1,66 @@
+"""Points that say how far bodies move: none of a solid's points moves farther than they."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from meshed_arm import link_meshes, write_package
+from shipped import ROBOTS
+
+from cellcolor.frontend.arm.kinematics import forward, turned
+from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.contact.collision import (
+    body_ends,
+    longest_steps,
+    tracked_points,
+    tracked_steps,
+)
+
+
+@pytest.fixture(scope="module")
+def meshed(tmp_path_factory: pytest.TempPathFactory) -> Robot:
+    package = write_package(tmp_path_factory.mktemp("arm"), "toy_description")
+    files = (ROBOTS / "polishing_tool.urdf", "tool_tip")
+    return load_robot(package / "urdf" / "arm.urdf", "wrist_3_link", *files)
+
+
+@given(seed=st.integers(0, 2**32 - 1), far=st.sampled_from([1e-3, 0.1, 3.0]))
+def test_no_point_of_a_mesh_moves_farther_than_a_corner(
+    meshed: Robot, seed: int, far: float
+) -> None:
+    random = np.random.default_rng(seed)
+    start = random.uniform(-np.pi, np.pi, 6)
+    joints = np.array([start, start + random.uniform(-far, far, 6)])
+    poses = forward(meshed, joints)
+    tracked = tracked_points(meshed, body_ends(meshed, poses), poses)
+    moved = np.linalg.norm(tracked[:, 1] - tracked[:, 0], axis=1)
+    first = 0
+    for body in meshed.bodies:
+        if body.joint == 0:
+            continue
+        count = 2 if body.solid is None else 8
+        if body.solid is not None:
+            points = np.array(link_meshes()[body.link].vertices)
+            places = turned(poses.rotation[:, body.joint], points.T).transpose(0, 2, 1)
+            places += poses.origin[:, body.joint, None]
+            own = np.linalg.norm(places[1] - places[0], axis=1).max()
+            assert own <= moved[first : first + count].max() + 1e-9
+        first += count
+    assert first == len(tracked) == len(tracked_steps(meshed, 0.0, 0.0))
+
+
+def test_steps_of_solids_grow_with_the_margin_and_others_do_not(meshed: Robot) -> None:
+    """What is nearer than the margin is noticed, so half a step may be as much and 0.65 mm."""
+    bare, wide = tracked_steps(meshed, 0.0, 0.0), tracked_steps(meshed, 0.004, 0.01)
+    sharp = np.array([body.solid is not None for body in meshed.bodies if body.joint > 0])
+    of_solids = np.repeat(sharp, np.where(sharp, 8, 2))
+    assert bare[of_solids] == pytest.approx(0.0013)
+    assert wide[of_solids] == pytest.approx(0.0013 + 0.008)
+    tool = next(body for body in meshed.bodies if body.solid is None)
+    assert (bare[~of_solids] == longest_steps(np.array([tool.radius]))).all()
+    assert (wide[~of_solids] == bare[~of_solids]).all()
+    # Two links that both move come as much nearer as a step is long: their margin allows that much.
+    assert (tracked_steps(meshed, 0.004, 0.0) == bare).all()
+    assert tracked_steps(meshed, 0.004, 0.002)[of_solids] == pytest.approx(0.0013 + 0.002)

@@ -1,0 +1,100 @@
+"""Remeshing: lengths, sharp edges, borders and the deviation, against other computations."""
+
+from __future__ import annotations
+
+import subprocess
+from typing import Any
+
+import numpy as np
+import pytest
+import trimesh
+from shipped import TOP
+
+pytest.importorskip("gpytoolbox", reason="the extra 'parts' is not installed")
+
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.frontend import sizes
+from cellcolor.frontend.parts import remeshing
+from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.mesh_file import read_mesh
+from cellcolor.frontend.parts.repaired import repair_mesh
+from cellcolor.frontend.parts.shapes import grid_mesh
+
+
+def lengths(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    return np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2)
+
+
+def test_a_part_with_sharp_edges() -> None:
+    """The bracket, in millimeters, to edges of 6 mm: its sharp corners stay."""
+    vertices, faces = read_mesh(TOP / "instances" / "parts" / "bracket.obj")
+    made = repair_mesh(vertices, faces, 0.001, edge_length_m=0.006)
+    found = lengths(made.vertices, made.faces)
+    assert 5.5 < np.median(found) < 6.5 and found.max() < 15
+    assert made.area_m2 == pytest.approx(made.area_before_m2, rel=1e-3)
+    assert (abs(np.ptp(made.vertices, axis=0) - np.ptp(vertices, axis=0)) < 1e-6).all()
+    mesh_surface(made.vertices, made.faces, 0.001)
+    # The deviation once more, by trimesh's own search over all faces for a few points.
+    assert made.deviation is not None
+    old = trimesh.Trimesh(vertices, faces, process=False)
+    some = made.vertices[::40]
+    _, distance, _ = trimesh.proximity.closest_point_naive(old, some)
+    assert distance.max() / 1000 <= made.deviation.greatest_back + 1e-9
+    assert 0 < made.deviation.mean_back < made.deviation.greatest_back < 0.002
+    assert 0 < made.deviation.mean < made.deviation.greatest < 0.002
+    assert "remeshed to edges of about 6 mm" in str(made)
+
+
+def test_a_coarse_border_is_halved_and_stays_where_it_is() -> None:
+    """A square of two triangles: its border and area stay, its edges become 50 mm."""
+    corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)
+    made = repair_mesh(corners, np.array([[0, 1, 2], [0, 2, 3]]), edge_length_m=0.05)
+    assert made.area_m2 == pytest.approx(1.0) and made.holes == 1
+    assert lengths(made.vertices, made.faces).max() < 0.11
+    assert made.deviation is not None and made.deviation.greatest < 1e-9
+
+
+def test_a_mesh_with_more_vertices_than_fit_is_made_coarser(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """An open one, whose border is fine enough: only what comes out has to fit."""
+    grid, faces = grid_mesh(1.0, 1.0, 1000, 0.0, 0)
+    flat = np.column_stack([grid, np.zeros(len(grid))])
+    monkeypatch.setattr(sizes, "MOST_VERTICES", 700)
+    with pytest.raises(InputError, match="at most 700 fit"):
+        repair_mesh(flat, faces)
+    made = repair_mesh(flat, faces, edge_length_m=0.06)
+    assert len(made.vertices) < 600 and made.area_m2 == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("length", "message"), [(1e-4, "gives about 115,470,054"), (2.0, "10 to")])
+def test_what_would_be_too_many_or_too_few(length: float, message: str) -> None:
+    """Refused before anything is begun."""
+    grid, faces = grid_mesh(1.0, 1.0, 100, 0.0, 0)
+    flat = np.column_stack([grid, np.zeros(len(grid))])
+    with pytest.raises(InputError, match=message) as caught:
+        repair_mesh(flat, faces, edge_length_m=length)
+    assert caught.value.field == "edge_length_m"
+
+
+def test_the_deadline_ends_the_other_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half a second after it was begun; it would take many."""
+    grid, faces = grid_mesh(1.0, 1.0, 40_000, 0.0, 0)
+    flat = np.column_stack([grid, 0.1 * np.sin(9 * grid[:, 0])])
+    children = []
+    begin = subprocess.Popen
+
+    def noted(*arguments: Any, **options: Any) -> Any:
+        children.append(begin(*arguments, **options))
+        return children[-1]
+
+    run = remeshing._run
+    monkeypatch.setattr(subprocess, "Popen", noted)
+    monkeypatch.setattr(remeshing, "_run", lambda given, _: run(given, Deadline.after(0.5)))
+    said: list[str] = []
+    with pytest.raises(OutOfTime):
+        repair_mesh(flat, faces, edge_length_m=0.003, tell=said.append)
+    assert said[-1].startswith("remeshing to about ")
+    (child,) = children
+    assert child.returncode is not None

@@ -1,0 +1,236 @@
+"""Meshes spoiled at random and repaired, held to what they were by trimesh."""
+
+from __future__ import annotations
+
+import fcl
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cellcolor.data.mesh import directed_edges
+from cellcolor.errors import InputError
+from cellcolor.frontend.parts.cleaning import flat_faces, merged, repeated_faces, without_flat
+from cellcolor.frontend.parts.crossings import MOST_FACES, crossing_pairs
+from cellcolor.frontend.parts.holes import filling, loops
+from cellcolor.frontend.parts.inspection import facts_of
+from cellcolor.frontend.parts.repairing import Mending, mended
+from cellcolor.frontend.parts.shapes import disc_mesh
+from cellcolor.frontend.parts.splitting import split
+from cellcolor.frontend.parts.topology import edge_table, parts_of
+from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
+
+BALL = trimesh.creation.icosphere(subdivisions=2, radius=0.1)
+VERTICES, FACES = np.array(BALL.vertices), np.array(BALL.faces, dtype=np.int64)
+seeds = st.integers(0, 2**32 - 1)
+
+
+@given(seeds, st.integers(0, 40), st.integers(0, 40), st.integers(0, 6))
+def test_a_spoiled_ball_is_a_ball_again(seed: int, turn: int, twice: int, gone: int) -> None:
+    rng = np.random.default_rng(seed)
+    faces = FACES.copy()
+    rows = rng.choice(len(faces), turn, replace=False)
+    faces[rows] = faces[rows][:, ::-1]
+    again = np.roll(faces[rng.choice(len(faces), twice, replace=False)], 1, axis=1)
+    faces = np.delete(faces, rng.choice(len(faces), gone, replace=False), axis=0)
+    faces = rng.permutation(np.concatenate([faces, again]))
+    loose = VERTICES[faces].reshape(-1, 3), np.arange(faces.size).reshape(-1, 3)
+    made, new, _ = mended(*loose, Mending(longest_hole=1.0))
+    mesh = trimesh.Trimesh(made, new, process=False)
+    assert mesh.is_watertight and mesh.is_winding_consistent
+    # Of a hole of several faces the flattest filling has less area and volume.
+    assert 0.95 < mesh.volume / BALL.volume < 1 + 1e-9
+    if not gone:
+        assert mesh.volume == pytest.approx(BALL.volume)
+
+
+@given(seeds)
+def test_parts_and_genus(seed: int) -> None:
+    """Balls, tori and open caps at random: how many of each is known."""
+    rng = np.random.default_rng(seed)
+    balls, tori, caps = rng.integers([1, 0, 0], 4)
+    torus = trimesh.creation.torus(1.0, 0.3, 12, 8)
+    cap = trimesh.creation.icosphere(subdivisions=1)
+    cap.update_faces(cap.triangles_center[:, 2] > 0)
+    cap.remove_unreferenced_vertices()
+    ball = trimesh.creation.icosphere(subdivisions=1)
+    meshes = [m.copy() for m, n in ((ball, balls), (torus, tori), (cap, caps)) for _ in range(n)]
+    for number, mesh in enumerate(meshes):
+        mesh.apply_translation([4.0 * number, 0, 0])
+    whole = trimesh.util.concatenate([meshes[k] for k in rng.permutation(len(meshes))])
+    facts = facts_of(np.array(whole.vertices), np.array(whole.faces, dtype=np.int64))
+    assert (len(facts.components), facts.genus) == (len(meshes), tori)
+    assert len(facts.holes) == caps
+    assert facts.area_m2 == pytest.approx(whole.area)
+    assert sum(part.closed for part in facts.components) == balls + tori
+
+
+@given(seeds)
+def test_winding_is_made_alike_whatever_it_was(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    faces = turned(FACES, rng.random(len(FACES)) < rng.random())
+    turn, one_sided = against_the_others(faces, edge_table(faces))
+    assert turn.sum() <= len(faces) / 2 and not one_sided.any()
+    alike = turned(faces, turn)
+    alike = turned(alike, inside_out(VERTICES, alike))
+    mesh = trimesh.Trimesh(VERTICES, alike, process=False)
+    assert mesh.is_winding_consistent and mesh.volume == pytest.approx(BALL.volume)
+
+
+@given(seeds, st.integers(2, 30))
+def test_crossing_faces_are_those_that_fcl_finds(seed: int, count: int) -> None:
+    """Triangles at random that share no vertex, one pair after the other."""
+    points = np.random.default_rng(seed).uniform(-1, 1, (3 * count, 3))
+    faces = np.arange(3 * count).reshape(-1, 3)
+    models = []
+    for face in faces:
+        model = fcl.BVHModel()
+        model.beginModel(1, 3)
+        model.addSubModel(points[face], np.array([[0, 1, 2]]))
+        model.endModel()
+        models.append(fcl.CollisionObject(model, fcl.Transform()))
+    expected = {
+        (i, j)
+        for i in range(count)
+        for j in range(i + 1, count)
+        if fcl.collide(models[i], models[j])
+    }
+    found = crossing_pairs(points, faces)
+    assert found is not None and set(map(tuple, found.tolist())) == expected
+
+
+def test_neighbors_do_not_cross_and_too_many_are_not_asked() -> None:
+    pairs = crossing_pairs(VERTICES, FACES)
+    assert pairs is not None and not len(pairs)
+    assert crossing_pairs(VERTICES, np.zeros((MOST_FACES + 1, 3), dtype=np.int64)) is None
+
+
+def test_a_face_that_comes_back_through_one_that_it_touches() -> None:
+    """Two faces with one vertex in common, of which one goes through the other."""
+    points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 0.2, -1], [0.1, 0.2, 1.0]], dtype=float)
+    pairs = crossing_pairs(points, np.array([[0, 1, 2], [0, 3, 4]]))
+    assert pairs is not None and pairs.tolist() == [[0, 1]]
+
+
+def test_blocks_that_meet_in_an_edge_come_apart() -> None:
+    """Four faces on one edge: each block keeps its two, and its volume but for a little."""
+    box = trimesh.creation.box((0.1, 0.1, 0.1))
+    corners = np.concatenate([box.vertices, box.vertices + np.array([0.1, 0.1, 0])])
+    faces = np.concatenate([box.faces, box.faces + 8]).astype(np.int64)
+    points, joined = merged(corners, faces)
+    assert (edge_table(joined).count == 4).sum() == 1
+    apart, new, moved = split(points, joined)
+    assert len(apart) == len(points) + 2 and 0 < moved <= 0.0011
+    assert (edge_table(new).count == 2).all()
+    part = parts_of(new, edge_table(new))
+    assert part.max() == 1
+    for own in (0, 1):
+        mesh = trimesh.Trimesh(apart, new[part == own], process=False)
+        assert mesh.is_watertight and mesh.volume == pytest.approx(0.001, rel=0.03)
+
+
+def test_a_sheet_through_a_ball_leaves_the_ball_whole() -> None:
+    """Three faces on a ring of edges: the two that go on straightest stay together."""
+    corners = np.concatenate([np.eye(3), -np.eye(3)])
+    faces = [(0, 1, 2), (1, 3, 2), (3, 4, 2), (4, 0, 2), (1, 0, 5), (3, 1, 5), (4, 3, 5), (0, 4, 5)]
+    round_ = trimesh.Trimesh(corners, faces, process=False).subdivide().subdivide()
+    ball = np.array(round_.vertices) / np.linalg.norm(round_.vertices, axis=1, keepdims=True)
+    ring = np.flatnonzero(np.abs(ball[:, 2]) < 1e-9)
+    ring = ring[np.argsort(np.arctan2(ball[ring, 1], ball[ring, 0]))]
+    count = len(ball)
+    sheet = []
+    for k in range(len(ring)):
+        after = (k + 1) % len(ring)
+        sheet += [(ring[k], ring[after], count + after), (ring[k], count + after, count + k)]
+    points = np.concatenate([ball, 1.3 * ball[ring]])
+    faces = np.concatenate([round_.faces, sheet])
+    assert (edge_table(faces).count == 3).sum() == len(ring)
+    apart, new, _ = split(points, faces)
+    part = parts_of(new, edge_table(new))
+    sizes = sorted(np.bincount(part).tolist())
+    assert sizes == sorted([len(sheet), len(round_.faces)])
+    whole = trimesh.Trimesh(apart, new[part == np.argmax(np.bincount(part))], process=False)
+    assert whole.is_watertight
+
+
+@given(seeds, st.integers(3, 12))
+def test_a_hole_is_filled_with_least_area(seed: int, count: int) -> None:
+    """Of a flat polygon any triangulation without overlap has its area, which is the least."""
+    rng = np.random.default_rng(seed)
+    angle = np.sort(rng.choice(200, count, replace=False)) * np.pi / 100
+    points = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(count)])
+    faces = filling(points, list(range(count)), set())
+    assert faces is not None and len(faces) == count - 2
+    mesh = trimesh.Trimesh(points, faces, process=False)
+    x, y = points[:, 0], points[:, 1]
+    shoelace = 0.5 * abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))
+    assert mesh.area == pytest.approx(shoelace)
+    assert loops(faces)[0] != list(range(count)) and set(loops(faces)[0]) == set(range(count))
+
+
+def test_no_edge_gets_a_third_face() -> None:
+    """The diagonal of a square is there already: the other one is taken."""
+    square = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0.0], [0, 1, 0]])
+    for diagonal in ((0, 2), (1, 3)):
+        faces = filling(square, [0, 1, 2, 3], {diagonal})
+        assert faces is not None
+        ends = {tuple(e) for e in edge_table(faces).ends.tolist()}
+        assert diagonal not in ends and len(ends) == 5
+    assert filling(square, [0, 1, 2, 3], {(0, 2), (1, 3)}) is None
+
+
+@given(seeds, st.floats(0.001, 0.999))
+def test_flat_faces_leave_no_gap(seed: int, share: float) -> None:
+    """A vertex on an edge that only a flat face has: the face beside is parted there."""
+    rng = np.random.default_rng(seed)
+    face = int(rng.integers(len(FACES)))
+    a, b, c = FACES[face].tolist()
+    points = np.vstack([VERTICES, (1 - share) * VERTICES[a] + share * VERTICES[b]])
+    middle = len(VERTICES)
+    others = np.delete(FACES, face, axis=0)
+    faces = np.concatenate([others, [(a, middle, c), (middle, b, c), (a, b, middle)]])
+    assert flat_faces(points, faces).sum() == 1
+    made = without_flat(points, faces)
+    mesh = trimesh.Trimesh(points, made, process=False)
+    assert mesh.is_watertight and not flat_faces(points, made).any()
+    assert mesh.area == pytest.approx(BALL.area) and len(made) == len(FACES) + 2
+
+
+def test_copies_are_faces_with_the_same_corners() -> None:
+    faces = np.array([[0, 1, 2], [1, 2, 3], [2, 0, 1], [3, 2, 1], [0, 1, 3]])
+    assert repeated_faces(faces).tolist() == [False, False, True, True, False]
+
+
+def test_what_is_within_a_hundred_millionth_is_one_place() -> None:
+    for gap, left in ((1e-10, 3), (1e-4, 4)):
+        points = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [gap, 0, 0]], dtype=float)
+        assert len(merged(points, np.array([[0, 1, 2], [3, 2, 1]]))[0]) == left
+
+
+@given(seeds, st.integers(1, 40))
+def test_whatever_is_added_to_a_ball_comes_out_a_manifold(seed: int, more: int) -> None:
+    """Faces between any of its vertices, most of them right through it."""
+    rng = np.random.default_rng(seed)
+    near = rng.integers(len(FACES), size=more)
+    extra = np.array([rng.choice(len(VERTICES), 3, replace=False) for _ in range(more)])
+    extra[::2, :2] = FACES[near[::2], :2]  # every other one stands on an edge of the ball
+    try:
+        points, faces, _ = mended(
+            VERTICES, np.concatenate([FACES, extra]), Mending(1.0, least_share=0.0)
+        )
+    except InputError as error:
+        assert "one-sided" in error.message
+        return
+    directed_edges(faces, len(points))  # refuses what is no oriented manifold
+
+
+def test_a_filling_that_folds_back_is_left_out() -> None:
+    """The border of a flat disc could only be closed by the same disc, seen from behind."""
+    flat, faces = disc_mesh(37, 0.1, 1)
+    points = np.column_stack([flat, np.zeros(len(flat))])
+    _, same, changes = mended(points, faces, Mending(100.0))
+    assert len(same) == len(faces)
+    assert [change.what for change in changes] == [
+        "1 hole left: more than 250 edges, or nothing fits in"
+    ]

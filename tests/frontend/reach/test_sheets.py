@@ -1,0 +1,249 @@
+"""Continuity without names: the same colors as with names, and cuspidal arms refused."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any
+
+import dh_arms
+import numpy as np
+import pytest
+from arm_plates import cuspidal_scene, plate
+from continuation import Follower
+from hypothesis import given
+from hypothesis import strategies as st
+from independent import wrapped
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import shortest_path
+from shipped import shipped
+
+import cellcolor
+from cellcolor.arrays import Array
+from cellcolor.deadline import NEVER
+from cellcolor.errors import InputError
+from cellcolor.frontend import Scene, build_surface
+from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
+from cellcolor.frontend.parts.shapes import disc_mesh
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.reach.sheets import linked_pairs, sheets_of
+from cellcolor.frontend.reach.tracking import Solutions, clearly_nearest
+from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.motion.limits import motion_of
+
+
+class Unnamed:
+    """A family of arms without its names, its solutions in another order at every point."""
+
+    branches = ()
+
+    def __init__(self, inner: InverseKinematics) -> None:
+        self._inner = inner
+        self.lever = inner.lever
+
+    def solve(self, points: Array, directions: Array, branches: Any = None) -> Array:
+        assert branches is None
+        found = self._inner.solve(points, directions)
+        salt = np.remainder(np.sin(1e5 * points.sum(axis=1))[:, None] * np.arange(1, 9), 1)
+        return np.take_along_axis(found, np.argsort(salt, axis=1)[:, :, None], axis=1)
+
+
+def both(scene: Scene) -> tuple[Stages, Stages]:
+    """What comes out with names and without."""
+    prepared = prepare(scene)
+    unnamed = replace(prepared, kinematics=Unnamed(prepared.kinematics))
+    return run_stages(prepared, StageClock(NEVER, None)), run_stages(
+        unnamed, StageClock(NEVER, None)
+    )
+
+
+def as_sets(stages: Stages) -> set[frozenset[tuple[int, tuple[float, ...]]]]:
+    """The colors as sets of vertices with configurations, whatever they are called."""
+    colors: dict[int, set[tuple[int, tuple[float, ...]]]] = {}
+    node_color = stages.cleaned.coloring.node_color
+    for vertex, column in np.argwhere(node_color >= 0).tolist():
+        q = stages.candidates.configurations[vertex, column].round(6) + 0.0
+        colors.setdefault(node_color[vertex, column], set()).add((vertex, tuple(q.tolist())))
+    return set(map(frozenset, colors.values()))
+
+
+@pytest.mark.parametrize("name", ["wok", "square", "half_pipe"])
+def test_colors_are_the_same_without_names(name: str) -> None:
+    named, unnamed = both(shipped(name, 200))
+    assert len(as_sets(named)) >= 3
+    assert as_sets(unnamed) == as_sets(named)
+    assert [(c.i, c.j) for c in unnamed.cleaned.cracks] == [
+        (c.i, c.j) for c in named.cleaned.cracks
+    ]
+    # Reasons too, but for the order.
+    for first, second in zip(named.candidates.reasons, unnamed.candidates.reasons, strict=True):
+        assert sorted(first.tolist()) == sorted(second.tolist())
+    assert unnamed.branches[0] == "sheet-1" and not unnamed.named
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "name", ["wok", "wok_obstacle", "square", "half_pipe", "hemisphere_flat", "hemisphere_tilted"]
+)
+def test_colors_of_the_six_scenes_are_the_same_without_names(name: str) -> None:
+    named, unnamed = both(shipped(name))
+    assert as_sets(unnamed) == as_sets(named)
+    assert unnamed.links.linked.sum() == named.links.linked.sum()
+
+
+@given(
+    first=st.floats(-3, 3),
+    others=st.lists(st.floats(-3, 3), min_size=1, max_size=5),
+    seed=st.integers(0, 2**32 - 1),
+)
+def test_what_is_clearly_nearest_is_nearest_from_both_ends(
+    first: float, others: list[float], seed: int
+) -> None:
+    here = np.array([first, *others])
+    there = here + np.random.default_rng(seed).normal(0, 0.3, len(here))
+    apart = [np.abs(np.delete(side, 0) - side[0]).min() for side in (here, there)]
+    if clearly_nearest(np.abs(there[0] - here[0]), *apart):
+        assert np.argmin(np.abs(there - here[0])) == np.argmin(np.abs(here - there[0])) == 0
+
+
+def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
+    result = build_surface(plate(dh_arms.urdf("passing"), "eaik", vertices=60))
+    assert "none found on this part" in str(result.report)
+    assert "not cuspidal" not in str(result.report)
+    follower, linked = Follower(result.robot), result.stages.links
+    row, sheet = np.argwhere(linked.linked).T
+    assert len(row) > 300 and max(color.vertices for color in result.report.colors) > 40
+    surface = result.stages.surface
+    # By Newton's method on Pinocchio's Jacobian the links lead to where the sheets say.
+    for k in np.random.default_rng(1).choice(len(row), 8, replace=False):
+        ends = linked.edges[row[k]]
+        start, goal = result.configurations[ends, sheet[k]]
+        path = follower.along(start, surface.vertices[ends], surface.normals[ends])
+        assert path is not None and wrapped(path[-1] - goal).max() < 1e-6
+
+
+def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
+    """All solutions (n, s, joints) of a scene, the valid ones (n, s), and links (l, 3) of them."""
+    surface = prepared.surface
+    found = prepared.inverse(surface.vertices, -surface.normals)
+    verdicts = prepared.judge(found.reshape(-1, 6))
+    nodes = (verdicts.reasons == 0).reshape(found.shape[:2])
+    solutions = prepared.tracker.described(verdicts.configurations.reshape(found.shape))
+    limits = prepared.robot.lower, prepared.robot.upper
+    pairs = linked_pairs(
+        surface,
+        surface.edges(),
+        nodes,
+        solutions,
+        prepared.tracker,
+        prepared.measure,
+        limits,
+    )
+    return solutions.joints, nodes, pairs
+
+
+def test_a_cuspidal_arm_is_refused_with_both_configurations() -> None:
+    scene = cuspidal_scene()
+    with pytest.raises(InputError, match="cuspidal") as caught:
+        build_surface(scene)
+    message = str(caught.value)
+    assert "\n" not in message and " m one color has " in message and " and [" in message
+    vertex = int(str(caught.value.field).removeprefix("vertices[").removesuffix("]"))
+
+    # It is true: an independent motion through regular configurations leads from one to the other.
+    prepared = prepare(scene)
+    surface, robot = prepared.surface, prepared.robot
+    edges = surface.edges()
+    joints, nodes, pairs = linked_nodes(prepared)
+    slots = nodes.shape[1]
+    here, there = (edges[pairs[:, 0], end] * slots + pairs[:, 1 + end] for end in (0, 1))
+    graph = coo_array((np.ones(len(pairs)), (here, there)), shape=(nodes.size,) * 2)
+    own = vertex * slots + np.flatnonzero(nodes[vertex])
+    ways, before = shortest_path(graph, directed=False, indices=own, return_predecessors=True)
+    first, last = next(
+        (i, j) for i in range(len(own)) for j in own[i + 1 :] if np.isfinite(ways[i, j])
+    )
+    route = [int(last)]
+    while route[-1] != own[first]:
+        route.append(int(before[first, route[-1]]))
+    follower, q, signs = Follower(robot), joints[vertex, last % slots], []
+    for a, b in pairwise(route):
+        ends = [a // slots, b // slots]
+        path = follower.along(q, surface.vertices[ends], surface.normals[ends])
+        assert path is not None
+        poses = forward(robot, path)
+        signs.append(signed_task_determinant(*tip_jacobian(poses), poses.tool_axis))
+        q = path[-1]
+    values = np.concatenate(signs)
+    assert wrapped(q - joints[vertex, own[first] % slots]).max() < 1e-6
+    assert wrapped(q - joints[vertex, last % slots]).max() > 0.1
+    assert (values > 0).all() or (values < 0).all()
+
+
+def test_without_names_an_arm_is_solved_and_nothing_is_painted_or_planned() -> None:
+    scene = plate(dh_arms.urdf("passing"), "eaik", vertices=60)
+    built = cellcolor.build(scene)
+    solution = cellcolor.solve(built.surface)
+    assert solution.segments == 1
+    with pytest.raises(InputError, match="have no names") as caught:
+        motion_of(prepare(scene))
+    assert caught.value.field == "robot.kinematics"
+    with pytest.raises(InputError, match="have no names"):
+        cellcolor.paint(built, solution)
+    with pytest.raises(InputError, match="have no names"):
+        cellcolor.plan(scene)
+
+
+def test_out_of_reach_of_all_there_are_no_colors() -> None:
+    far = plate(dh_arms.urdf("passing"), "eaik", vertices=60, position_m=(5.0, 0.0, 0.0))
+    result = build_surface(far)
+    assert result.surface.colors == () and result.report.reachable == 0
+
+
+class Disc:
+    """A flat disc of seven vertices with two solutions each, linked as a test says."""
+
+    def __init__(self) -> None:
+        flat, faces = disc_mesh(7, 0.0, 0)
+        vertices = np.column_stack([flat, np.zeros(7)])
+        self.surface = Surface(vertices, faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
+        self.edges = self.surface.edges()
+        joints = np.zeros((7, 2, 6))
+        joints[:, 1, 0] = 2.0
+        ones = np.ones((7, 2))
+        self.solutions = Solutions(joints, ones, 2 * ones, ones.astype(bool))
+
+    def along(self, first: int, second: int, wanted: set[frozenset[int]]) -> Array:
+        rows = [k for k, edge in enumerate(self.edges.tolist()) if frozenset(edge) in wanted]
+        return np.array([[row, first, second] for row in rows]).reshape(-1, 3)
+
+
+def test_components_next_to_each_other_are_in_different_sheets() -> None:
+    disc, nodes = Disc(), np.ones((7, 2), dtype=bool)
+    nodes[:, 1] = False
+    # The center is linked to nothing, the ring all around it to itself.
+    ring = {frozenset(e) for e in disc.edges.tolist() if 0 not in e}
+    sheets = sheets_of(disc.surface, disc.edges, disc.along(0, 0, ring), nodes, disc.solutions)
+    # The ring in the first, the center in the second; what is not valid fills what is free.
+    assert sheets.slot[1:, 0].tolist() == [0] * 6 and sheets.slot[0].tolist() == [1, 0]
+    assert (np.sort(sheets.slot, axis=1) == [0, 1]).all()
+    assert sheets.linked.sum() == len(ring) and not sheets.linked[:, 1].any()
+
+
+def test_a_solution_linked_to_another_one_of_its_vertex_is_refused() -> None:
+    disc, nodes = Disc(), np.ones((7, 2), dtype=bool)
+    ring = {frozenset(e) for e in disc.edges.tolist() if 0 not in e}
+    once = frozenset((1, 2))
+    pairs = np.concatenate(
+        [
+            disc.along(0, 0, ring - {once}),
+            disc.along(1, 1, ring - {once}),
+            disc.along(0, 1, {once}),
+        ]
+    )
+    with pytest.raises(InputError, match=r"2 configurations, \[0.0, .*\] and \[2.0, ") as caught:
+        sheets_of(disc.surface, disc.edges, pairs, nodes, disc.solutions)
+    assert caught.value.field == "vertices[1]"

@@ -1,0 +1,127 @@
+"""Each arm that comes along against Pinocchio and coal, on candidates of a scene of its own.
+
+The slow ones are 2,000 candidates each: ``pytest -m slow -n 0 -s tests/frontend -k two_thousand``.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pinocchio as pin
+import pytest
+from independent import CONTACT
+from reasons import Reason
+from shipped import TOP
+from world import World
+
+from cellcolor.arrays import Array
+from cellcolor.frontend import build_surface
+from cellcolor.frontend.arm.kinematics import (
+    forward,
+    manipulability,
+    task_determinant,
+    tip_jacobian,
+)
+from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
+from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.scene import Scene
+
+SCENES = [
+    "irb120_half_pipe",
+    "kr6_half_pipe",
+    "tx2_60_half_pipe",
+    "ur10e_wok",
+    "ur16e_half_pipe",
+    "ur3e_half_pipe",
+    "ur5e_calibrated_wok",
+    "ur5e_half_pipe",
+]
+
+
+def not_neighbors(world: World) -> set[frozenset[str]]:
+    """The pairs of solid links that are not next to each other on the way from base to tool."""
+    shapes = zip(world.geometry.geometryObjects, world.link, strict=True)
+    joint = {link: int(shape.parentJoint) for shape, link in shapes}
+    # The tool hangs on the last joint, behind the arm's own link there.
+    way = sorted(joint, key=lambda link: (joint[link], link == "tool_body"))
+    beside = {frozenset(pair) for pair in itertools.pairwise(way)}
+    return {frozenset(pair) for pair in itertools.combinations(way, 2)} - beside
+
+
+def kinematics_apart(prepared: PreparedScene, joints: Array) -> float:
+    """The largest difference from Pinocchio in poses, Jacobian and both measures."""
+    robot = prepared.robot
+    model, data = robot.model, robot.model.createData()
+    tip = model.getFrameId(prepared.setup.robot.tip_link)
+    poses = forward(robot, joints)
+    linear, angular = tip_jacobian(poses)
+    measure = manipulability(linear)
+    determinant = task_determinant(linear, angular, poses.tool_axis)
+    worst = 0.0
+    for row, q in enumerate(joints):
+        own = pin.computeFrameJacobian(model, data, q, tip, pin.ReferenceFrame.LOCAL)
+        pin.framesForwardKinematics(model, data, q)
+        there = data.oMf[tip]
+        for ours, theirs in (
+            (poses.tip[row], there.translation),
+            (poses.tool_axis[row], there.rotation[:, 2]),
+            (linear[row], there.rotation @ own[:3]),
+            (measure[row], np.linalg.svd(own[:3, :5], compute_uv=False).prod()),
+            (determinant[row], abs(np.linalg.det(own[:5, :5]))),
+        ):
+            worst = max(worst, float(np.abs(ours - theirs).max()))
+    return worst
+
+
+def check(name: str, vertices: int, count: int) -> None:
+    """Candidates that have a configuration, whatever became of them."""
+    scene = Scene.read(TOP / "instances" / "arms" / f"{name}.toml")
+    scene = scene.varied(object={"target_vertices": vertices})
+    prepared, built = prepare(scene), build_surface(scene)
+    flat = built.configurations.reshape(-1, 6)
+    solved = np.flatnonzero(built.reasons.ravel() != Reason.NO_SOLUTION)
+    rows = np.random.default_rng(5).choice(solved, min(count, len(solved)), replace=False)
+    joints = flat[rows]
+    assert kinematics_apart(prepared, joints) < 1e-9
+
+    robot, ground = prepared.robot, scene.ground
+    assert ground is not None
+    exempt = scene.setup.robot.may_touch_ground
+    ends = body_ends(robot, forward(robot, joints))
+    verdicts = {
+        "ground": hits_ground(robot, ends, ground.half_space, exempt),
+        "robot": hits_itself(robot, ends),
+        "object": prepared.workplace.target.hits(robot, ends),
+    }
+    world = World(robot, prepared.surface.vertices, prepared.surface.faces)
+    pairs, hits = not_neighbors(world), dict.fromkeys(verdicts, 0)
+    for row, q in enumerate(joints):
+        world.place(q)
+        distances = {
+            "ground": world.to_ground(ground.height_m, exempt),
+            "robot": world.to_itself(pairs),
+            "object": world.to_object(),
+        }
+        for test, distance in distances.items():
+            hits[test] += int(verdicts[test][row])
+            # A shell has no depth: what coal calls 0 may be any depth.
+            assert verdicts[test][row] == (distance <= 0) or 0 < abs(distance) <= CONTACT, (
+                name,
+                test,
+                q.tolist(),
+                distance,
+            )
+    print(f"\n{name}: {len(joints)} candidates, hits {hits}")
+    assert 0 < hits["robot"] < len(joints) and 0 < hits["object"] < len(joints)
+
+
+@pytest.mark.parametrize("name", SCENES)
+def test_some_candidates_against_pinocchio_and_coal(name: str) -> None:
+    check(name, vertices=150, count=100)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SCENES)
+def test_two_thousand_candidates_against_pinocchio_and_coal(name: str) -> None:
+    check(name, vertices=1000, count=2000)

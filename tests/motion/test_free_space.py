@@ -1,0 +1,85 @@
+"""Transfers keep clear of every kind of obstacle, and of a tilted ground, by coal's distances."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+pytest.importorskip("coal")
+
+from shipped import shipped
+from standing import KINDS, standing
+from world import PAIRS, World
+
+from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.scene import Ground
+from cellcolor.motion.free_space import FreeSpace
+
+CLEARANCE, CLOSE = 0.005, 0.0005  # m; what is kept, and where verdicts may differ
+
+
+@pytest.mark.parametrize("kind", [*KINDS, "ground"])
+def test_what_is_clear_without_it_is_clear_with_it_where_it_is_far(
+    kind: str, tmp_path: Path
+) -> None:
+    scene = shipped("wok", 200).varied(ground=None)
+    prepared = prepare(scene)
+    world = World(prepared.robot, prepared.surface.vertices, prepared.surface.faces)
+    joints = np.random.default_rng(4).uniform(-np.pi, np.pi, (1500, 6))
+    joints = joints[FreeSpace(prepared, CLEARANCE).clear(joints)]
+    exempt = prepared.setup.robot.may_touch_ground
+    shapes = []
+    if kind == "ground":
+        other = scene.varied(ground=Ground(height_m=-0.3, normal=(0.4, 0.1, 1.0)))
+    else:
+        place = np.array([0.4 if kind == "half-space" else -0.4, 0.3, 0.3])
+        obstacle, shapes = standing(kind, place, tmp_path)
+        other = scene.with_obstacle(obstacle)
+    clear = FreeSpace(prepare(other), CLEARANCE).clear(joints)
+    gaps = []
+    for q in joints:
+        world.place(q)
+        if kind == "ground":
+            gaps.append(world.to_ground(-0.3, exempt, (0.4, 0.1, 1.0)))
+        else:
+            gaps.append(min(world.to_solid(*shape) for shape in shapes))
+    gap = np.array(gaps)
+    # The region at the tip is a body here as well, and coal is not asked about it.
+    assert not clear[gap < CLEARANCE - CLOSE].any()
+    assert clear.any() and not clear.all()
+    far = gap > CLEARANCE + 0.02  # the tip's region ends within 16 mm of the tool's body
+    assert clear[far].all()
+
+
+@pytest.mark.parametrize(
+    ("key", "margin"), [("to_object_m", 0.03), ("between_links_m", 0.004), ("to_ground_m", 0.02)]
+)
+def test_margins_are_kept_besides_the_clearance(key: str, margin: float) -> None:
+    """By coal's distances; a cylinder with a margin has up to 1.41 times as much at its rims."""
+    scene = shipped("wok", 200)
+    setup = scene.setup.varied(margins={key: margin})
+    prepared = prepare(scene.with_setup(setup))
+    world = World(prepared.robot, prepared.surface.vertices, prepared.surface.faces)
+    joints = np.random.default_rng(6).uniform(-np.pi, np.pi, (2000, 6))
+    joints = joints[FreeSpace(prepare(scene), CLEARANCE).clear(joints)]
+    clear = FreeSpace(prepared, CLEARANCE).clear(joints)
+    gaps = []
+    for q in joints:
+        world.place(q)
+        gaps.append(
+            {
+                "to_object_m": world.to_object,
+                "between_links_m": lambda: world.to_itself(PAIRS),
+                "to_ground_m": lambda: world.to_ground(
+                    prepared.scene.ground.height_m, setup.robot.may_touch_ground
+                ),
+            }[key]()
+        )
+    gap = np.array(gaps)
+    least = margin + CLEARANCE
+    assert not clear[gap < least - CLOSE].any()
+    assert clear[gap > 1.45 * least + CLOSE].all()
+    assert clear.any() and not clear.all()

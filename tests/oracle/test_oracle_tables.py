@@ -1,0 +1,79 @@
+"""The tables of ``benchmarks/oracle.py``, with small counts, and what the README has of them."""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+import pytest
+from library import INSTANCES
+from planners import largest_set_first
+
+import cellcolor
+from cellcolor.data.surface import LabelledSurface
+
+sys.path.append(str(INSTANCES.parent / "benchmarks"))
+import oracle
+
+ROOT = INSTANCES.parent
+SCENES = {
+    "hemisphere, flat": "hemisphere_flat",
+    "hemisphere, tilted": "hemisphere_tilted",
+    "half pipe": "half_pipe",
+    "wok": "wok",
+    "wok with an obstacle": "wok_obstacle",
+    "square": "square",
+}
+
+
+def test_faults_and_valid_plans(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """One of each sort; then a fault that nobody sees, and a verdict that is contradicted."""
+    few = list(oracle.surfaces())[6:9]
+    monkeypatch.setattr(oracle, "surfaces", lambda: iter(few))
+    assert oracle.faults(20) and oracle.valid(24)
+    out = capsys.readouterr().out
+    assert "| all | 20 | 20 |" in out and re.search(r"\| all \| 24 \| .* \| 0 \|", out)
+    monkeypatch.setattr(oracle, "caught", lambda *_: False)
+    monkeypatch.setattr(oracle, "contradictions", lambda *_: ["not as it has to be"])
+    assert not oracle.faults(3) and not oracle.valid(3)
+    out = capsys.readouterr().out
+    assert out.count("not caught: ") == 3 and out.count("not as it has to be") == 3
+
+
+def test_the_pool_has_unreachable_points_cracks_handles_and_several_parts() -> None:
+    pool = [surface for surface, _ in oracle.surfaces()]
+    assert len(pool) == 63 and len({surface.sha256 for surface in pool}) == 63
+    assert any(surface.cracks for surface in pool)
+    assert any(not all(surface.vertex_colors) for surface in pool)
+    assert any(surface.given_up for surface in pool)
+
+
+def test_a_second_run_of_a_suite_proves_nothing(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Counted as calls of the proof, and as files that are written."""
+    monkeypatch.setattr(oracle, "SUITE_SURFACES", 2)
+    plans = 2 * oracle.PLANS_EACH
+    assert oracle.run_of_suite(tmp_path) == (2, 2, plans, 0)
+    assert oracle.run_of_suite(tmp_path) == (0, 0, plans, 0)
+
+
+def test_the_readme_has_what_greedy_pays() -> None:
+    """And what the other columns are in one row."""
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    benchmarks = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    for title, name in SCENES.items():
+        row = re.search(rf"^\| {title} \|(.*)\|$", readme, re.MULTILINE)
+        assert row is not None
+        _, proved, greedy, nearest, *_ = (column.strip(" *") for column in row[1].split("|"))
+        file = INSTANCES / "scenes" / f"{name}.surface.json"
+        surface = LabelledSurface.read(file)
+        judge = cellcolor.Oracle(surface, workers=1)
+        assert int(proved) == max(0, judge.bounds.lower - 1) == max(0, judge.bounds.upper - 1)
+        assert int(greedy) == judge.judge(largest_set_first(surface)).lift_offs
+        assert f"| {name} | {proved} | {greedy} | {nearest} |" in benchmarks
+    found = oracle.row_of_planners(INSTANCES / "scenes" / "hemisphere_flat.surface.json")
+    assert f"| {' | '.join(found)} |" in benchmarks

@@ -1,0 +1,106 @@
+"""Plans that are not valid are refused with kind and place, valid ones never."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from library import PAPER
+from meshes import drawn, surfaces
+from planted_plans import PLANTERS
+from planting import Case, Planted, caught
+from valid_plans import SORTS, contradictions, segments_counted, valid_plans
+
+import cellcolor
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.lab.families import blobs
+from cellcolor.oracle import ProvenRange
+
+RED, BLUE = 0, 1
+ROW = drawn("AAMMBB AAMMBB AAMMBB", {"A": [RED], "M": [RED, BLUE], "B": [RED]})
+
+
+@pytest.fixture(scope="module")
+def cases(tmp_path_factory: pytest.TempPathFactory) -> list[Case]:
+    """A surface with unreachable vertices and cracks, one of the library, one without either."""
+    folder = tmp_path_factory.mktemp("plans")
+    random = blobs(4, 9, 3, cracks=2, holes=1)
+    stored = LabelledSurface.read(PAPER / "split-cell.surface.json")
+    return [Case(random, stored, folder), Case(stored, random, folder), Case(ROW, random, folder)]
+
+
+@pytest.mark.parametrize("name", PLANTERS)
+def test_every_planted_fault_is_caught(cases: list[Case], name: str) -> None:
+    count = 0
+    for case in cases:
+        for seed in range(8):
+            planted = PLANTERS[name](case, np.random.default_rng(seed))
+            if planted is not None:
+                assert caught(case, planted), planted
+                count += 1
+    assert count >= 8
+
+
+def test_what_is_not_said_or_elsewhere_is_not_caught(cases: list[Case]) -> None:
+    """The count of faults that are caught would be worth nothing otherwise."""
+    case = Case(ROW, ROW, cases[0].folder)
+    wrong = (RED, BLUE, *(RED,) * 16)
+    said = "vertex_colors[1]: color 1 does not reach this vertex"
+    assert caught(case, Planted(wrong, (said,), (1,)))
+    assert not caught(case, Planted(wrong, (said.replace("1]", "2]"),), (1,)))
+    assert not caught(case, Planted(wrong, (said,), (2,)))
+    assert not caught(case, Planted(wrong, (said,), (1, 2)))
+    assert not caught(case, Planted((RED,) * 18, (said,), (1,)))
+    assert not caught(case, Planted([0.5] * 18, (said,), (1,)))
+
+
+@settings(max_examples=25, deadline=None)
+@given(surfaces(), st.integers(0, 2**31))
+def test_no_valid_plan_contradicts_its_verdict(surface: LabelledSurface, seed: int) -> None:
+    oracle = cellcolor.Oracle(surface, workers=1)
+    hurried = cellcolor.Oracle(surface, workers=1, time_limit=1e-9)
+    plans = valid_plans(oracle, np.random.default_rng(seed))
+    for _, (_, colors) in zip(range(2 * len(SORTS)), plans, strict=False):
+        for judge in (oracle, hurried):
+            verdict = judge.judge(colors)
+            assert contradictions(judge, colors, verdict, oracle.bounds.upper) == []
+
+
+def test_every_sort_of_plan_comes_in_turn() -> None:
+    plans = valid_plans(cellcolor.Oracle(ROW, workers=1), np.random.default_rng(0))
+    sorts = [sort for _, (sort, _) in zip(range(2 * len(SORTS) - 1), plans, strict=False)]
+    assert sorts == [*SORTS, *(sort for sort in SORTS if sort != "greedy")]
+
+
+def test_what_contradicts_a_verdict_is_seen() -> None:
+    oracle = cellcolor.Oracle(ROW, workers=1)
+    colors = [RED, RED, BLUE, BLUE, RED, RED] * 3
+    verdict = oracle.judge(colors)
+    assert contradictions(oracle, colors, verdict, 1) == []
+    one_less = replace(verdict, segments=2)
+    assert contradictions(oracle, colors, one_less, 1)[0] == "2 segments, 3 by networkx"
+    too_high = cellcolor.Oracle(ROW, bounds=ProvenRange(3, 3))
+    found = contradictions(too_high, colors, too_high.judge(colors), 1)
+    assert found[0] == "1 segments, below the bound 3"
+    assert "cannot be beaten with 3 segments, another has 1" in found
+    assert contradictions(oracle, colors, replace(verdict, improvement=None), 1)
+    refused = oracle.judge([BLUE] * 18)
+    assert contradictions(oracle, colors, refused, 1)[0].startswith("refused: not valid")
+
+
+def test_networkx_counts_cracks_and_islands() -> None:
+    """Two rows apart by a crack, of which one has a hole: blue, red left and right, red below."""
+    labels = {"R": [RED], "B": [BLUE], ".": []}
+    surface = drawn("RB.R RRRR", labels, [(0, 4, RED), (3, 7, RED), (3, 6, RED)])
+    assert segments_counted(surface, [RED, BLUE, None, RED, RED, RED, RED, RED]) == 4
+
+
+def test_arrays_that_cannot_hold_colors_are_refused_by_their_type() -> None:
+    """An array with NaN for none is one of floats, and its first entry is not what is wrong."""
+    with pytest.raises(cellcolor.errors.InputError) as found:
+        cellcolor.Oracle(ROW).judge(np.array([0.0] * 17 + [np.nan]))
+    expected = "vertex_colors: must be color numbers (-1 for none) or names, is an array of float64"
+    assert str(found.value) == expected

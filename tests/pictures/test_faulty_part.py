@@ -1,0 +1,51 @@
+"""The picture of a part: every fault in a layer of its own, where it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from pages import needs_frontend
+
+pytest.importorskip("matplotlib")
+
+
+@needs_frontend
+class TestFaultyPart:
+    def test_faults_are_marked(self) -> None:
+        from dirty import DIRTY
+
+        import cellcolor
+        from cellcolor.pictures.faulty_part import faulty_part
+
+        expected = {
+            "duplicates": "faces there twice: 40",
+            "mixed-winding": "faces wound against their neighbors: 683",
+            "inverted": "closed components inside out: 1,280",
+            "fin": "edges of three faces and more: 1 edges",
+            "holes": "holes and borders: 30 edges",
+        }
+        for name, text in expected.items():
+            vertices, faces = DIRTY[name]()
+            picture = faulty_part(cellcolor.inspect((vertices, faces)))
+            marked = {layer.name: layer.points for layer in picture.layers}
+            marked |= {line.name: line.ends.reshape(-1, 3) for line in picture.lines}
+            assert {text} <= set(marked) <= {"part", "sharp edges", text, *self.beside(name)}
+            off = np.linalg.norm(marked[text][:, None] - vertices[None], axis=2).min(axis=1)
+            assert off.max() < 1e-12
+            assert picture.notes[0].startswith("Not usable as it is: ")
+            assert max(map(len, picture.notes)) <= 60
+
+    def beside(self, name: str) -> set[str]:
+        """The fin has a border as well."""
+        return {"holes and borders: 3 edges"} if name == "fin" else set()
+
+    def test_a_large_part_is_thinned(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        from dirty import DIRTY
+
+        import cellcolor
+        from cellcolor.pictures import faulty_part
+
+        monkeypatch.setattr(faulty_part, "_MOST", 100)
+        picture = faulty_part.faulty_part(cellcolor.inspect(DIRTY["crossing"]()))
+        assert len(picture.layers[0].triangles) == 100
+        assert picture.notes == ("100 of 832 faces are drawn.", "Usable as it is.")

@@ -1,0 +1,153 @@
+"""Arms written from Denavit-Hartenberg constants that their makers or papers have published.
+
+Constants are a, alpha, d and the offset of theta, in m and degrees, joint after joint: each turns
+about z, then comes the way d along z, a along the new x, and the twist alpha about it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.urdf import parse_urdf
+
+Constants = tuple[tuple[float, float, float, float], ...]
+
+ARMS: dict[str, Constants] = {
+    # KUKA KR 6 R900 sixx, data sheet: wrist in line, shoulder 25 mm in front.
+    "kr6": (
+        (0.025, -90, 0.400, 0),
+        (0.455, 0, 0, 0),
+        (0.035, -90, 0, -90),
+        (0, 90, 0.420, 0),
+        (0, -90, 0, 0),
+        (0, 0, 0.080, 0),
+    ),
+    # ABB IRB 120, product manual: no offset of the shoulder.
+    "irb120": (
+        (0, -90, 0.290, 0),
+        (0.270, 0, 0, -90),
+        (0.070, -90, 0, 0),
+        (0, 90, 0.302, 0),
+        (0, -90, 0, 0),
+        (0, 0, 0.072, 180),
+    ),
+    # Unimation PUMA 560 (Corke and Armstrong 1994): upper arm and forearm beside the base's axis.
+    "puma560": (
+        (0, 90, 0.672, 0),
+        (0.4318, 0, 0, 0),
+        (0.0203, -90, 0.15005, 0),
+        (0, 90, 0.4318, 0),
+        (0, -90, 0, 0),
+        (0, 0, 0.056, 0),
+    ),
+    # Universal Robots UR5e, the maker's page on Denavit-Hartenberg parameters.
+    "ur5e": (
+        (0, 90, 0.1625, 0),
+        (-0.425, 0, 0, 0),
+        (-0.3922, 0, 0, 0),
+        (0, 90, 0.1333, 0),
+        (0, -90, 0.0997, 0),
+        (0, 0, 0.0996, 0),
+    ),
+    # Three parallel axes, but 5 and 6 pass each other at 50 mm: made up, its signs have no names.
+    "passing": (
+        (0, -90, 0.3, 0),
+        (0.4, 0, 0, 0),
+        (0.4, 0, 0, 0),
+        (0, 90, 0.1, 0),
+        (0.05, -90, 0.1, 0),
+        (0, 0, 0.1, 0),
+    ),
+    # Spherical wrist on the cuspidal 3R arm of Wenger (1992), its lengths halved or less: 2 is not
+    # parallel to 3, and no two neighbors of the first three axes meet.
+    "cuspidal": (
+        (0.4, -90, 0.4, 0),
+        (0.8, 90, 0.4, 0),
+        (0, -90, 0, 0),
+        (0, 90, 0.6, 0),
+        (0, -90, 0, 0),
+        (0, 0, 0.08, 0),
+    ),
+    # FANUC CRX-10iA (Abbes and Poisson 2024): the wrist's axes 4 and 6 pass each other at 150 mm.
+    "crx10ia": (
+        (0, -90, 0.245, 0),
+        (0.540, 0, 0, -90),
+        (0, -90, 0, 0),
+        (0, 90, 0.540, 0),
+        (0, -90, 0.150, 0),
+        (0, 0, 0.160, 0),
+    ),
+}
+
+_LINK = (
+    '<link name="l{0}"><inertial><mass value="1"/><inertia ixx=".01" ixy="0" ixz="0" iyy=".01"'
+    ' iyz="0" izz=".01"/></inertial></link>'
+)
+_TOOL = (
+    '<robot name="tool"><link name="body"/><joint name="tip_joint" type="fixed">'
+    '<parent link="body"/><child link="tool_tip"/><origin xyz="0 0 {0}"/></joint>'
+    '<link name="tool_tip"/></robot>'
+)
+
+
+def steps_of(constants: Constants) -> list[Array]:
+    """What comes after the turn of each joint, (4, 4) each."""
+    steps = []
+    for a, alpha, d, offset in constants:
+        twist, turn = np.radians(alpha), np.radians(offset)
+        x = np.array([np.cos(turn), np.sin(turn), 0])
+        y = np.array([-np.sin(turn), np.cos(turn), 0])
+        up = np.array([0, 0, 1.0])
+        step = np.eye(4)
+        step[:3, :3] = np.column_stack(
+            [x, np.cos(twist) * y + np.sin(twist) * up, -np.sin(twist) * y + np.cos(twist) * up]
+        )
+        step[:3, 3] = a * x + d * up
+        steps.append(step)
+    return steps
+
+
+def urdf_of(placements: list[Array], limit: float = 2 * np.pi) -> str:
+    """URDF of an arm whose joints turn about z, each in a frame (4, 4) behind the one before.
+
+    The last placement is that of the flange, a link named ``flange``.
+    """
+    count = len(placements) - 1
+    text = ['<robot name="arm">', *(_LINK.format(k) for k in range(count + 1))]
+    for k, placement in enumerate(placements, 1):
+        kind, child = ("fixed", "flange") if k > count else ("revolute", f"l{k}")
+        xyz = " ".join(map(repr, placement[:3, 3].tolist()))
+        rpy = " ".join(map(repr, _rpy(placement[:3, :3]).tolist()))
+        text.append(
+            f'<joint name="j{k}" type="{kind}"><parent link="l{k - 1}"/><child link="{child}"/>'
+            f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="0 0 1"/>'
+            f'<limit lower="{-limit!r}" upper="{limit!r}" velocity="3" effort="500"/></joint>'
+        )
+    return "".join([*text, '<link name="flange"/></robot>'])
+
+
+def tool_of(length: float = 0.1) -> str:
+    """URDF of a tool along the flange's z axis, in m, without collision shapes."""
+    return _TOOL.format(length)
+
+
+def urdf(name: str) -> str:
+    """URDF of one of ``ARMS``."""
+    return urdf_of([np.eye(4), *steps_of(ARMS[name])])
+
+
+def robot(text: str, joints: int = 6) -> Robot:
+    """An arm with the tool on its flange."""
+    arm, tool = parse_urdf(text, "arm.urdf"), parse_urdf(tool_of(), "tool.urdf")
+    return load_robot(arm, "flange", tool, "tool_tip", joints)
+
+
+def _rpy(turn: Array) -> Array:
+    """Extrinsic angles about x, y, z."""
+    pitch = np.arctan2(-turn[2, 0], np.hypot(turn[0, 0], turn[1, 0]))
+    if np.cos(pitch) < 1e-9:
+        return np.array([np.arctan2(-turn[1, 2], turn[1, 1]), pitch, 0.0])
+    roll, yaw = np.arctan2(turn[2, 1], turn[2, 2]), np.arctan2(turn[1, 0], turn[0, 0])
+    return np.array([roll, pitch, yaw])

@@ -1,0 +1,298 @@
+"""Certificates of true bounds, forged in one place, and whether their claims are true all the same.
+
+A forged claim on a large instance is one segment more than a division that exists, so it is false.
+On a small mesh it may be true as well: all colorings of the vertices tell.
+"""
+
+from __future__ import annotations
+
+import copy
+import itertools
+import random
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Any
+
+import networkx as nx
+from library import INSTANCES
+from meshes import drawn
+
+import cellcolor
+from cellcolor.data.bound import Bound
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decomposition_of
+from cellcolor.lab.families import MEDIUM, blobs
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+__all__ = ["FORGERIES", "Original", "claims_truth", "forge", "large", "small"]
+
+MOST_COLORINGS = 2_000
+SHAPES: tuple[tuple[str, dict[str, list[int]]], ...] = (
+    ("RRBBM", {"R": [0], "B": [1], "M": [0, 1]}),
+    ("RRBBGM", {"R": [0], "B": [1], "G": [2], "M": [0, 1, 2]}),
+    ("ABCR", {"A": [0, 1], "B": [1, 2], "C": [0, 2], "R": [0]}),
+)
+"""Letters that small meshes are drawn with, and the colors that each stands for."""
+LARGE_FILES = (
+    "paper/annulus.json",
+    "paper/figeasycell4.json",
+    "random/hub_24.json",
+    "parts/machined-part.json",
+)
+
+Certificate = dict[str, Any]
+
+
+@dataclass(frozen=True, eq=False)
+class Original:
+    """A true bound that a certificate proves.
+
+    Attributes:
+        name: what it is of.
+        instance: the topological graph.
+        bound: as many segments as a division has that exists; its certificate always has parts.
+        surface: the mesh, if it is small enough for all of its colorings to be tried.
+    """
+
+    name: str
+    instance: Instance
+    bound: Bound
+    surface: LabelledSurface | None = None
+
+
+def small(seed: int) -> Iterator[Original]:
+    """The bounds of a random mesh with few colorings; none if it has too many."""
+    chance = random.Random(seed)
+    letters, labels = SHAPES[seed % len(SHAPES)]
+    rows = ["".join(chance.choices(letters, k=4)) for _ in range(chance.randint(3, 4))]
+    surface = drawn(" ".join(rows), labels)
+    colorings = 1
+    for own in surface.vertex_colors:
+        colorings *= max(1, len(own))
+    if colorings <= MOST_COLORINGS:
+        yield from _originals(f"mesh {seed}", cellcolor.decompose(surface), surface)
+
+
+def large() -> Iterator[Original]:
+    """The bounds of stored instances, scenes, blobs and thin bands, one after the other."""
+    for name in LARGE_FILES:
+        yield from _originals(name, Instance.read(INSTANCES / name))
+    for file in sorted((INSTANCES / "scenes" / "feasibility").glob("*.surface.json")):
+        yield from _originals(file.name, cellcolor.decompose(file))
+    for seed in range(6):
+        yield from _originals(f"blobs {seed}", cellcolor.decompose(blobs(seed)))
+    for seed in (5, 22):
+        thin = cellcolor.decompose(blobs(seed, size=20, thin=True))
+        yield from _originals(f"thin bands {seed}", thin)
+    yield from _originals("rim 1", cellcolor.decompose(MEDIUM["rim"](1)))
+
+
+def _originals(
+    name: str, instance: Instance, surface: LabelledSurface | None = None
+) -> Iterator[Original]:
+    """The bounds of an instance that meet its minimum, with parts in their certificates."""
+    solution = solve(instance, Options(workers=1))
+    for bound in solution.bounds or ():
+        certificate = bound.certificate
+        if certificate is None or bound.value != solution.segments:
+            continue
+        if bound.kind == "cover":
+            part = {"value": bound.value, "cells": certificate["cells"], "conflicts": []}
+            certificate = {"left_out": [], "parts": [part]}
+        proved = Bound("conflicts", bound.value, "surface", certificate)
+        yield Original(name, instance, proved, surface)
+
+
+# --- one thing changed ----------------------------------------------------------------------------
+
+
+def _swapped_cell(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """Another cell in the place of one that has to be touched."""
+    cells = chance.choice([part for part in forged["parts"] if part["cells"]])["cells"]
+    cells[chance.randrange(len(cells))] = chance.randrange(len(original.instance.cells))
+    return 0
+
+
+def _shortened_list(chance: random.Random, _: Original, forged: Certificate) -> int:
+    """A cell, a conflict, or the cells of an area are missing."""
+    part = chance.choice([part for part in forged["parts"] if part["cells"]])
+    name = chance.choice(["cells", "conflicts"]) if part["conflicts"] else "cells"
+    part[name].pop(chance.randrange(len(part[name])))
+    return 0
+
+
+def _no_conflict(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A conflict that is none: an area lies elsewhere in the segment's color region."""
+    part = chance.choice(forged["parts"])
+    if part["conflicts"]:
+        conflict = copy.deepcopy(chance.choice(part["conflicts"]))
+    else:
+        colors = [chance.randrange(len(original.instance.colors)) for _ in range(2)]
+        conflict = {"colors": colors, "one": [[], []], "other": [[], []]}
+    for side, color in zip(("one", "other"), conflict["colors"], strict=True):
+        for end in (0, 1):
+            if not conflict[side][end] or chance.random() < 0.4:
+                own = [c.id for c in original.instance.cells if color in c.colors]
+                conflict[side][end] = [chance.choice(own or [0])]
+    part["conflicts"].append(conflict)
+    return 0
+
+
+def _not_minimal(_: random.Random, original: Original, forged: Certificate) -> int:
+    """All cells are named for one segment more, as if the cover were not minimal."""
+    forged["parts"] = [
+        {
+            "value": original.bound.value + 1,
+            "cells": [cell.id for cell in original.instance.cells],
+            "conflicts": [c for part in forged["parts"] for c in part["conflicts"]],
+        }
+    ]
+    return 1
+
+
+def _wrong_number(chance: random.Random, _: Original, forged: Certificate) -> int:
+    """A part, or the bound alone, says more."""
+    more = chance.randint(1, 3)
+    chance.choice(forged["parts"])["value"] += chance.choice([0, more])
+    return more
+
+
+def _left_out_wrongly(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A color region is left out for which another color cannot stand in."""
+    cell = chance.choice(original.instance.cells)
+    step = [chance.choice(cell.colors), cell.id, chance.randrange(len(original.instance.colors))]
+    forged["left_out"] = [*forged["left_out"], step]
+    return 0
+
+
+def _wrong_hub(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """Another cell is said to be a hub."""
+    part = chance.choice(forged["parts"])
+    hub = chance.randrange(len(original.instance.cells))
+    part["cells"] = [cell for cell in part["cells"] if cell != hub]
+    part["conflicts"] = []
+    part["hubs"] = [*part.get("hubs", ())[1:], hub]
+    return 0
+
+
+FORGERIES: dict[str, Callable[[random.Random, Original, Certificate], int]] = {
+    "a swapped cell": _swapped_cell,
+    "a shortened list": _shortened_list,
+    "a conflict that is none": _no_conflict,
+    "a cover that is not minimal": _not_minimal,
+    "a wrong number": _wrong_number,
+    "a color left out wrongly": _left_out_wrongly,
+    "a wrong hub": _wrong_hub,
+}
+"""Each changes a certificate and says how many segments more the bound claims."""
+
+
+def forge(kind: str, seed: int, original: Original) -> Bound:
+    """A forged bound; on a large instance it claims one segment more than exists, at least."""
+    chance = random.Random(f"{kind} {seed}")
+    certificate = copy.deepcopy(original.bound.certificate)
+    assert certificate is not None
+    more = FORGERIES[kind](chance, original, certificate)
+    if original.surface is None and more == 0:
+        chance.choice(certificate["parts"])["value"] += 1
+        more = 1
+    return Bound("conflicts", original.bound.value + more, "surface", certificate)
+
+
+# --- is it true all the same? ---------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Segment:
+    color: int
+    cells: frozenset[int]
+
+
+@cache
+def _colorings(original: Original) -> tuple[tuple[_Segment, ...], ...]:
+    """The segments of every coloring of a small mesh."""
+    surface = original.surface
+    assert surface is not None
+    cell_of = decomposition_of(surface, None).vertex_cell
+    found = []
+    for colors in itertools.product(*(own or (None,) for own in surface.vertex_colors)):
+        graph = nx.Graph()
+        graph.add_nodes_from(v for v, own in enumerate(colors) if own is not None)
+        graph.add_edges_from(
+            (a, b)
+            for a, b in surface.left_of
+            if colors[a] is not None
+            and colors[a] == colors[b]
+            and colors[a] not in surface.cracked(a, b)
+        )
+        found.append(
+            tuple(
+                _Segment(colors[min(together)], frozenset(cell_of[v] for v in together))
+                for together in nx.connected_components(graph)
+            )
+        )
+    return tuple(found)
+
+
+def claims_truth(original: Original, forged: Bound) -> bool:
+    """Whether no coloring of a small mesh contradicts anything that a forged certificate says.
+
+    On a large instance never: a division has fewer segments than it claims.
+    """
+    certificate = forged.certificate
+    if original.surface is None or certificate is None:
+        return False
+    colorings: Sequence[tuple[_Segment, ...]] = _colorings(original)
+    fewest = min(map(len, colorings))
+    for color, cell, _ in certificate["left_out"]:
+        colorings = _without(original.instance, colorings, color, cell)
+        if min(map(len, colorings), default=fewest + 1) > fewest:
+            return False
+    cells = {cell for part in certificate["parts"] for cell in part["cells"]}
+    if cells - {cell.id for cell in original.instance.cells}:
+        return False
+    if any(part.get("hubs") for part in certificate["parts"]):
+        cells = {cell.id for cell in original.instance.cells}  # hubs count for what they save
+    conflicts = [conflict for part in certificate["parts"] for conflict in part["conflicts"]]
+    for segments in colorings:
+        if sum(not cells.isdisjoint(s.cells) for s in segments) < forged.value:
+            return False
+        if any(_both_connected(segments, conflict) for conflict in conflicts):
+            return False
+    return True
+
+
+def _without(
+    instance: Instance, colorings: Sequence[tuple[_Segment, ...]], color: int, cell: int
+) -> list[tuple[_Segment, ...]]:
+    """The colorings that do not use a color region."""
+    graph = nx.Graph()
+    graph.add_nodes_from(own.id for own in instance.cells if color in own.colors)
+    graph.add_edges_from(
+        (edge.left, edge.right)
+        for edge in instance.edges
+        if OUTSIDE not in (edge.left, edge.right) and color in instance.joinable(edge.id)
+    )
+    region = nx.node_connected_component(graph, cell) if cell in graph else set()
+    return [
+        segments
+        for segments in colorings
+        if not any(s.color == color and not region.isdisjoint(s.cells) for s in segments)
+    ]
+
+
+def _both_connected(segments: Sequence[_Segment], conflict: dict[str, Any]) -> bool:
+    """Whether a coloring connects both pairs of areas of a conflict, by two segments."""
+    ends = zip(conflict["colors"], (conflict["one"], conflict["other"]), strict=True)
+    connecting = [
+        {
+            number
+            for number, segment in enumerate(segments)
+            if segment.color == color and not any(segment.cells.isdisjoint(area) for area in areas)
+        }
+        for color, areas in ends
+    ]
+    return any(one != other for one, other in itertools.product(*connecting))

@@ -1,0 +1,73 @@
+"""Small scenes for plans in joint angles, and paths that touch their vertices one after another."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import networkx
+import numpy as np
+import pinocchio as pin
+from shipped import shipped
+
+from cellcolor.arrays import Array
+from cellcolor.data.joint_plan import ContactPath
+from cellcolor.data.plan import Plan
+from cellcolor.frontend.build import BuildResult, build_surface
+
+TIP = "tool_tip"
+
+
+@cache
+def scene(name: str = "wok_obstacle", vertices: int = 200) -> BuildResult:
+    """A shipped scene on a coarse mesh."""
+    return build_surface(shipped(name, vertices))
+
+
+def pose(built: BuildResult, joints: Array) -> tuple[Array, Array]:
+    """Where Pinocchio has the tip, m, and the tool's axis."""
+    model = built.robot.model
+    data = model.createData()
+    pin.framesForwardKinematics(model, data, joints)
+    tip = data.oMf[model.getFrameId(TIP)]
+    return np.array(tip.translation), np.array(tip.rotation[:, 2])
+
+
+def configuration(built: BuildResult, vertex: int, color: int) -> Array:
+    """The scene's own configuration of a color at a vertex."""
+    (branch,) = np.flatnonzero(built.node_color[vertex] == color)
+    return np.array(built.configurations[vertex, branch])
+
+
+def joints_of(built: BuildResult, plan: Plan) -> Array:
+    """A row a vertex, NaN without a color."""
+    joints = np.full((len(plan.vertex_colors), built.robot.joints), np.nan)
+    for vertex, color in enumerate(plan.vertex_colors):
+        if color is not None:
+            joints[vertex] = configuration(built, vertex, color)
+    return joints
+
+
+def walk_of(built: BuildResult, plan: Plan) -> tuple[ContactPath, list[int]]:
+    """A path with a stroke a segment that walks along the mesh, and the vertex of each sample.
+
+    Between two strokes is a sample without contact, at the vertex before.
+    """
+    surface, colors = built.surface, plan.vertex_colors
+    graph: networkx.Graph = networkx.Graph()
+    graph.add_nodes_from(v for v, color in enumerate(colors) if color is not None)
+    for a, b in surface.left_of:
+        color = colors[a]
+        if color is not None and color == colors[b] and color not in surface.cracked(a, b):
+            graph.add_edge(a, b)
+    vertices, contact = [], []
+    for segment in networkx.connected_components(graph):
+        walk = [min(segment)]
+        for one, other, kind in networkx.dfs_labeled_edges(graph, min(segment)):
+            if kind == "forward" and one != other:
+                walk.append(other)
+            elif kind == "reverse" and one != other:
+                walk.append(one)
+        vertices += [*walk, walk[-1]]
+        contact += [True] * len(walk) + [False]
+    joints = np.array([configuration(built, v, colors[v] or 0) for v in vertices])
+    return ContactPath(joints, surface.vertices[vertices], np.array(contact)), vertices

@@ -1,0 +1,114 @@
+"""All solutions of poses, by a family of arms and by ssik, which shares no code with it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from independent import set_distance, wrapped
+from other_solver import Ssik
+from scipy.optimize import brentq
+
+from cellcolor.arrays import Array
+from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.signs import signs_of
+from cellcolor.frontend.prepared import family_of, robot_of
+from cellcolor.frontend.setup import Setup
+
+REGULAR = 1e-5  # of reach^3; nearer to a singularity two solutions are about to meet
+SAME = 1e-5  # rad
+KINDS = {"wrist": (4, 2), "elbow": (2, 1), "shoulder": (1, 0)}  # joint that leads there, factor
+
+
+@dataclass(frozen=True)
+class Compared:
+    """How two solvers agree.
+
+    Attributes:
+        poses, solutions: how many were compared.
+        different: poses whose sets differ, modulo full turns, either way.
+        farthest: largest difference of an angle within a pair, rad.
+    """
+
+    poses: int
+    solutions: int
+    different: int
+    farthest: float
+
+
+@dataclass(frozen=True)
+class Arm:
+    """An arm with its tool and its inverse kinematics."""
+
+    robot: Robot
+    family: InverseKinematics
+
+    @classmethod
+    def of(cls, setup: Setup) -> Arm:
+        """The one that a setup names."""
+        robot = robot_of(setup)
+        return cls(robot, family_of(setup)(robot, setup.robot))
+
+    def solved(self, points: Array, directions: Array) -> list[Array]:
+        """Joints 1 to 5 (s, 5) of all solutions of each pose, rad."""
+        found = self.family.solve(points, directions)
+        return [each[~np.isnan(each[:, 0]), :5] for each in found]
+
+    def regular(self, five: Array) -> Array:
+        """Those of some solutions (s, 5) that are not about to meet another one."""
+        poses = forward(self.robot, np.column_stack([five, np.zeros(len(five))]))
+        determinant = task_determinant(*tip_jacobian(poses), poses.tool_axis)
+        return five[determinant > REGULAR * self.family.reach**3]
+
+    def compared(self, q: Array) -> Compared:
+        """Both solvers on the poses of configurations (n, 6), with a turn by chance each."""
+        ssik, random = Ssik(self.robot), np.random.default_rng(3)
+        poses = forward(self.robot, q)
+        solutions = different = 0
+        farthest = 0.0
+        every = self.solved(poses.tip, poses.tool_axis)
+        for ours, point, direction in zip(every, poses.tip, poses.tool_axis, strict=True):
+            theirs = ssik.solutions(point, direction, random.uniform(0, 2 * np.pi))
+            ours, theirs = self.regular(ours), self.regular(theirs)
+            apart = set_distance(ours, theirs)
+            solutions += len(ours)
+            different += apart > SAME
+            farthest = max(farthest, apart)
+        return Compared(len(q), solutions, different, farthest)
+
+    def lost(self, q: Array, within: float) -> int:
+        """How many of configurations (n, 6) are not among the solutions of their own poses."""
+        poses = forward(self.robot, q)
+        return sum(
+            wrapped(ours - own[:5]).max(axis=1).min(initial=np.inf) > within
+            for own, ours in zip(q, self.solved(poses.tip, poses.tool_axis), strict=True)
+        )
+
+    def near_singular(self, kind: str, off: float, count: int, seed: int = 29) -> Array:
+        """Configurations (count, 6) that are ``off`` rad in one joint from a singularity."""
+        signs = signs_of(self.robot, self.family.reach, 1e-6)
+        assert signs is not None
+        joint, number = KINDS[kind]
+
+        def factor(angle: float, row: Array) -> float:
+            turned = np.array(row)
+            turned[joint] = angle
+            factors = signs.factors(forward(self.robot, turned[None]))[0]
+            # The elbow's factor changes its sign with the shoulder's as well.
+            return float(factors[number] * (np.sign(factors[0]) if number == 1 else 1.0))
+
+        rows, found = np.random.default_rng(seed).uniform(-np.pi, np.pi, (20 * count, 6)), []
+        for row in rows:
+            turns = np.linspace(-3.1, 3.0, 20)
+            values = np.array([factor(turn, row) for turn in turns])
+            crossed = np.flatnonzero(values[1:] * values[:-1] < 0)
+            if len(crossed):
+                low, high = turns[crossed[0]], turns[crossed[0] + 1]
+                row[joint] = brentq(factor, low, high, args=(row,), xtol=1e-14) + off
+                found.append(row)
+            if len(found) == count:
+                break
+        assert len(found) == count
+        return np.array(found)
