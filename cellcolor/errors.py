@@ -9,6 +9,7 @@ __all__ = [
     "Disagreement",
     "InputError",
     "RefusedResult",
+    "SolverMissing",
     "TooLarge",
 ]
 
@@ -39,6 +40,24 @@ class InputError(CellcolorError):
     def in_file(self, file: str) -> InputError:
         """The same error with the file named, for data that learns its file late."""
         return InputError(file, self.field, self.message)
+
+
+class SolverMissing(CellcolorError):
+    """A solver that is known by name cannot run here: what it needs is not installed.
+
+    Attributes:
+        name: of the solver.
+        how: what to do about it, such as a command that installs what is missing.
+    """
+
+    def __init__(self, name: str, how: str) -> None:
+        self.name = name
+        self.how = how
+        super().__init__(f"the solver {name} is not installed: {how}")
+
+    def __reduce__(self) -> tuple[type[SolverMissing], tuple[str, str]]:
+        # As in InputError.
+        return type(self), (self.name, self.how)
 
 
 class TooLarge(CellcolorError):

@@ -27,7 +27,6 @@ from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.door.extras import extras_for
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.files.writing import (
     Output,
@@ -204,7 +203,7 @@ def _solve(
     if request.warm_start is not None:
         start = start_from(request.warm_start, instance, options.strands)
         options = replace(options, start=start)
-    with progress_of(file) as report, end_the_search(), extras_for(file):
+    with progress_of(file) as report, end_the_search():
         solution = solve(instance, options, request.solver, report)
     if not request.every:
         if target is not None:

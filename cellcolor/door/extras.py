@@ -13,7 +13,6 @@ DISTRIBUTION = "fewest-lift-offs"
 """What to install; ``cellcolor`` on the Python Package Index is somebody else's program."""
 
 _EXTRAS = {
-    "clingo": "peers",
     "matplotlib": "viz",
     "mpl_toolkits": "viz",
     "plotly": "viz",

@@ -11,13 +11,22 @@ from __future__ import annotations
 from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING
 
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, SolverMissing
 from cellcolor.registered import find, known_names, load
+from cellcolor.version import __version__
 
 if TYPE_CHECKING:
     from cellcolor.solvers.interface import Solver
 
-__all__ = ["DEFAULT", "GROUP", "OWN_NAMES", "REFERENCE", "make_solver", "solver_names"]
+__all__ = [
+    "DEFAULT",
+    "GROUP",
+    "OWN_NAMES",
+    "REFERENCE",
+    "make_solver",
+    "solver_names",
+    "solver_version",
+]
 
 GROUP = "cellcolor.solvers"
 """The group of entry points."""
@@ -49,13 +58,26 @@ def make_solver(name: str) -> Solver:
     Raises:
         InputError: there is none, two packages register different ones, or the one that is
             registered cannot be imported or is no solver.
-        ModuleNotFoundError: a solver of this package needs an extra that is not installed.
+        SolverMissing: what it needs is not installed.
     """
     point = find(name, _OWN, GROUP, "solver")
     if name in _OWN:
         solver: Solver = point.load()()
         return solver
     return _made(point)
+
+
+def solver_version(name: str) -> str:
+    """Which version answers: what the solver says of itself, else the version of its package.
+
+    Raises:
+        InputError, SolverMissing: as for :func:`make_solver`.
+    """
+    own = getattr(make_solver(name), "version", None)
+    if own is not None:
+        return str(own)
+    distribution = find(name, _OWN, GROUP, "solver").dist
+    return __version__ if distribution is None else distribution.version
 
 
 def _made(point: EntryPoint) -> Solver:
@@ -66,6 +88,8 @@ def _made(point: EntryPoint) -> Solver:
     make = load(point, "solver")
     try:
         solver: Solver = make()
+    except SolverMissing:
+        raise
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
         raise InputError(None, "solver", f"{where} cannot be made: {reason}") from error

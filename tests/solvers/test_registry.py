@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -12,10 +13,18 @@ from library import PAPER
 from plugins import install
 
 from cellcolor.data.instance import Instance
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, SolverMissing
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options, SchemeSolver, Start
-from cellcolor.solvers.registry import GROUP, OWN_NAMES, REFERENCE, make_solver, solver_names
+from cellcolor.solvers.registry import (
+    GROUP,
+    OWN_NAMES,
+    REFERENCE,
+    make_solver,
+    solver_names,
+    solver_version,
+)
+from cellcolor.version import __version__
 
 RING = PAPER / "ring.json"
 INSTANCE = Instance.read(RING)
@@ -141,7 +150,12 @@ def test_a_missing_extra_is_named(
 ) -> None:
     monkeypatch.setitem(sys.modules, "clingo", None)
     assert run("solve", RING, "--solver", "clingo") == 2
-    assert "needs clingo: pip install 'fewest-lift-offs[peers]'" in capsys.readouterr().err
+    (line,) = capsys.readouterr().err.splitlines()
+    assert "the solver clingo is not installed: pip install 'fewest-lift-offs[peers]'" in line
+    with pytest.raises(SolverMissing) as caught:
+        make_solver("clingo")
+    again = pickle.loads(pickle.dumps(caught.value))  # as from a process of its own
+    assert (again.name, str(again)) == ("clingo", str(caught.value))
 
 
 class TestOthers:
@@ -160,6 +174,22 @@ class TestOthers:
         install(others, "echoes", GROUP, {"echo": "echo_solver:Echo"}, echo_solver=ECHO)
         assert run("solve", RING, "--solver", "echo", "--json") == 0
         assert '"solver": "echo"' in capsys.readouterr().out
+
+    def test_versions_are_their_own_word_or_that_of_their_package(self, others: Path) -> None:
+        install(others, "echoes", GROUP, {"echo": "echo_solver:Echo"}, echo_solver=ECHO)
+        assert solver_version("echo") == "1.0"
+        spoken = ECHO.replace("pass", "version = 'Echo 7'")
+        install(others, "spoken", GROUP, {"told": "told_solver:Echo"}, told_solver=spoken)
+        assert solver_version("told") == "Echo 7"
+        assert solver_version(REFERENCE) == __version__
+        assert solver_version("cp-sat").startswith("OR-Tools 9.")
+
+    def test_say_that_they_are_missing(self, others: Path) -> None:
+        text = "from cellcolor.errors import SolverMissing\n\ndef Echo():\n"
+        text += "    raise SolverMissing('echo', 'apt install echo')\n"
+        install(others, "lack", GROUP, {"echo": "echo_solver:Echo"}, echo_solver=text)
+        with pytest.raises(SolverMissing, match="echo is not installed: apt install echo"):
+            make_solver("echo")
 
     def test_do_not_replace_our_own(self, others: Path) -> None:
         install(others, "echoes", GROUP, {"cp-sat": "echo_solver:Echo"}, echo_solver=ECHO)

@@ -7,7 +7,9 @@ for that model, runs clingo, and reads the division off the last answer set.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from importlib.metadata import version
 from importlib.resources import files
+from importlib.util import find_spec
 from math import comb
 from typing import TYPE_CHECKING
 
@@ -15,7 +17,7 @@ from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, number_segments
 from cellcolor.deadline import OutOfTime
-from cellcolor.errors import InputError, TooLarge
+from cellcolor.errors import InputError, SolverMissing, TooLarge
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 
 if TYPE_CHECKING:
@@ -43,6 +45,20 @@ class ClingoSolver:
 
     abilities = Abilities()
 
+    def __init__(self) -> None:
+        """Check that clingo can be imported.
+
+        Raises:
+            SolverMissing: it cannot.
+        """
+        if find_spec("clingo") is None:
+            raise SolverMissing("clingo", "pip install 'fewest-lift-offs[peers]'")
+
+    @property
+    def version(self) -> str:
+        """Of clingo."""
+        return f"clingo {version('clingo')}"
+
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
@@ -51,7 +67,6 @@ class ClingoSolver:
         Raises:
             InputError: a cell has several loops with live darts.
             TooLarge: a cell has so many live darts that the model would not be written in time.
-            ModuleNotFoundError: clingo is not installed.
         """
         from clingo import Control
 

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
+from importlib.metadata import version
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.darts import Strand
@@ -58,6 +59,11 @@ class CpSatSolver:
 
     def __init__(self, plans: bool = True) -> None:
         self._plans = plans
+
+    @property
+    def version(self) -> str:
+        """Of OR-Tools."""
+        return f"OR-Tools {version('ortools')}"
 
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
