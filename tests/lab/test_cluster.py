@@ -1,0 +1,61 @@
+"""A Dask cluster of two workers does the work as well, and loses none of it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import odd_jobs
+import pytest
+
+from cellcolor.errors import InputError
+from cellcolor.lab.executors.alone import Limits
+from cellcolor.lab.executors.work import Task, as_they_end
+
+distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
+
+from cellcolor.lab.executors.cluster import ClusterWorkers  # noqa: E402
+
+LIMITS = Limits(60.0)
+
+
+@pytest.fixture(scope="module")
+def address() -> Iterator[str]:
+    """Of a scheduler with two workers, each a process of its own that is replaced when it dies."""
+    settings: dict[str, Any] = {"n_workers": 2, "threads_per_worker": 1, "processes": True}
+    with distributed.LocalCluster(**settings, dashboard_address=None) as cluster:
+        yield cluster.scheduler_address
+
+
+def test_work_comes_back(address: str) -> None:
+    tasks = [(n, Task(odd_jobs.double, (n,), LIMITS)) for n in range(4)]
+    tasks.append((4, Task(odd_jobs.die, (), LIMITS)))
+    with ClusterWorkers(address) as workers:
+        assert workers.slots == 2
+        found = {name: (ended.end, ended.value) for name, ended in as_they_end(workers, tasks)}
+    assert found == {**{n: ("done", 2 * n) for n in range(4)}, 4: ("crashed", None)}
+
+
+def test_a_lost_worker_loses_nothing(address: str, tmp_path: Path) -> None:
+    mark = str(tmp_path / "mark")
+    tasks = [("killer", Task(odd_jobs.kill_the_worker_once, (mark,), LIMITS))]
+    tasks += [(str(n), Task(odd_jobs.double, (n,), LIMITS)) for n in range(4)]
+    with ClusterWorkers(address) as workers:
+        found = {name: ended.value for name, ended in as_they_end(workers, tasks)}
+    assert found == {"killer": "came back", **{str(n): 2 * n for n in range(4)}}
+
+
+def test_leaving_ends_the_work(address: str, tmp_path: Path) -> None:
+    pids = tmp_path / "pids"
+    with pytest.raises(KeyboardInterrupt), ClusterWorkers(address) as workers:
+        workers.submit(Task(odd_jobs.hang, (str(pids),), Limits(600.0)))
+        odd_jobs.wait_until_noted(pids, 2)
+        raise KeyboardInterrupt
+    odd_jobs.wait_until_ended(pids)
+
+
+def test_nobody_there(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cellcolor.lab.executors.cluster._PATIENCE", 0.2)
+    with pytest.raises(InputError, match=r"cluster: tcp://127\.0\.0\.1:9 does not answer"):
+        ClusterWorkers("tcp://127.0.0.1:9")

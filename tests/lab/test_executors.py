@@ -1,0 +1,134 @@
+"""Work in processes of its own: limits, what is killed, and that nothing is left behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import odd_jobs
+import pytest
+
+from cellcolor.lab.executors.alone import Ended, Limits, run_alone, watch
+from cellcolor.lab.executors.local import LocalWorkers
+from cellcolor.lab.executors.work import Task, as_they_end
+
+LIMITS = Limits(60.0)
+
+
+def alone(function: Callable[..., Any], *arguments: Any, limits: Limits = LIMITS) -> Ended:
+    return run_alone(function, arguments, limits)
+
+
+class TestOneProcess:
+    def test_comes_back(self) -> None:
+        ended = alone(odd_jobs.double, 21)
+        assert (ended.end, ended.value, ended.error) == ("done", 42, "")
+        assert ended.seconds > 0 and ended.cpu_seconds > 0 and ended.machine.cores >= 1
+
+    def test_an_error_is_a_line(self) -> None:
+        ended = alone(odd_jobs.fail, "two\nlines")
+        assert (ended.end, ended.error) == ("failed", "ValueError: two lines")
+
+    def test_what_cannot_be_handed_back_is_an_error(self) -> None:
+        assert "pickle" in alone(compile, "1", "no file", "eval").error
+
+    def test_killed_by_somebody(self) -> None:
+        ended = alone(odd_jobs.die)
+        assert (ended.end, ended.error) == ("crashed", "ended by SIGKILL")
+
+    def test_ending_without_a_result_is_no_result(self) -> None:
+        ended = alone(os._exit, 0)
+        assert ended.end == "crashed" and ended.error.startswith("left no result")
+        assert alone(os._exit, 7).error == "exit code 7"
+
+    @pytest.mark.skipif(sys.platform != "linux", reason="memory is looked at on Linux only")
+    def test_memory(self) -> None:
+        ended = alone(odd_jobs.swell, limits=Limits(60.0, 200.0))
+        assert (ended.end, ended.error) == ("memory", "killed at more than 200 MB")
+        assert 200 < ended.peak_mb < 1000
+
+    @pytest.mark.skipif(sys.platform != "linux", reason="memory is looked at on Linux only")
+    def test_peak_memory_is_seen_however_short_it_was(self) -> None:
+        small, large = alone(odd_jobs.take, 1), alone(odd_jobs.take, 300)
+        assert large.peak_mb - small.peak_mb > 250
+
+    @pytest.mark.parametrize("apart", [False, True])
+    def test_time_and_no_orphans(self, tmp_path: Path, apart: bool) -> None:
+        pids = tmp_path / "pids"
+        ended = alone(odd_jobs.hang, str(pids), apart, limits=Limits(2.0))
+        assert (ended.end, ended.error) == ("timeout", "killed after 2 s")
+        assert ended.seconds >= 2.0
+        odd_jobs.wait_until_ended(pids)
+
+    def test_children_do_not_outlive_what_came_back(self, tmp_path: Path) -> None:
+        pids = tmp_path / "pids"
+        command = [sys.executable, "-c", "import time; time.sleep(600)"]
+        script = "import subprocess, sys; p = subprocess.Popen(sys.argv[2:]); "
+        script += "open(sys.argv[1], 'w').write(str(p.pid))"
+        assert watch([sys.executable, "-c", script, str(pids), *command], LIMITS).end == "done"
+        odd_jobs.wait_until_ended(pids)
+
+
+class TestManyProcesses:
+    def test_each_comes_back_with_its_name(self) -> None:
+        tasks = [(number, Task(odd_jobs.double, (number,), LIMITS)) for number in range(4)]
+        with LocalWorkers(2) as workers:
+            found = {name: ended.value for name, ended in as_they_end(workers, tasks)}
+        assert found == {number: 2 * number for number in range(4)}
+
+    def test_a_task_is_made_when_there_is_a_worker_for_it(self) -> None:
+        made: list[int] = []
+
+        def make() -> Any:
+            for number in range(3):
+                made.append(number)
+                yield number, Task(odd_jobs.double, (number,), LIMITS)
+
+        with LocalWorkers(1) as workers:
+            for number, _ in as_they_end(workers, make()):
+                assert made == list(range(number + 1))
+
+    def test_lost_ones_leave_the_others(self) -> None:
+        jobs = [(odd_jobs.die, ()), (odd_jobs.double, (1,)), (odd_jobs.fail, ("!",))]
+        tasks = [(n, Task(function, arguments, LIMITS)) for n, (function, arguments) in
+                 enumerate(jobs)]  # fmt: skip
+        with LocalWorkers(1) as workers:
+            ends = [(name, ended.end) for name, ended in as_they_end(workers, tasks)]
+        assert ends == [(0, "crashed"), (1, "done"), (2, "failed")]
+
+    def test_leaving_ends_the_work(self, tmp_path: Path) -> None:
+        pids = tmp_path / "pids"
+        with pytest.raises(KeyboardInterrupt), LocalWorkers(1) as workers:
+            workers.submit(Task(odd_jobs.hang, (str(pids),), Limits(600.0)))
+            odd_jobs.wait_until_noted(pids, 2)
+            raise KeyboardInterrupt
+        odd_jobs.wait_until_ended(pids)
+
+    @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
+    def test_no_orphans_of_a_killed_program(self, tmp_path: Path, number: signal.Signals) -> None:
+        pids = tmp_path / "pids"
+        script = (
+            "import odd_jobs, signal, sys\n"
+            "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # if it was ignored
+            "from cellcolor.lab.executors.alone import Limits\n"
+            "from cellcolor.lab.executors.local import LocalWorkers\n"
+            "from cellcolor.lab.executors.work import Task, as_they_end\n"
+            "task = Task(odd_jobs.hang, (sys.argv[1],), Limits(600.0))\n"
+            "with LocalWorkers(1) as workers:\n"
+            "    list(as_they_end(workers, [(0, task)]))\n"
+        )
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        command = [sys.executable, "-c", script, str(pids)]
+        process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
+        try:
+            odd_jobs.wait_until_noted(pids, 2)
+            process.send_signal(number)
+            assert process.wait(60) == -number
+            odd_jobs.wait_until_ended(pids)
+        finally:
+            process.kill()
