@@ -19,7 +19,7 @@ from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.check_error import CheckError
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.claims import format_of_claim
-from cellcolor.door.shipped import find_file
+from cellcolor.door.shipped import find_claim, find_file
 from cellcolor.door.subject import Subject
 from cellcolor.door.trajectories import judge_trajectory, read_trajectory
 from cellcolor.errors import CellcolorError, InputError
@@ -34,8 +34,8 @@ class Request:
     Attributes:
         subject: an instance, a labelled surface or a scene; its file, its shipped name, or ``-``
             for standard input.
-        claim: a solution of it, a plan on its surface, or a trajectory for the scene; its file, or
-            ``-`` for standard input.
+        claim: a solution of it, a plan on its surface, or a trajectory for the scene; its file,
+            of a solution its shipped name, or ``-`` for standard input.
         deadline: when the proven range that a plan or a trajectory is compared with has to be
             there.
         demands: what else is wanted of a plan.
@@ -53,7 +53,8 @@ def check_files(request: Request) -> Exit:
     """Say whether a claim is valid, and what its numbers are."""
     try:
         with input_file(request.claim) as claim:
-            return _check(request, claim)
+            copied = request.claim == STANDARD_INPUT
+            return _check(request, claim if copied else find_claim(request.claim))
     except CellcolorError as error:
         at = error if isinstance(error, InputError) else InputError(None, None, str(error))
         return _no_verdict(request, at, Exit.BAD_INPUT)

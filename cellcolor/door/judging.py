@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from os import PathLike
+from pathlib import Path
 from typing import Any, overload
 
 from cellcolor.checker.color_regions import regions_on_surface
@@ -16,6 +17,7 @@ from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.door.claims import format_of_claim
 from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.result import Result
+from cellcolor.door.shipped import find_claim
 from cellcolor.door.solving import deadline_after
 from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.door.trajectories import judge_trajectory, read_trajectory
@@ -57,8 +59,8 @@ def check(
     Args:
         instance: what was solved: an instance, a labelled surface or a scene; its file, its
             shipped name, the value. A scene for a trajectory.
-        solution: the solution, the trajectory, or the file of one of them; tables of trajectories
-            are told by their suffix, ``.csv``.
+        solution: the solution, the trajectory, or the file of one of them, of a shipped solution
+            its name; tables of trajectories are told by their suffix, ``.csv``.
         time_limit: seconds for all of it with a trajectory; None for as long as it takes.
 
     Returns:
@@ -70,7 +72,9 @@ def check(
         InputError: one of the two cannot be used.
         OutOfTime: the time limit came before there was a verdict on a trajectory.
     """
-    if isinstance(solution, (str, PathLike)) and format_of_claim(solution) == TRAJECTORY:
+    if isinstance(solution, (str, PathLike)):
+        solution = find_claim(solution)
+    if isinstance(solution, Path) and format_of_claim(solution) == TRAJECTORY:
         deadline = deadline_after(time_limit)
         read = read_trajectory(solution)
         return judge_trajectory(open_subject(instance, deadline), read, deadline)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from cellcolor.data import instance as instance_file
+from cellcolor.data import library_index as library_file
 from cellcolor.data import plan as plan_file
 from cellcolor.data import solution as solution_file
 from cellcolor.data import surface as surface_file
@@ -15,6 +16,7 @@ from cellcolor.data import tool_paths as tool_paths_file
 from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data import trajectory_verdict as verdict_file
 from cellcolor.data.instance import Instance
+from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
@@ -33,7 +35,14 @@ if TYPE_CHECKING:
 __all__ = ["read"]
 
 _Value: TypeAlias = (
-    LabelledSurface | Instance | Solution | Plan | ToolPaths | Trajectory | TrajectoryVerdict
+    LabelledSurface
+    | Instance
+    | Solution
+    | Plan
+    | ToolPaths
+    | Trajectory
+    | TrajectoryVerdict
+    | LibraryIndex
 )
 _KINDS: dict[str, type[_Value]] = {
     surface_file.FORMAT: LabelledSurface,
@@ -43,6 +52,7 @@ _KINDS: dict[str, type[_Value]] = {
     tool_paths_file.FORMAT: ToolPaths,
     trajectory_file.FORMAT: Trajectory,
     verdict_file.FORMAT: TrajectoryVerdict,
+    library_file.FORMAT: LibraryIndex,
 }
 _SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
 """The table, or a key of it, that every setup has and no scene."""

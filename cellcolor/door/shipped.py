@@ -6,17 +6,25 @@ folders inside the package, so that the files' references to each other hold the
 
 from __future__ import annotations
 
+import json
 import os
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+from cellcolor.data.wording import count, span
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 
-__all__ = ["Library", "find_file", "library"]
+if TYPE_CHECKING:
+    from cellcolor.data.library_index import LibraryIndex
+
+__all__ = ["Library", "find_claim", "find_file", "index_file", "library"]
 
 # Of several files of one name the first one's kind is meant: a scene leads to all the others.
 _ENDINGS = (".toml", ".json", ".surface.json")
-_KINDS = {".toml": "scene", ".json": "graph", ".surface.json": "surface"}
+_SOLUTION = ".solution.json"
+"""A stored solution is opened by its whole name: it is what ``check`` takes beside a graph."""
+_INDEX = "index.json"
 
 
 class Library(dict[str, str]):
@@ -26,17 +34,31 @@ class Library(dict[str, str]):
         width = max(map(len, self), default=0)
         return "\n".join(f"{name:<{width}}  {line}" for name, line in self.items())
 
+    @property
+    def index(self) -> LibraryIndex:
+        """All that is known of the graphs in it (docs/library.md)."""
+        from cellcolor.data.library_index import LibraryIndex  # a name needs no validation
+
+        return LibraryIndex.read(index_file())
+
 
 def library() -> Library:
     """The names that can be given wherever a file can: ``cellcolor.solve("wok")``.
 
     The file that a name stands for is a scene if there is one, else a graph (an instance), else a
     labelled surface. The others have their ending added: ``wok.json`` is the graph of the scene
-    ``wok``, ``wok.surface.json`` its labelled surface.
+    ``wok``, ``wok.surface.json`` its labelled surface. Of graphs the line says what is known of the
+    minimum in the search space paper; ``library().index`` has the rest.
     """
     files = _files()
-    names = sorted(name for name in files if not name.endswith(_ENDINGS))
-    return Library({name: _described(files[name]) for name in names})
+    known = _entries()
+    names = {name for name in files if not name.endswith((*_ENDINGS, _SOLUTION))} | known.keys()
+    return Library({name: _line(files.get(name), known.get(name)) for name in sorted(names)})
+
+
+def index_file() -> Path:
+    """The file of the index of the library's graphs."""
+    return _folder() / "instances" / _INDEX
 
 
 def find_file(source: str | os.PathLike[str]) -> Path:
@@ -59,11 +81,26 @@ def find_file(source: str | os.PathLike[str]) -> Path:
         return files[source]
     if path.suffix or path.name != source or path.is_dir():
         return path
+    outside = _entries().get(source, {}).get("outside")
+    if outside is not None:
+        options = "".join(f" --correct {one}" for one in outside["corrections"])
+        how = f"cellcolor import FILE -o {source}.json{options}"
+        raise InputError(source, None, f"is not shipped; it is {outside['place']}, read by {how}")
     from difflib import get_close_matches
 
     close = get_close_matches(source, files, n=1)
     hint = f"; is {close[0]!r} meant?" if close else ""
     raise InputError(source, None, f"is no file, and nothing of that name is shipped{hint}")
+
+
+def find_claim(source: str | os.PathLike[str]) -> Path:
+    """The file of what is to be checked; of shipped ones solutions only, by their whole name.
+
+    Raises:
+        InputError: it is no path.
+    """
+    is_name = isinstance(source, str) and source.endswith(_SOLUTION)
+    return find_file(source) if is_name else path_of(source)
 
 
 def _folder() -> Path:
@@ -78,7 +115,7 @@ def _files() -> dict[str, Path]:
     found: dict[str, Path] = {}
     for place in ("instances", "models/robots"):
         for path in sorted((_folder() / place).rglob("*")):
-            if path.suffix in (".toml", ".json"):
+            if path.suffix in (".toml", ".json") and path != index_file():
                 found[path.name] = path
     for ending in _ENDINGS:
         for name, path in list(found.items()):
@@ -88,32 +125,45 @@ def _files() -> dict[str, Path]:
 
 
 def _ending(name: str) -> str:
+    if name.endswith(_SOLUTION):
+        return _SOLUTION
     return next((end for end in reversed(_ENDINGS) if name.endswith(end)), "")
 
 
-def _described(path: Path) -> str:
-    """A line about a shipped file, from its own words."""
-    text = path.read_text(encoding="utf-8")
-    if path.suffix == ".toml":
-        comment = []
-        for line in text.splitlines():
-            if not line.startswith("#"):
-                break
-            comment.append(line.removeprefix("#").strip())
-        kind = "robot" if path.parent.name == "robots" else "scene"
-        return f"{kind}: {_first_sentence(' '.join(comment))}"
-    import json
+def _entries() -> dict[str, dict[str, Any]]:
+    """The entries of the index by name, as they are written."""
+    document = json.loads(index_file().read_text(encoding="utf-8"))
+    return {entry["name"]: entry for entry in document["entries"]}
 
-    document = json.loads(text)
-    meta = document.get("meta") or {}
-    size = (
-        f"{len(document['cells'])} cells"
-        if "cells" in document
-        else f"{len(document['vertices'])} vertices"
-    )
-    words = meta.get("why") or meta.get("source")
-    about = f": {_first_sentence(words)}" if words else ""
-    return f"{_KINDS[_ending(path.name)]}, {size}{about}"
+
+def _line(path: Path | None, entry: dict[str, Any] | None) -> str:
+    """A line about a name: the file's own words, and what the index knows of the graph."""
+    if path is not None and path.suffix == ".toml":
+        kind = "robot" if path.parent.name == "robots" else "scene"
+        about = f"{kind}: {_first_sentence(_comment(path))}"
+        return about if entry is None else f"{about} Its graph: {_known(entry)}"
+    if entry is None:
+        return "graph or surface, not in the index"
+    kind = "surface" if path is not None and path.name.endswith(_ENDINGS[-1]) else "graph"
+    where = "" if path is not None else ", not here"
+    return f"{kind}{where}, {entry['family']}: {_known(entry)}"
+
+
+def _known(entry: dict[str, Any]) -> str:
+    """How large a graph is, and where its minimum lies."""
+    lower, upper = entry["paper"]["lower"]["value"], (entry["paper"]["upper"] or {}).get("value")
+    minimum = count(upper, "segment") if lower == upper else f"{span(lower, upper)} segments, open"
+    return f"{count(entry['cells'], 'cell')}, {minimum}."
+
+
+def _comment(path: Path) -> str:
+    """The comment that a TOML file begins with."""
+    comment = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            break
+        comment.append(line.removeprefix("#").strip())
+    return " ".join(comment)
 
 
 def _first_sentence(text: str) -> str:

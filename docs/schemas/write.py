@@ -24,6 +24,7 @@ from cellcolor.data import (
     check_error,
     coverage,
     instance,
+    library_index,
     plan,
     plan_verdict,
     solution,
@@ -42,6 +43,7 @@ MODULES = (
     check_error,
     coverage,
     instance,
+    library_index,
     plan,
     plan_verdict,
     solution,
@@ -88,6 +90,9 @@ FORMATS = {
         plan_verdict.FORMAT, 1, plan_verdict._ADAPTER, plan_verdict.PlanVerdict
     ),
     "check-error-1": Format(check_error.FORMAT, 1, check_error._ADAPTER, check_error.CheckError),
+    "library-1": Format(
+        library_index.FORMAT, 1, library_index._ADAPTER, library_index.LibraryIndex
+    ),
     "trajectory-1": Format(trajectory.FORMAT, 1, trajectory._ADAPTER, trajectory.Trajectory),
     "trajectory-verdict-1": Format(
         trajectory_verdict.FORMAT,

@@ -28,6 +28,7 @@ from library import INSTANCES, PAPER
 
 from cellcolor.data.check_error import CheckError
 from cellcolor.data.instance import Instance
+from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.plan import Plan
 from cellcolor.data.plan_verdict import PlanVerdict
 from cellcolor.data.solution import Solution, scheme_line
@@ -81,8 +82,10 @@ def written() -> list[Document]:
     plan = Plan(tuple(min(colors, default=None) for colors in surface.vertex_colors))
     texts = [surface.to_json(), decompose(surface, "x.json").to_json(), instance.to_json()]
     texts += [paper.to_json(), strands.to_json(), scheme_line(next(schemes)), plan.to_json()]
+    index = LibraryIndex.read(INSTANCES / "index.json")
+    few = LibraryIndex((index["cardoor"], index["ring"])).to_json()
     checks = [PLAN_VERDICT, INVALID_PLAN_VERDICT, SOLUTION_VERDICT, CHECK_ERROR]
-    return [*(json.loads(text) for text in texts), TOOL_PATHS, TRAJECTORY, VERDICT, *checks]
+    return [*(json.loads(text) for text in [*texts, few]), TOOL_PATHS, TRAJECTORY, VERDICT, *checks]
 
 
 WRITTEN = written()
@@ -140,6 +143,7 @@ def read(document: Document) -> None:
         "cellcolor/instance": Instance.from_document,
         "cellcolor/solution": Solution.from_document,
         "cellcolor/plan": Plan.from_document,
+        "cellcolor/library": LibraryIndex.from_document,
         "cellcolor/tool-paths": ToolPaths.from_document,
         "cellcolor/trajectory": Trajectory.from_document,
         "cellcolor/trajectory-verdict": TrajectoryVerdict.from_document,

@@ -22,13 +22,46 @@ from cellcolor.errors import InputError
 
 def test_every_shipped_file_has_its_name() -> None:
     files = [*INSTANCES.rglob("*.json"), *INSTANCES.rglob("*.toml"), *ROBOTS.glob("*.toml")]
+    files.remove(INSTANCES / "index.json")
     assert len({file.name for file in files}) == len(files)  # no name stands for two files
     for file in files:
         assert find_file(file.name) == file
     listed = library()
-    assert {file.name.partition(".")[0] for file in files} == set(listed)
+    outside = {entry.name for entry in listed.index.entries if entry.file is None}
+    assert {file.name.partition(".")[0] for file in files} | outside == set(listed)
     assert all(line and "\n" not in line for line in listed.values())
     assert len(str(listed).splitlines()) == len(listed)
+
+
+def test_every_graph_of_the_index_is_opened_by_its_name() -> None:
+    for entry in library().index.entries:
+        if entry.file is None:
+            with pytest.raises(InputError, match=f"{entry.name}: is not shipped; it is data/"):
+                find_file(entry.name)
+            continue
+        file = INSTANCES / entry.file
+        assert find_file(file.name) == file
+        assert find_file(entry.name) in (file, file.with_name(f"{entry.name}.toml"))
+    assert isinstance(cellcolor.read("hub_60"), cellcolor.Instance)
+
+
+def test_lines_say_what_is_known() -> None:
+    listed = library()
+    assert listed["parallel-corridors"] == "graph, by hand: 6 cells, 3 segments."
+    assert listed["blobs_0"] == "surface, blobs: 38 cells, 3 segments."
+    assert listed["cardoor"] == "graph, not here, parts: 10 cells, 2 segments."
+    assert listed["wok"].startswith("scene: ")
+    assert listed["wok"].endswith(". Its graph: 5 cells, 2 segments.")
+    assert listed["ur5_polishing"].startswith("robot: ")
+
+
+def test_stored_solutions_are_checked_by_name(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "ring", "ring.solution.json"]) == 0
+    assert "valid" in capsys.readouterr().out
+    assert cellcolor.check("ring", "ring.solution.json").segments == 2
+    # The name of a graph is none of a solution.
+    assert main(["check", "ring", "ring.json"]) == 2
+    assert "ring.json: No such file" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
@@ -99,7 +132,11 @@ SOLVE = """
 import cellcolor
 assert cellcolor.__file__.startswith({folder!r}), cellcolor.__file__
 print(cellcolor.solve("wok"{surface}))
-print(len(cellcolor.library()))
+names = cellcolor.library()
+for entry in names.index.entries:
+    if entry.file is not None:
+        cellcolor.read(entry.file.rpartition("/")[2])
+print(len(names))
 """
 
 

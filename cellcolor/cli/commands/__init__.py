@@ -1,6 +1,7 @@
 """The commands and their options. What they do is imported only when one of them runs."""
 
 from cellcolor.cli.commands.group import cellcolor
+from cellcolor.cli.commands.library import import_, library
 from cellcolor.cli.commands.minimum import build, check, show, solve
 from cellcolor.cli.commands.motion import cover, paint, plan
 from cellcolor.cli.commands.parts import inspect, repair
@@ -13,7 +14,9 @@ __all__ = [
     "cellcolor",
     "check",
     "cover",
+    "import_",
     "inspect",
+    "library",
     "paint",
     "plan",
     "repair",

@@ -1,0 +1,241 @@
+"""The index of the instance library: where each graph comes from, and what is known of it."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import asdict, dataclass
+from os import PathLike
+from typing import Annotated, Any
+
+from pydantic import ConfigDict, Field, NonNegativeInt, TypeAdapter
+
+from cellcolor.data.solution import SearchSpace
+from cellcolor.errors import InputError
+from cellcolor.files.documents import dump_lines, read_as, take_body, validate
+from cellcolor.files.validation import settle
+
+__all__ = [
+    "FORMAT",
+    "KnownRange",
+    "LibraryEntry",
+    "LibraryIndex",
+    "LowerBound",
+    "OutsideFile",
+    "UpperBound",
+]
+
+FORMAT = "cellcolor/library"
+_STRICT = ConfigDict(extra="forbid", strict=True)
+
+Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
+Date = Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")]
+
+
+@dataclass(frozen=True, slots=True)
+class LowerBound:
+    """No division has fewer segments.
+
+    Attributes:
+        value: so many.
+        kind: how it was proved, a kind of the bounds of solutions (docs/formats.md).
+        verified: whether the checker verifies it by a certificate, without a solver.
+        solver: what found it.
+        version: of that solver.
+        date: when it was found, as 2026-11-22.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    value: NonNegativeInt
+    kind: str
+    verified: bool
+    solver: str
+    version: str
+    date: Date
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+
+@dataclass(frozen=True, slots=True)
+class UpperBound:
+    """A division has so many segments.
+
+    Attributes:
+        value: so many.
+        solver: what found the division.
+        version: of that solver.
+        date: when it was found, as 2026-11-22.
+        solution: the file with the division, seen from the index; null where it is not here.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    value: NonNegativeInt
+    solver: str
+    version: str
+    date: Date
+    solution: str | None
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+
+@dataclass(frozen=True, slots=True)
+class KnownRange:
+    """Where the minimum lies in a search space.
+
+    Attributes:
+        lower: the best lower bound.
+        upper: the best division; null where none is known.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    lower: LowerBound
+    upper: UpperBound | None
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if self.upper is not None and self.lower.value > self.upper.value:
+            message = f"is {self.lower.value}, above that of a division, {self.upper.value}"
+            raise InputError(None, "lower.value", message)
+
+    @property
+    def proved(self) -> bool:
+        """Whether the minimum is known."""
+        return self.upper is not None and self.upper.value == self.lower.value
+
+
+@dataclass(frozen=True, slots=True)
+class OutsideFile:
+    """A file that is not here, and how it becomes the instance: ``cellcolor import``.
+
+    Attributes:
+        place: where it is to be had.
+        corrections: of lines of the file, as ``--correct`` takes them.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    place: str
+    corrections: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        settle(self)
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryEntry:
+    """One graph of the library.
+
+    Attributes:
+        name: what it is called.
+        family: what it is one of.
+        source: where it comes from, or what makes it again.
+        license: that of the graph, an SPDX identifier; null where none is stated.
+        file: an instance, or a labelled surface that is decomposed into one, seen from the index;
+            null where the graph is not here.
+        outside: where it is to be had then; null of a file that is here.
+        sha256: of the bytes of the file, be it here or outside.
+        fingerprint: of the graph: what solutions refer to it by (docs/formats.md).
+        cells: how many.
+        edges: how many.
+        darts: live darts of the cell that has most of them.
+        loops: loops with live darts of the cell that has most of them.
+        colors: how many.
+        holes: loops beyond the first of all cells together, dead ones included.
+        paper: where the minimum lies in the search space ``paper``.
+        surface: where it lies for any division of the surface.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    name: str
+    family: str
+    source: str
+    license: str | None
+    file: str | None
+    outside: OutsideFile | None
+    sha256: Sha256
+    fingerprint: Sha256
+    cells: NonNegativeInt
+    edges: NonNegativeInt
+    darts: NonNegativeInt
+    loops: NonNegativeInt
+    colors: NonNegativeInt
+    holes: NonNegativeInt
+    paper: KnownRange
+    surface: KnownRange
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if (self.file is None) == (self.outside is None):
+            raise InputError(None, "file", "is either here or outside, one of the two")
+        paper, surface = self.paper, self.surface
+        if surface.lower.value > paper.lower.value:
+            message = "what holds for any division holds in the search space paper as well"
+            raise InputError(None, "paper.lower.value", message)
+        if paper.upper is not None and (
+            surface.upper is None or surface.upper.value > paper.upper.value
+        ):
+            message = "a division of the search space paper is one of the surface"
+            raise InputError(None, "surface.upper.value", message)
+
+    def range_in(self, space: SearchSpace) -> KnownRange:
+        """Where the minimum lies in a search space."""
+        return self.paper if space == "paper" else self.surface
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryIndex:
+    """All graphs of the library.
+
+    Attributes:
+        entries: in the order of their names.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    entries: tuple[LibraryEntry, ...]
+
+    def __post_init__(self) -> None:
+        settle(self)
+        names = Counter(entry.name for entry in self.entries)
+        for place, entry in enumerate(self.entries):
+            if names[entry.name] > 1:
+                raise InputError(None, f"entries[{place}].name", f"{entry.name!r} stands twice")
+
+    def __getitem__(self, name: str) -> LibraryEntry:
+        """The entry of a name.
+
+        Raises:
+            KeyError: there is none.
+        """
+        for entry in self.entries:
+            if entry.name == name:
+                return entry
+        raise KeyError(name)
+
+    def to_json(self) -> str:
+        """The file's text, an entry a line."""
+        entries = [asdict(entry) for entry in self.entries]
+        document = {"format": FORMAT, "version": 1, "entries": entries}
+        return dump_lines(document, frozenset({"entries"}))
+
+    @classmethod
+    def from_document(cls, document: dict[str, Any]) -> LibraryIndex:
+        """An index from a parsed JSON object."""
+        return validate(_ADAPTER, take_body(document, FORMAT))
+
+    @classmethod
+    def read(cls, path: str | PathLike[str]) -> LibraryIndex:
+        """An index from a file.
+
+        Raises:
+            InputError: the file cannot be read or holds something that the format forbids.
+        """
+        return read_as(path, cls.from_document)
+
+
+_ADAPTER = TypeAdapter(LibraryIndex)

@@ -1,0 +1,98 @@
+"""``cellcolor library`` and ``cellcolor import``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from commands import json_lines, run
+
+import cellcolor
+
+Capture = pytest.CaptureFixture[str]
+INDEX = cellcolor.library().index
+
+GRAPH = "2 3\n0 1\n1 2\n1 2\n2\n-1 0\n0 1\n1 -1\n"
+
+
+def names_in(table: str) -> list[str]:
+    words = [line.split() for line in table.splitlines() if line.strip()]
+    names = {entry.name for entry in INDEX.entries}
+    return [line[0] for line in words if line[0] in names]
+
+
+def test_all_graphs(capsys: Capture) -> None:
+    assert run("library") == 0
+    table = capsys.readouterr().out
+    assert names_in(table) == [entry.name for entry in INDEX.entries]
+    (line,) = [line for line in table.splitlines() if line.split()[:1] == ["parallel-corridors"]]
+    assert line.split() == ["parallel-corridors", "by", "hand", *"631303", "2", "cover"]
+
+
+def test_chosen_graphs(capsys: Capture) -> None:
+    assert run("library", "--family", "parts", "--json") == 0
+    rows = json_lines(capsys.readouterr().out)
+    assert {row["family"] for row in rows} == {"parts"}
+    assert "cardoor" in [row["name"] for row in rows]
+    assert run("library", "--open") == 0
+    found = names_in(capsys.readouterr().out)
+    wanted = [e.name for e in INDEX.entries if not (e.paper.proved and e.surface.proved)]
+    assert found == wanted
+    assert run("library", "--family", "no such") == 2
+    assert "--family: there is no 'no such', only " in capsys.readouterr().err
+
+
+def test_import(tmp_path: Path, capsys: Capture) -> None:
+    source, output = tmp_path / "graph.txt", tmp_path / "two.json"
+    source.write_text(GRAPH, encoding="utf-8")
+    assert run("import", source, "-o", output) == 0
+    assert capsys.readouterr().out == f"wrote {output}: 2 cells, 3 edges, 2 colors\n"
+    assert cellcolor.read(output).name == "two"
+    assert cellcolor.solve(output).segments == 1
+
+
+def test_import_corrected(tmp_path: Path, capsys: Capture) -> None:
+    source, output = tmp_path / "graph.txt", tmp_path / "two.json"
+    source.write_text(GRAPH.replace("1 -1", "0 -1"), encoding="utf-8")
+    assert run("import", source, "-o", output) == 2
+    text = "line 8: edge 2 lies between 0 and -1 here, but in the lists of cells: 1"
+    assert capsys.readouterr().err == f"cellcolor: {source}: {text}\n"
+    assert not output.exists()
+    assert run("import", source, "-o", output, "--correct", "2=1,-1") == 0
+    meta = json.loads(output.read_text(encoding="utf-8"))["meta"]
+    assert meta == {"made_by": "cellcolor import graph.txt --correct 2=1,-1"}
+
+
+def test_import_overwrites_nothing(tmp_path: Path, capsys: Capture) -> None:
+    source = tmp_path / "graph.txt"
+    source.write_text(GRAPH, encoding="utf-8")
+    assert run("import", source, "-o", source) == 2
+    assert "is an input" in capsys.readouterr().err
+    assert source.read_text(encoding="utf-8") == GRAPH
+
+
+def test_a_graph_that_is_in_the_library_is_recognised(
+    tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By its fingerprint: the figure of two cells, written in the other format."""
+    source, output = tmp_path / "graph.txt", tmp_path / "two.json"
+    source.write_text(GRAPH, encoding="utf-8")
+    graph = read_alone(source)
+    entry = INDEX["ring"]
+
+    from dataclasses import replace
+
+    from cellcolor.data.library_index import LibraryIndex
+    from cellcolor.door.shipped import Library
+
+    index = LibraryIndex((replace(entry, fingerprint=graph.sha256),))
+    monkeypatch.setattr(Library, "index", index)
+    assert run("import", source, "-o", output) == 0
+    assert capsys.readouterr().out.endswith("This is ring of the library: 2 segments.\n")
+
+
+def read_alone(source: Path) -> cellcolor.Instance:
+    from cellcolor.data.imcgs import read_imcgs
+
+    return read_imcgs(source)

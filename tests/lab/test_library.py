@@ -1,0 +1,253 @@
+"""The index of the instance library is true, and a stale one is found."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+from library import INSTANCES
+
+from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex, UpperBound
+from cellcolor.errors import InputError
+from cellcolor.lab import families
+from cellcolor.lab.library import INDEX, SOLUTIONS, Origin, entry_of, graph_of, problems
+
+LIBRARY = LibraryIndex.read(INSTANCES / INDEX)
+
+
+def test_the_index_is_true() -> None:
+    """Hashes, counts, and all bounds, with every solution and certificate checked."""
+    assert problems(INSTANCES) == []
+
+
+def fingerprint(document: dict[str, Any]) -> str:
+    """The fingerprint of an instance's file, as docs/formats.md tells it."""
+    colors = {cell["id"]: set(cell["colors"]) for cell in document["cells"]}
+    edges = []
+    for edge in document["edges"]:
+        shared = colors.get(edge["left"], set()) & colors.get(edge["right"], set())
+        joinable = sorted(edge.get("colors", shared))
+        edges.append([edge["id"], edge["left"], edge["right"], joinable])
+    cells = []
+    for cell in document["cells"]:
+        turned = []
+        for loop in cell["loops"]:
+            first = loop.index(min(loop))
+            turned.append(loop[first:] + loop[:first])
+        cells.append([sorted(cell["colors"]), sorted(turned)])
+    content = {"cells": cells, "colors": len(document["colors"]), "edges": sorted(edges)}
+    text = json.dumps(content, separators=(",", ":"), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def test_fingerprints_and_counts_computed_again() -> None:
+    read = 0
+    for entry in LIBRARY.entries:
+        if entry.file is None or entry.file.endswith(".surface.json"):
+            continue
+        raw = (INSTANCES / entry.file).read_bytes()
+        document = json.loads(raw)
+        assert hashlib.sha256(raw).hexdigest() == entry.sha256
+        assert fingerprint(document) == entry.fingerprint, entry.name
+        loops = [len(cell["loops"]) for cell in document["cells"]]
+        assert entry.holes == sum(number - 1 for number in loops if number)
+        assert (entry.cells, entry.edges) == (len(loops), len(document["edges"]))
+        read += 1
+    assert read > 80
+
+
+def test_stored_solutions_are_of_the_graphs_that_they_are_named_after() -> None:
+    for entry in LIBRARY.entries:
+        for upper in (entry.paper.upper, entry.surface.upper):
+            if upper is not None and upper.solution is not None:
+                document = json.loads((INSTANCES / upper.solution).read_text(encoding="utf-8"))
+                assert document["instance"]["sha256"] == entry.fingerprint
+                segments = {s["segment"] for cell in document["cells"] for s in cell["subcells"]}
+                assert len(segments) == upper.value
+
+
+@pytest.mark.parametrize("name", ["hub_60", "hub_grid_2x2x3", "hub_loops_3x3", "planar_0"])
+def test_random_graphs_are_made_again(name: str) -> None:
+    entry = LIBRARY[name]
+    recipe = entry.source.removeprefix("cellcolor.lab.families.")
+    assert eval(recipe, vars(families)).sha256 == entry.fingerprint
+
+
+@pytest.fixture
+def copy(tmp_path: Path) -> Path:
+    """A library of two graphs."""
+    few = [LIBRARY["parallel-corridors"], LIBRARY["ring"]]
+    for entry in few:
+        assert entry.file is not None
+        for file in [entry.file, *(f"{SOLUTIONS}/{path.name}" for path in solutions(entry))]:
+            (tmp_path / file).parent.mkdir(exist_ok=True)
+            shutil.copy(INSTANCES / file, tmp_path / file)
+    write(tmp_path, *few)
+    return tmp_path
+
+
+def solutions(entry: LibraryEntry) -> list[Path]:
+    return sorted((INSTANCES / SOLUTIONS).glob(f"{entry.name}.*json"))
+
+
+def write(folder: Path, *entries: LibraryEntry) -> None:
+    (folder / INDEX).write_text(LibraryIndex(entries).to_json(), encoding="utf-8")
+
+
+def edit(path: Path, old: str, new: str) -> None:
+    text = path.read_text(encoding="utf-8")
+    assert old in text
+    path.write_text(text.replace(old, new, 1), encoding="utf-8")
+
+
+def test_a_copy_is_true(copy: Path) -> None:
+    assert problems(copy) == []
+
+
+def test_a_changed_byte_is_found(copy: Path) -> None:
+    edit(copy / "paper/ring.json", "blue", "blub")
+    assert problems(copy) == ["paper/ring.json: sha256 is not that of the index"]
+
+
+def test_another_graph_is_found(copy: Path) -> None:
+    shutil.copy(copy / "paper/parallel-corridors.json", copy / "paper/ring.json")
+    found = problems(copy)
+    assert found[0] == "paper/ring.json: sha256 is not that of the index"
+    assert "solutions/ring.solution.json: is not valid" in found[1]
+
+
+def test_a_broken_or_missing_file_is_found(copy: Path) -> None:
+    (copy / "paper/ring.json").write_text("{", encoding="utf-8")
+    assert [line for line in problems(copy) if line.startswith("paper/ring.json: ")]
+    (copy / "paper/ring.json").unlink()
+    assert problems(copy) == ["paper/ring.json: No such file or directory"]
+
+
+def test_files_without_an_entry_are_found(copy: Path) -> None:
+    shutil.copy(INSTANCES / "paper/annulus.json", copy / "paper")
+    shutil.copy(INSTANCES / SOLUTIONS / "annulus.solution.json", copy / SOLUTIONS)
+    assert problems(copy) == [
+        "paper/annulus.json: is not in the index",
+        "solutions/annulus.solution.json: is of no graph here",
+    ]
+
+
+def test_entries_out_of_order_are_found(copy: Path) -> None:
+    write(copy, LIBRARY["ring"], LIBRARY["parallel-corridors"])
+    assert problems(copy) == ["index.json: the entries are not in the order of their names"]
+
+
+@pytest.mark.parametrize("member", ["cells", "edges", "darts", "loops", "colors", "holes"])
+def test_a_wrong_count_is_found(copy: Path, member: str) -> None:
+    ring = LIBRARY["ring"]
+    wrong = replace(ring, **{member: getattr(ring, member) + 1})
+    write(copy, LIBRARY["parallel-corridors"], wrong)
+    assert problems(copy) == [f"paper/ring.json: {member} is not that of the index"]
+
+
+def test_bounds_that_no_solution_shows_are_found(copy: Path) -> None:
+    """A better division than the stored one, a greater bound, one that is said to be verified."""
+    ring = LIBRARY["ring"]
+    assert ring.paper.upper is not None
+    lower, upper = ring.paper.lower, ring.paper.upper
+    one = KnownRange(replace(lower, value=1), replace(upper, value=1))
+    three = KnownRange(replace(lower, value=3), replace(upper, value=3))
+    trusted = KnownRange(replace(lower, verified=False), upper)
+    nothing = KnownRange(lower, None)
+    for said in (one, three, trusted):
+        write(copy, LIBRARY["parallel-corridors"], replace(ring, paper=said, surface=said))
+        found = problems(copy)
+        assert found and all(line.startswith("paper/ring.json: ") for line in found)
+        assert "paper.lower is" in found[0] or "paper.upper is" in found[0]
+    write(copy, LIBRARY["parallel-corridors"], replace(ring, paper=nothing))
+    assert "paper/ring.json: paper.upper is None" in problems(copy)[0]
+
+
+def test_a_worse_division_in_the_place_of_the_best_is_found(copy: Path) -> None:
+    """The division of the search space surface, which has one segment fewer, is taken away."""
+    (copy / SOLUTIONS / "parallel-corridors.surface.solution.json").unlink()
+    (line,) = problems(copy)
+    assert line.startswith("paper/parallel-corridors.json: surface.upper is ")
+
+
+def test_a_solution_with_another_number_is_found(copy: Path) -> None:
+    edit(copy / SOLUTIONS / "ring.solution.json", '"segments": 2', '"segments": 3')
+    assert problems(copy)[0].startswith("solutions/ring.solution.json: is not valid")
+
+
+def test_a_solution_of_another_search_space_is_found(copy: Path) -> None:
+    folder = copy / SOLUTIONS
+    (folder / "ring.solution.json").rename(folder / "ring.surface.solution.json")
+    assert problems(copy)[0].startswith("solutions/ring.surface.solution.json: search_space: must")
+
+
+def test_bounds_that_stay_keep_their_dates(copy: Path) -> None:
+    path = copy / "paper/ring.json"
+    origin = Origin("family", "somewhere", "MIT")
+    before = LIBRARY["ring"]
+
+    def made(before: LibraryEntry | None) -> LibraryEntry:
+        return entry_of(copy, path, origin, before, lambda solver: f"{solver} 9", "2030-01-02")
+
+    new, kept = made(None), made(before)
+    assert kept.paper == before.paper and kept.surface == before.surface
+    assert (new.paper.lower.version, new.paper.lower.date) == ("cp-sat 9", "2030-01-02")
+    assert isinstance(before.paper.upper, UpperBound)
+    worse = replace(before.paper, upper=replace(before.paper.upper, value=5))
+    better = made(replace(before, paper=worse)).paper
+    assert better.lower == before.paper.lower
+    assert better.upper is not None and better.upper.date == "2030-01-02"
+    assert graph_of(path).sha256 == kept.fingerprint == before.fingerprint
+
+
+class TestReading:
+    def document(self) -> dict[str, Any]:
+        index = LibraryIndex((LIBRARY["cardoor"], LIBRARY["ring"]))
+        document: dict[str, Any] = json.loads(index.to_json())
+        return document
+
+    def test_written_and_read(self) -> None:
+        index = LibraryIndex((LIBRARY["cardoor"], LIBRARY["ring"]))
+        assert LibraryIndex.from_document(json.loads(index.to_json())) == index
+        with pytest.raises(KeyError):
+            index["wok"]
+
+    @pytest.mark.parametrize(
+        ("members", "text"),
+        [
+            ({"name": "cardoor"}, "entries[0].name: 'cardoor' stands twice"),
+            ({"sha256": "0"}, "entries[1].sha256"),
+            ({"file": None}, "file: is either here or outside, one of the two"),
+            ({"cells": -1}, "entries[1].cells"),
+            ({"paper": None}, "entries[1].paper"),
+            ({"other": 1}, "entries[1].other"),
+        ],
+    )
+    def test_refused(self, members: dict[str, Any], text: str) -> None:
+        document = self.document()
+        document["entries"][1] |= members
+        with pytest.raises(InputError) as caught:
+            LibraryIndex.from_document(document)
+        assert text in str(caught.value)
+
+    @pytest.mark.parametrize(
+        ("space", "end", "value", "text"),
+        [
+            ("paper", "lower", 3, "is 3, above that of a division, 2"),
+            ("surface", "upper", 3, "a division of the search space paper is one of the surface"),
+            ("paper", "lower", 1, "what holds for any division holds in the search space paper"),
+        ],
+    )
+    def test_ranges_that_contradict_each_other(
+        self, space: str, end: str, value: int, text: str
+    ) -> None:
+        document = self.document()
+        document["entries"][1][space][end]["value"] = value
+        with pytest.raises(InputError) as caught:
+            LibraryIndex.from_document(document)
+        assert text in str(caught.value)
