@@ -40,6 +40,9 @@ REFERENCE = "dfs"
 _OWN = {
     "cp-sat": "cellcolor.solvers.cpsat:CpSatSolver",
     "cp-sat-model": "cellcolor.solvers.cpsat:model_alone",
+    "cp-sat-pointers": "cellcolor.solvers.encodings:PointersSolver",
+    "cp-sat-ranks": "cellcolor.solvers.encodings:RanksSolver",
+    "cp-sat-contour": "cellcolor.solvers.encodings:ContourSolver",
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
 }

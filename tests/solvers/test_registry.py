@@ -121,7 +121,7 @@ class TestAbilities:
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (["--solver", "nobody"], "'nobody' is not one of cp-sat, cp-sat-model, dfs, clingo"),
+        (["--solver", "nobody"], "'nobody' is not one of cp-sat, cp-sat-model, cp-sat-pointers"),
         (["--solver", "dfs", "--fewest-cuts"], "fewest_cuts: is more than the solver dfs"),
         (["--solver", "dfs", "--warm-start", RING], "start: is more than the solver dfs"),
         (["--solver", "clingo", "--all"], "schemes: is more than the solver clingo"),

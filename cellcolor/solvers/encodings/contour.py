@@ -1,0 +1,218 @@
+"""Contour circuit: the outline of a tree of sub-cells is one closed tour of its darts.
+
+A segment is a connected set of sub-cells. Choose a spanning tree of each: the joins of its edges
+are **counted**, others are not. Walk round the tree with its sub-cells on the left: arrived in a
+sub-cell at dart i, walk along its border to its **next** dart j whose join is counted, across, and
+so on. The tour comes by every counted dart once, and there is one tour for each tree. So no ranks
+are needed: CP-SAT's circuit constraint sees to the tours, and counts them. Were the joins to have a
+circle, its tour would fall into two, inside and outside, which only costs more.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+from ortools.sat.python import cp_model
+
+from cellcolor.deadline import Deadline
+from cellcolor.solvers.bounds.hubs import most_links
+from cellcolor.solvers.encodings.problem import Encoding, EncodingSolver, Pair, Problem
+
+__all__ = ["Contour", "ContourSolver"]
+
+
+class Contour(Encoding):
+    """The model; each constraint group is a method, in the order in which they are called."""
+
+    def __init__(self, problem: Problem, deadline: Deadline) -> None:
+        self.problem = problem
+        self.model = model = cp_model.CpModel()
+        # Per edge and color: the edge is joined in that color, and the join is counted.
+        self.joined = {
+            (edge, color): model.new_bool_var(f"joined_{edge}_{color}")
+            for edge, colors in problem.colors.items()
+            for color in sorted(colors)
+        }
+        # Per edge: its join is not counted, the tours leave it out.
+        self.idle = {edge: model.new_bool_var(f"idle_{edge}") for edge in problem.colors}
+        # Per two darts of a cell, in either order: in one sub-cell the second is next after the
+        # first. From the last dart of a sub-cell this closes its circle, to the first or to the
+        # dart itself.
+        self.next = {
+            (i, j): model.new_bool_var(f"next_{i}_{j}")
+            for one, other in problem.pairs()
+            for i, j in ((one, other), (other, one))
+        }
+        for dart in problem.darts:
+            self.next[dart, dart] = model.new_bool_var(f"next_{dart}_{dart}")
+        # Per dart: a tour begins (ends) there, at the first (last) dart of a root.
+        self.first = {dart: model.new_bool_var(f"first_{dart}") for dart in problem.darts}
+        self.last = {dart: model.new_bool_var(f"last_{dart}") for dart in problem.darts}
+        # Per cell: its one sub-cell is the root of a tree; no join of it is counted.
+        self.root = [model.new_bool_var(f"root_{cell}") for cell in range(len(problem.cells))]
+        self.alone = [model.new_bool_var(f"alone_{cell}") for cell in range(len(problem.cells))]
+        for group in (
+            self._one_color,
+            self._tours,
+            self._roots,
+            self._equal_colors,
+            self._no_crossing,
+            # Redundant: they are implied by there being few segments, and make proofs quick.
+            self._cover,
+            self._most_links,
+            self._homes,
+            self._first_petal,
+        ):
+            deadline.check()
+            group()
+        model.minimize(sum(self.root) + sum(self.alone))
+
+    def links(self) -> Iterator[tuple[Pair, cp_model.IntVar]]:
+        """What leads on along a sub-cell; where its circle closes nothing new is connected."""
+        place = self._places()
+        return (((i, j), arc) for (i, j), arc in self.next.items() if place[i] < place[j])
+
+    def _places(self) -> dict[int, int]:
+        """The place of each dart in the list of its cell."""
+        return {dart: place for cell in self.problem.cells for place, dart in enumerate(cell)}
+
+    def _one_color(self) -> None:
+        """An edge is joined in one color, or idle."""
+        for edge, colors in self.problem.colors.items():
+            joined = [self.joined[edge, color] for color in sorted(colors)]
+            self.model.add_exactly_one([self.idle[edge], *joined])
+
+    def _tours(self) -> None:
+        """One walk for each tree, that comes by every counted dart.
+
+        The nodes are the darts, node i standing for "just arrived at dart i, in its cell". If j is
+        next, the walk crosses there and arrives at -j. A loop at a node leaves it out. The depot,
+        node 0, is where all walks begin and end: each at its root, which has no arc from its last
+        dart to its first.
+        """
+        node = {dart: number for number, dart in enumerate(self.problem.darts, start=1)}
+        arcs = [(node[i], node[-j], arc) for (i, j), arc in self.next.items()]
+        for dart, number in node.items():
+            arcs.append((number, number, self.idle[abs(dart)]))
+            arcs.append((0, node[-dart], self.first[dart]))
+            arcs.append((number, 0, self.last[dart]))
+        if arcs:
+            self.model.add_multiple_circuit(arcs)
+
+    def _roots(self) -> None:
+        """A root is an undivided cell, which every segment has (docs/encodings.md).
+
+        Every sub-cell closes its circle once, from its last dart to its first, but for a root. So
+        nothing closes in the cell of a root: then there is no other sub-cell.
+        """
+        place = self._places()
+        closing: dict[int, list[cp_model.IntVar]] = defaultdict(list)
+        for (i, j), arc in self.next.items():
+            if place[i] >= place[j]:
+                closing[self.problem.cell_of[i]].append(arc)
+        for number, cell in enumerate(self.problem.cells):
+            root, alone = self.root[number], self.alone[number]
+            for ends in (self.first, self.last):
+                self.model.add(sum(ends[dart] for dart in cell) == root)
+            for arc in closing[number]:
+                self.model.add_implication(root, ~arc)
+            # Alone: all darts are idle; else there is a sub-cell, hence a root or a closed circle.
+            self.model.add_bool_or([alone, *(~self.idle[abs(dart)] for dart in cell)])
+            self.model.add_bool_or([alone, root, *closing[number]])
+            self.model.add_at_most_one(alone, root)
+            for dart in cell:
+                self.model.add_implication(alone, self.idle[abs(dart)])
+
+    def _equal_colors(self) -> None:
+        """Successive darts of a sub-cell are joined in one and the same color."""
+        for (i, j), arc in self.next.items():
+            if i == j:
+                continue
+            for here, there in ((i, j), (j, i)):
+                for color in sorted(self.problem.colors_of(here)):
+                    same = self.joined.get((abs(there), color))
+                    clause = [~arc, ~self.joined[abs(here), color]]
+                    self.model.add_bool_or(clause if same is None else [*clause, same])
+
+    def _no_crossing(self) -> None:
+        """Cutting paths do not cross, so neither do arcs; all walks turn the same way.
+
+        Call an arc a step if it leads on in the list, else a return. Let a be a dart and b a later
+        one. Of each of these sets at most one arc is there. Any two of a set share an end, or they
+        cross, or a sub-cell would go on beyond the dart that closes it, or before the one where it
+        closes:
+
+        1. steps to b from before a; and steps from a to b or beyond;
+        2. steps from a beyond b; and returns from b to a or before;
+        3. steps to b from before a; and returns to a from b or beyond;
+        4. returns from b to a or before; and returns to a from beyond b, also with a for b.
+        """
+        for cell in self.problem.cells:
+            for here in range(len(cell)):
+                self._at_most_one(
+                    self._arcs([cell[here]], cell[: here + 1]),
+                    self._arcs(cell[here + 1 :], [cell[here]]),
+                )
+                for there in range(here + 1, len(cell)):
+                    one, other = cell[here], cell[there]
+                    before, upto, beyond = cell[:here], cell[: here + 1], cell[there + 1 :]
+                    for some, rest in (
+                        (self._arcs(before, [other]), self._arcs([one], [other, *beyond])),
+                        (self._arcs([one], beyond), self._arcs([other], upto)),
+                        (self._arcs(before, [other]), self._arcs([other, *beyond], [one])),
+                        (self._arcs([other], upto), self._arcs(beyond, [one])),
+                    ):
+                        self._at_most_one(some, rest)
+
+    def _arcs(self, tails: Sequence[int], heads: Sequence[int]) -> list[cp_model.IntVar]:
+        return [self.next[i, j] for i in tails for j in heads if (i, j) in self.next]
+
+    def _at_most_one(self, some: list[cp_model.IntVar], rest: list[cp_model.IntVar]) -> None:
+        if some and rest:
+            self.model.add_at_most_one(some + rest)
+
+    def _cover(self) -> None:
+        """Each color region in use holds a root, and each cell touches one in use or is alone.
+
+        This is the bound by set cover (docs/bounds.md), which the search can now reason with.
+        """
+        problem = self.problem
+        used = [self.model.new_bool_var(f"used_{n}") for n in range(len(problem.regions))]
+        for (edge, color), literal in self.joined.items():
+            region = problem.region_of[color, problem.cell_of[edge]]
+            self.model.add_implication(literal, used[region])
+        for number, colors in enumerate(problem.cell_colors):
+            touched = [used[problem.region_of[color, number]] for color in sorted(colors)]
+            self.model.add_bool_or([self.alone[number], *touched])
+        self.model.add(sum(self.root) >= sum(used))
+
+    def _most_links(self) -> None:
+        """No cell has more steps than can be drawn in it between darts of common colors."""
+        steps: dict[int, list[cp_model.IntVar]] = defaultdict(list)
+        for (i, _j), arc in self.links():
+            steps[self.problem.cell_of[i]].append(arc)
+        for cell, found in steps.items():
+            darts = self.problem.cells[cell]
+            self.model.add(sum(found) <= most_links([self.problem.colors_of(d) for d in darts]))
+
+    def _homes(self) -> None:
+        """A segment that reaches the home of its color region has its root there."""
+        for cell in sorted(self.problem.homes):
+            self.model.add_exactly_one(self.root[cell], self.alone[cell])
+
+    def _first_petal(self) -> None:
+        """Of the petals around a sub-cell only the first can be the root, unless it is a home.
+
+        A petal, a cell with a single live dart, is never divided: a tree with its root in one petal
+        can have it in any other one as well.
+        """
+        for (i, j), arc in self.links():
+            if self.problem.later_petal(i, j):
+                self.model.add_implication(arc, ~self.root[self.problem.cell_of[-j]])
+
+
+class ContourSolver(EncodingSolver):
+    """The encoding with a contour circuit."""
+
+    encoding = Contour
