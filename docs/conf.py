@@ -10,6 +10,10 @@ from typing import Any
 from sphinx.application import Sphinx
 from sphinx.ext.napoleon import Config, GoogleDocstring
 
+sys.path.append(str(Path(__file__).parent))
+
+import library_table
+
 import cellcolor
 from cellcolor import __version__
 
@@ -109,7 +113,13 @@ def _write_reference(_app: Sphinx) -> None:
             page.write_text(text)
 
 
+def _write_library(_app: Sphinx) -> None:
+    """Write the table that ``library.md`` includes, with the pictures in it."""
+    library_table.write_table(library_table.LIBRARY, library_table.FOLDER)
+
+
 def setup(app: Sphinx) -> None:
-    """Tell Sphinx of the docstrings' style and of the reference."""
+    """Tell Sphinx of the docstrings' style, of the reference and of the library's table."""
     app.connect("builder-inited", _write_reference)
+    app.connect("builder-inited", _write_library)
     app.connect("autodoc-process-docstring", _read_docstring)

@@ -1,0 +1,68 @@
+"""The table of docs/library.md, with a small picture of each graph: made while the site is built.
+
+    python docs/library_table.py
+
+writes them into ``docs/_library``, as ``docs/conf.py`` does.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex
+from cellcolor.data.wording import span
+from cellcolor.lab.library import INDEX, graph_of
+from cellcolor.pictures.thumbnail import thumbnail
+
+LIBRARY = Path(__file__).parents[1] / "instances"
+FOLDER = Path(__file__).parent / "_library"
+TABLE = "table.txt"
+HEAD = ("", "graph", "family", "cells", "darts", "loops", "colors", "holes")
+HEAD += ("paper", "any division", "verified", "found")
+
+
+def write_table(library: Path, folder: Path) -> None:
+    """Write the table of a library's graphs, and the pictures that are not there yet."""
+    folder.mkdir(exist_ok=True)
+    rows = []
+    for entry in LibraryIndex.read(library / INDEX).entries:
+        picture = folder / f"{entry.name}-{entry.fingerprint[:12]}.svg"
+        if entry.file is not None and not picture.exists():
+            picture.write_text(thumbnail(graph_of(library / entry.file)), encoding="utf-8")
+        shown = "" if entry.file is None else f"![]({folder.name}/{picture.name})"
+        rows.append(f"| {' | '.join([shown, *_row(entry)])} |")
+    lines = [f"| {' | '.join(HEAD)} |", "|---|---|---" + "|--:" * 7 + "|---|---|", *rows]
+    text = "\n".join(lines) + "\n"
+    table = folder / TABLE
+    if not table.exists() or table.read_text(encoding="utf-8") != text:
+        table.write_text(text, encoding="utf-8")
+
+
+def _row(entry: LibraryEntry) -> list[str]:
+    lower = entry.surface.lower
+    numbers = (entry.cells, entry.darts, entry.loops, entry.colors, entry.holes)
+    return [
+        f"`{entry.name}`",
+        entry.family,
+        *map(str, numbers),
+        _span(entry.paper),
+        _span(entry.surface),
+        lower.kind if lower.verified else "",
+        _found(entry.paper),
+    ]
+
+
+def _span(known: KnownRange) -> str:
+    """The range of the minimum, in bold where it is open."""
+    text = span(known.lower.value, None if known.upper is None else known.upper.value)
+    return text if known.proved else f"**{text}**"
+
+
+def _found(known: KnownRange) -> str:
+    """Who proved the minimum, or who found the division where it is open, and when."""
+    end = known.lower if known.upper is None or known.proved else known.upper
+    return f"{end.solver} ({end.version}), {end.date}"
+
+
+if __name__ == "__main__":
+    write_table(LIBRARY, FOLDER)
