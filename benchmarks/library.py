@@ -55,8 +55,14 @@ ORIGINS = {
     "*/thin_*": ("thin bands", ""),
     "*/hub_grid_*": ("hub grids", ""),
     "*/hub_loops_*": ("hubs with loops", ""),
-    "hubs/*": ("hubs", ""),
+    "hard/large_blobs_*": ("blobs", ""),
+    "hard/large_annulus_*": ("holes", ""),
+    "hard/large_*torus_*": ("handles", ""),
+    "hard/large_part_*": ("parts at random", ""),
+    "*/hub_*": ("hubs", ""),
+    "hard/large_trees_*": ("hubs", ""),
     "random/*": ("blobs", ""),
+    "hard/*": ("patches", ""),
 }
 """Family and source by the file's place, the first that fits; empty: what its ``meta`` says."""
 

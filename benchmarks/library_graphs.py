@@ -4,7 +4,8 @@
 
 Without names all of them: the six scenes at several resolutions and the real parts, which needs the
 extra ``frontend`` and takes minutes, and random ones, functions of a seed. Only graphs are written,
-with areas and lengths of six digits, no surfaces. ``meta.made_by`` of each is what made it.
+no surfaces; areas and lengths have six digits, and random graphs none. ``meta.made_by`` of each is
+what made it.
 """
 
 from __future__ import annotations
@@ -17,7 +18,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.lab import families
-from cellcolor.lab.families import LARGE, MEDIUM
 
 TOP = Path(__file__).parents[1]
 INSTANCES = TOP / "instances"
@@ -64,6 +64,36 @@ RANDOM = {
         "hub_loops_2x10": "hub_with_loops(0, 2, 10, 4)",
         "hub_loops_3x3": "hub_with_loops(0, 3, 3, 4)",
     },
+    "hard": {
+        "thin_11": "MEDIUM['thin'](11)",
+        "thin_36": "MEDIUM['thin'](36)",
+        "thin_40": "MEDIUM['thin'](40)",
+        "thin_42": "MEDIUM['thin'](42)",
+        "thin_51": "MEDIUM['thin'](51)",
+        "thin_57": "MEDIUM['thin'](57)",
+        "rim_3": "MEDIUM['rim'](3)",
+        "rim_26": "MEDIUM['rim'](26)",
+        "hub_200": "hub(0, 200, 4)",
+        "hub_wide_80": "wide_hub(0, 80, 10, 2)",
+        "hub_grid_6x6x2": "hub_grid(0, 6, 6, 4, 2)",
+        "hub_grid_8x8x2": "hub_grid(0, 8, 8, 4, 2)",
+        "hub_grid_10x10x2": "hub_grid(0, 10, 10, 4, 2)",
+        "hub_grid_5x5x3": "hub_grid(0, 5, 5, 4, 3)",
+        "hub_grid_6x6x3": "hub_grid(0, 6, 6, 4, 3)",
+        "hub_loops_3x4": "hub_with_loops(0, 3, 4, 4)",
+        "hub_loops_4x4": "hub_with_loops(0, 4, 4, 4)",
+        "hub_loops_5x4": "hub_with_loops(0, 5, 4, 4)",
+        "hub_loops_4x6": "hub_with_loops(0, 4, 6, 4)",
+        "hub_loops_2x12": "hub_with_loops(0, 2, 12, 4)",
+        "large_disc_1": "LARGE['disc'](1)",
+        "large_torus_2": "LARGE['torus'](2)",
+        "large_annulus_0": "LARGE['annulus'](0)",
+        "large_double_torus_1": "LARGE['double torus'](1)",
+        "large_double_torus_2": "LARGE['double torus'](2)",
+        "large_part_1": "LARGE['parts'](1)",
+        "large_blobs_0": "blobs(0, 80, 10, waves=2.5)",
+        "large_trees_1": "LARGE['trees'](1)",
+    },
 }
 """The random graphs by folder and name, each as what makes it."""
 
@@ -105,18 +135,15 @@ def built(path: Path, policy: str, vertices: int | None = None) -> Instance:
 
 def random_graph(recipe: str) -> Instance:
     """The graph that a recipe makes."""
-    names = vars(families) | {"MEDIUM": MEDIUM, "LARGE": LARGE}
-    made = eval(recipe, {"__builtins__": {}}, names)
+    made = eval(recipe, {"__builtins__": {}}, vars(families))
     graph = decompose(made) if isinstance(made, LabelledSurface) else made
-    prefix = "" if recipe.startswith(("MEDIUM", "LARGE")) else "."
-    where = "cellcolor.lab.families" + (prefix or ".")
-    return replace(graph, meta={"made_by": f"{where}{recipe}"})
+    return replace(graph, meta={"made_by": f"cellcolor.lab.families.{recipe}"})
 
 
 def write(folder: str, name: str, graph: Instance) -> None:
     """Write a graph into its folder, under its name."""
-    cells = tuple(replace(cell, area=rounded(cell.area)) for cell in graph.cells)
-    edges = tuple(replace(edge, length=rounded(edge.length)) for edge in graph.edges)
+    cells = tuple(replace(cell, area=rounded(cell.area, folder)) for cell in graph.cells)
+    edges = tuple(replace(edge, length=rounded(edge.length, folder)) for edge in graph.edges)
     path = INSTANCES / folder / f"{name}.json"
     path.parent.mkdir(exist_ok=True)
     graph = replace(graph, name=name, cells=cells, edges=edges, surface=None)
@@ -124,9 +151,9 @@ def write(folder: str, name: str, graph: Instance) -> None:
     print(f"{path.relative_to(TOP)}: {graph}, {path.stat().st_size} bytes", flush=True)
 
 
-def rounded(number: float | None) -> float | None:
-    """Six digits; None stays None."""
-    return None if number is None else float(f"{number:.6g}")
+def rounded(number: float | None, folder: str) -> float | None:
+    """A size of something real in six digits; None of what is random or has none."""
+    return None if number is None or folder in RANDOM else float(f"{number:.6g}")
 
 
 if __name__ == "__main__":
