@@ -40,11 +40,12 @@ REFERENCE = "dfs"
 _OWN = {
     "cp-sat": "cellcolor.solvers.cpsat:CpSatSolver",
     "cp-sat-model": "cellcolor.solvers.cpsat:model_alone",
-    "cp-sat-pointers": "cellcolor.solvers.encodings:PointersSolver",
-    "cp-sat-ranks": "cellcolor.solvers.encodings:RanksSolver",
-    "cp-sat-contour": "cellcolor.solvers.encodings:ContourSolver",
+    "cp-sat-pointers": "cellcolor.solvers.encodings.pointers:PointersSolver",
+    "cp-sat-ranks": "cellcolor.solvers.encodings.ranks:RanksSolver",
+    "cp-sat-contour": "cellcolor.solvers.encodings.contour:ContourSolver",
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
+    "choco": "cellcolor.solvers.encodings.choco:ChocoSolver",
 }
 OWN_NAMES = tuple(_OWN)
 """The names of this package's own solvers."""

@@ -52,8 +52,8 @@ def others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 @pytest.fixture(params=OWN_NAMES)
 def name(request: pytest.FixtureRequest) -> str:
-    if request.param == "clingo":
-        pytest.importorskip("clingo")
+    if request.param in ("clingo", "choco"):
+        pytest.importorskip("clingo" if request.param == "clingo" else "pychoco")
     return str(request.param)
 
 

@@ -1,13 +1,7 @@
-"""Three ways to write the whole problem for CP-SAT, a readable file each (docs/encodings.md).
+"""Four ways to write the whole problem for somebody to read, a file each (docs/encodings.md).
 
-``pointers`` hangs trees up by pointers, ``ranks`` by numbers, ``contour`` walks round them. Each
-file has all that is its own, and shares with the others what is no formulation (``problem``): what
-is given, the time limit, and how a division is read off. They search the space ``paper``, in cells
-with one live loop.
+For CP-SAT, ``pointers`` hangs trees of sub-cells up by pointers, ``ranks`` by numbers, ``contour``
+walks round them. ``choco`` has the ranks for another solver. Each file has all that is its own, and
+shares with the others what is no formulation: what is given (``problem``), and for CP-SAT how it is
+solved (``solving``). They search the space ``paper``, in cells with one live loop.
 """
-
-from cellcolor.solvers.encodings.contour import ContourSolver
-from cellcolor.solvers.encodings.pointers import PointersSolver
-from cellcolor.solvers.encodings.ranks import RanksSolver
-
-__all__ = ["ContourSolver", "PointersSolver", "RanksSolver"]

@@ -17,7 +17,8 @@ from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.hubs import most_links
-from cellcolor.solvers.encodings.problem import Encoding, EncodingSolver, Pair, Problem
+from cellcolor.solvers.encodings.problem import Pair, Problem
+from cellcolor.solvers.encodings.solving import Encoding, EncodingSolver
 
 __all__ = ["Contour", "ContourSolver"]
 

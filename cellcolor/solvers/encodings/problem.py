@@ -1,41 +1,32 @@
-"""What the encodings have in common: what is given, how it is solved, how the answer is read.
+"""The problem as the encodings see it; nothing here is a formulation.
 
-Nothing here is a formulation. ``Problem`` is the instance as a model sees it: each cell with the
-cyclic list of its live darts, dominated colors dropped. An ``Encoding`` is a model of it with two
-things to read off a solution: the color of each joined edge, and the pairs of darts that are
-linked, neighbours within one sub-cell. The division is made of these.
+Each cell has the cyclic list of its live darts. Dominated colors are dropped.
 """
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from importlib.metadata import version
-from math import ceil
-from typing import ClassVar
+from math import inf
 
-from ortools.sat.python import cp_model
-
-from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, number_segments
-from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions
 from cellcolor.solvers.bounds.domination import drop_dominated, left_out
-from cellcolor.solvers.interface import PORTFOLIO, Abilities, Answer, OnProgress, Options
-from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
-from cellcolor.union_find import UnionFind
 
-__all__ = ["Encoding", "EncodingSolver", "Pair", "Problem", "division"]
+__all__ = ["Pair", "Problem"]
 
 Pair = tuple[int, int]
 """Two darts of one cell, the one that comes first in its list first."""
 
 LARGEST_MODEL = 1e6
-"""The most terms of a model that is built; OR-Tools takes some kilobytes for each."""
+"""The most terms of a model that is built; a solver may take kilobytes for each."""
+
+
+MANY_DARTS = 300
+"""Pairs of darts are not counted one by one in a cell with more of them."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +51,7 @@ class Problem:
 
         Raises:
             InputError: a cell has several loops with live darts.
+            TooLarge: a model would not fit into memory.
             OutOfTime: the deadline came first.
         """
         for cell, loops in enumerate(instance.live_loops):
@@ -79,7 +71,10 @@ class Problem:
             tuple(dart for loop in loops for dart in loop if abs(dart) in colors)
             for loops in instance.live_loops
         )
-        return cls(cells, colors, allowed, tuple(color_regions(instance, allowed)))
+        problem = cls(cells, colors, allowed, tuple(color_regions(instance, allowed)))
+        if problem.size > LARGEST_MODEL:
+            raise TooLarge(f"a model of more than {LARGEST_MODEL:.1g} terms is not built")
+        return problem
 
     @cached_property
     def darts(self) -> tuple[int, ...]:
@@ -141,103 +136,7 @@ class Problem:
     @property
     def size(self) -> float:
         """About how many terms a model has; most are in the constraints against crossing."""
+        if sum(len(cell) ** 3 for cell in self.cells if len(cell) > MANY_DARTS) > 4 * LARGEST_MODEL:
+            return inf  # not worth counting
         place = {dart: number for cell in self.cells for number, dart in enumerate(cell)}
         return sum(4.0 * (place[other] - place[one]) + 8 for one, other in self.pairs())
-
-
-class Encoding(ABC):
-    """A model whose objective is the number of segments."""
-
-    model: cp_model.CpModel
-    joined: dict[tuple[int, int], cp_model.IntVar]
-    """Per edge and color: the edge is joined in that color, and the join is counted."""
-
-    @abstractmethod
-    def __init__(self, problem: Problem, deadline: Deadline) -> None:
-        """Write the model.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
-
-    @abstractmethod
-    def links(self) -> Iterable[tuple[Pair, cp_model.IntVar]]:
-        """Literals that say that two darts are in one sub-cell, enough to connect each of them."""
-
-
-class EncodingSolver:
-    """Fewest segments in the search space ``paper``, for cells with one live loop each."""
-
-    abilities: ClassVar[Abilities] = Abilities()
-    encoding: ClassVar[type[Encoding]]
-
-    @property
-    def version(self) -> str:
-        """Of OR-Tools."""
-        return f"OR-Tools {version('ortools')}"
-
-    def minimize(
-        self, instance: Instance, options: Options, progress: OnProgress | None = None
-    ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline.
-
-        Raises:
-            InputError: a cell has several loops with live darts.
-            TooLarge: the model would not fit into memory.
-        """
-        try:
-            problem = Problem.of(instance, options.deadline)
-            if problem.size > LARGEST_MODEL:
-                size, most = f"{problem.size:.1g}", f"{LARGEST_MODEL:.1g}"
-                raise TooLarge(f"a model of {size} terms is not built; {most} are the most")
-            built = self.encoding(problem, options.deadline)
-        except OutOfTime:
-            return Answer(None, (), ())
-        solver = make_cp_solver(options.deadline, options.workers or PORTFOLIO, options.seed)
-        found = None if progress is None else lambda segments: progress(segments, 0)
-        status, interrupt = solve_interruptibly(solver, built.model, found)
-        if interrupt is not None and not isinstance(interrupt, OutOfTime):
-            raise interrupt
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            return Answer(None, (), (Bound("model", 0, "strands"),))
-        colors = {edge: c for (edge, c), on in built.joined.items() if solver.boolean_value(on)}
-        links = [pair for pair, literal in built.links() if solver.boolean_value(literal)]
-        # The bound is a number of segments, so it may be rounded up.
-        bound = ceil(solver.best_objective_bound - 1e-6)
-        return Answer(division(instance, colors, links), (), (Bound("model", bound, "strands"),))
-
-
-def division(instance: Instance, colors: Mapping[int, int], links: Iterable[Pair]) -> Division:
-    """The division that counted joins and links make.
-
-    A model counts joins that make trees of sub-cells. In a division every edge is joined that has
-    one joinable color on both sides (docs/semantics.md, section 3, rule 5). So each dart that is
-    not counted is given to the sub-cell before it in cyclic order, and its edge is joined if the
-    sub-cell across it then has the same, joinable color. That makes no segment more.
-
-    Args:
-        instance: the topological graph.
-        colors: of each edge whose join is counted.
-        links: pairs of darts that lie in one sub-cell.
-    """
-    together: UnionFind[int] = UnionFind()
-    for one, other in links:
-        together.union(one, other)
-    holder: dict[int, tuple[int, int]] = {}  # per live dart the sub-cell's name and color
-    for cell, loops in zip(instance.cells, instance.live_loops, strict=True):
-        live = [dart for loop in loops for dart in loop]
-        counted = [(together[dart], colors[abs(dart)]) for dart in live if abs(dart) in colors]
-        own = counted[-1] if counted else (0, cell.colors[0])
-        for dart in live:
-            if abs(dart) in colors:
-                own = together[dart], colors[abs(dart)]
-            holder[dart] = own
-    blocks: list[list[tuple[int, list[int]]]] = []
-    for cell, loops in zip(instance.cells, instance.live_loops, strict=True):
-        found: dict[tuple[int, int], list[int]] = {}
-        for dart in (dart for loop in loops for dart in loop):
-            color = holder[dart][1]
-            if holder[-dart][1] == color and color in instance.joinable(dart):
-                found.setdefault(holder[dart], []).append(dart)
-        blocks.append([(own[1], darts) for own, darts in found.items()] or [(cell.colors[0], [])])
-    return number_segments(blocks)

@@ -1,0 +1,296 @@
+"""Choco, a constraint solver with lazy clause generation, on the encoding with ranks.
+
+Run as a program, ``python -m cellcolor.solvers.encodings.choco INSTANCE SECONDS``, this module
+solves an instance and prints each better solution as a line of JSON. The solver runs it in a
+process of its own: Choco hears no signal while it searches, its errors end the process, and it may
+print.
+
+The formulation is that of ``ranks``, where each group is explained. Of what was tried it is the
+quickest: Choco's own `tree` over pointers needs the search without learning, which proves far less.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import tempfile
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from importlib.metadata import version
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from cellcolor.data.bound import Bound
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import CellcolorError, SolverMissing
+from cellcolor.solvers.bounds.cover import greedy_strangers
+from cellcolor.solvers.bounds.hubs import most_links
+from cellcolor.solvers.child import Child
+from cellcolor.solvers.encodings.problem import Problem
+from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+from cellcolor.solvers.joined_chains import division_of_chains
+
+if TYPE_CHECKING:
+    from pychoco.variables.boolvar import BoolVar
+
+__all__ = ["ChocoSolver"]
+
+MOST_MEMORY = 3 * 2**30
+"""Bytes of memory that the process may take; then it ends, and what it has found is kept."""
+
+
+class Ranks:
+    """The model; each constraint group is a method, in the order in which they are called."""
+
+    def __init__(self, problem: Problem, fewest: int) -> None:
+        """Write the model.
+
+        Args:
+            problem: what to solve.
+            fewest: a lower bound of the number of segments.
+        """
+        from pychoco.model import Model
+
+        self.problem = problem
+        # Lazy clause generation: what the search learns from a failure is kept as a clause.
+        self.model = model = Model("coloring", lcg=True)
+        cells = range(len(problem.cells))
+        # Per edge and color: the edge is joined in that color, and the join is counted.
+        self.joined = {
+            (edge, color): model.boolvar(name=f"joined_{edge}_{color}")
+            for edge, colors in problem.colors.items()
+            for color in sorted(colors)
+        }
+        # Per edge: its join is counted. Per dart: the parent of its sub-cell lies across it.
+        self.counted = {edge: model.boolvar(name=f"counted_{edge}") for edge in problem.colors}
+        self.up = {dart: model.boolvar(name=f"up_{dart}") for dart in problem.darts}
+        # Per two darts of a cell: the second comes next after the first in one sub-cell.
+        self.link = {(i, j): model.boolvar(name=f"link_{i}_{j}") for i, j in problem.pairs()}
+        # Per dart: it or a dart before it in its sub-cell leads up.
+        self.met = {dart: model.boolvar(name=f"met_{dart}") for dart in problem.darts}
+        # Per cell: its one sub-cell is the root of a tree; no join of it is counted.
+        self.root = [model.boolvar(name=f"root_{cell}") for cell in cells]
+        self.alone = [model.boolvar(name=f"alone_{cell}") for cell in cells]
+        # Per dart: the same in all of a sub-cell, greater than its parent's.
+        most = len(problem.colors)
+        self.rank = {dart: model.intvar(0, most, f"rank_{dart}") for dart in problem.darts}
+        self.links_of: dict[int, list[BoolVar]] = defaultdict(list)
+        for (one, _other), literal in self.link.items():
+            self.links_of[problem.cell_of[one]].append(literal)
+        self.segments = model.intvar(fewest, len(problem.cells), "segments")
+        for group in (
+            self._one_color,
+            self._one_chain,
+            self._linked,
+            self._no_crossing,
+            self._roots,
+            self._no_circles,
+            self._cover,
+            self._most_links,
+            self._homes,
+        ):
+            group()
+        model.sum(self.root + self.alone, "=", self.segments).post()
+        model.set_objective(self.segments, maximize=False)
+
+    def solutions(self, seconds: float) -> Iterator[dict[str, Any]]:
+        """Better and better solutions, and last whether the best is proved; within a time limit.
+
+        Choco's own search for models with learning is left as it is. What else it has (weights of
+        domains over degrees, of conflicts, of activity) is for the search without.
+        """
+        solver = self.model.get_solver()
+        if math.isfinite(seconds):
+            solver.limit_time(f"{max(seconds, 0.001):.3f}s")
+        while solver.solve():
+            yield {
+                "segments": self.segments.get_value(),
+                "colors": [key for key, literal in self.joined.items() if literal.get_value()],
+                "after": [pair for pair, literal in self.link.items() if literal.get_value()],
+            }
+        yield {"proved": solver.get_search_state() == "TERMINATED"}
+
+    def _clause(self, some: Iterable[BoolVar], all_of: Iterable[BoolVar] = ()) -> None:
+        """Some of these are true if all of those are."""
+        self.model.add_clauses(list(some), list(all_of))
+
+    def _one_color(self) -> None:
+        for edge, colors in self.problem.colors.items():
+            joined = [self.joined[edge, color] for color in sorted(colors)]
+            self.model.sum(joined, "=", self.counted[edge]).post()
+            self.model.sum([self.up[edge], self.up[-edge]], "=", self.counted[edge]).post()
+
+    def _one_chain(self) -> None:
+        after: dict[int, list[BoolVar]] = defaultdict(list)
+        before: dict[int, list[BoolVar]] = defaultdict(list)
+        for (one, other), literal in self.link.items():
+            after[one].append(literal)
+            before[other].append(literal)
+        for links in (after, before):
+            for dart, found in links.items():
+                self.model.sum(found, "<=", self.counted[abs(dart)]).post()
+
+    def _linked(self) -> None:
+        """Linked darts have one color, and one parent; of petals only the first may be a root."""
+        for (one, other), link in self.link.items():
+            for here, there in ((one, other), (other, one)):
+                for color in sorted(self.problem.colors_of(here)):
+                    same = self.joined.get((abs(there), color))
+                    some = [] if same is None else [same]
+                    self._clause(some, [link, self.joined[abs(here), color]])
+            self._clause([self.met[other]], [link, self.met[one]])
+            self._clause([], [link, self.met[one], self.up[other]])
+            if self.problem.later_petal(one, other):
+                self._clause([], [link, self.up[other]])
+        for dart, literal in self.up.items():
+            self._clause([self.met[dart]], [literal])
+
+    def _no_crossing(self) -> None:
+        for cell in self.problem.cells:
+            for place, dart in enumerate(cell):
+                for there in range(place + 1, len(cell)):
+                    ends = ((before, cell[there]) for before in cell[:place])
+                    starts = ((dart, beyond) for beyond in cell[there + 1 :])
+                    over = [self.link[pair] for pair in ends if pair in self.link]
+                    out = [self.link[pair] for pair in starts if pair in self.link]
+                    if over and out:
+                        self.model.sum(over + out, "<=", 1).post()
+
+    def _roots(self) -> None:
+        """Sub-cells = counted darts - links; those without a dart that leads up are roots."""
+        for number, cell in enumerate(self.problem.cells):
+            alone, root = self.alone[number], self.root[number]
+            counted = [self.counted[abs(dart)] for dart in cell]
+            ups = [self.up[dart] for dart in cell]
+            taken = [*self.links_of[number], *ups, root]
+            signs = [1] * len(counted) + [-1] * len(taken)
+            self.model.scalar([*counted, *taken], signs, "=", 0).post()
+            self._clause([alone, *counted])
+            self._clause([], [alone, root])
+            for literal in counted:
+                self._clause([], [alone, literal])
+            for literal in ups:
+                self._clause([], [root, literal])
+
+    def _no_circles(self) -> None:
+        for dart, literal in self.up.items():
+            above = self.model.arithm(self.rank[dart], ">", self.rank[-dart])
+            above.implied_by(literal)
+        for (one, other), literal in self.link.items():
+            self.model.arithm(self.rank[one], "=", self.rank[other]).implied_by(literal)
+
+    def _cover(self) -> None:
+        problem = self.problem
+        used = [self.model.boolvar(name=f"used_{n}") for n in range(len(problem.regions))]
+        for (edge, color), literal in self.joined.items():
+            self._clause([used[problem.region_of[color, problem.cell_of[edge]]]], [literal])
+        for number, colors in enumerate(problem.cell_colors):
+            touched = [used[problem.region_of[color, number]] for color in sorted(colors)]
+            self._clause([self.alone[number], *touched])
+        signs = [1] * len(self.root) + [-1] * len(used)
+        self.model.scalar([*self.root, *used], signs, ">=", 0).post()
+
+    def _most_links(self) -> None:
+        for cell, links in self.links_of.items():
+            if links:
+                colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
+                self.model.sum(links, "<=", most_links(colors)).post()
+
+    def _homes(self) -> None:
+        for cell in sorted(self.problem.homes):
+            for dart in self.problem.cells[cell]:
+                self._clause([], [self.up[dart]])
+
+
+class ChocoSolver:
+    """Fewest segments in the search space ``paper``, for cells with one live loop each."""
+
+    abilities = Abilities()
+
+    def __init__(self) -> None:
+        """Check that Choco can be imported.
+
+        Raises:
+            SolverMissing: it cannot.
+        """
+        if find_spec("pychoco") is None:
+            raise SolverMissing("choco", "pip install 'fewest-lift-offs[peers]'")
+
+    @property
+    def version(self) -> str:
+        """Of pychoco, which brings Choco with it."""
+        return f"pychoco {version('pychoco')}"
+
+    def minimize(
+        self, instance: Instance, options: Options, progress: OnProgress | None = None
+    ) -> Answer:
+        """A division with the fewest segments, or the best found before the deadline.
+
+        Choco searches from above and tells no bound of its own until it has proved the minimum.
+        Until then the bound is a number of cells of which no two lie in one color region.
+
+        Raises:
+            InputError: a cell has several loops with live darts.
+            TooLarge: the model would not fit into memory.
+            CellcolorError: Choco failed before it found a solution.
+        """
+        if not instance.cells:
+            return Answer((), (), ())
+        deadline = options.deadline
+        best: dict[str, Any] | None = None
+        proved, fewest = False, 0
+        try:
+            Problem.of(instance, deadline)  # what cannot be solved is refused here
+            fewest = len(greedy_strangers(instance))
+            with tempfile.TemporaryDirectory() as name:
+                folder = Path(name)
+                (folder / "instance.json").write_text(instance.to_json(), encoding="utf-8")
+                command = [sys.executable, "-m", __name__, "instance.json", str(deadline.left)]
+                with Child(command, folder) as child:
+                    for line in child.lines(deadline):
+                        told = _told(line)
+                        proved = told.get("proved", proved)
+                        if "segments" in told:
+                            best = told
+                            if progress is not None:
+                                progress(told["segments"], fewest)
+                    if best is None and child.failure is not None:
+                        raise CellcolorError(child.failure)
+        except OutOfTime:
+            pass  # before the search began; or a signal that stands for the end of the time
+        bounds = [Bound("strangers", fewest, "surface")]
+        if best is None:
+            return Answer(None, (), tuple(bounds))
+        if proved:
+            bounds.append(Bound("search", best["segments"], "strands"))
+        division = division_of_chains(instance, dict(best["colors"]), dict(best["after"]))
+        return Answer(division, (), tuple(bounds))
+
+
+def _told(line: str) -> dict[str, Any]:
+    """What a line of the program says; Choco may print lines of its own."""
+    try:
+        told = json.loads(line)
+    except json.JSONDecodeError:
+        return {}
+    return told if isinstance(told, dict) else {}
+
+
+def _main(path: str, seconds: float) -> None:
+    """What the process of its own does."""
+    if sys.platform != "win32":
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_DATA, (MOST_MEMORY, MOST_MEMORY))
+    deadline = Deadline.after(seconds)
+    instance = Instance.read(path)
+    built = Ranks(Problem.of(instance, deadline), len(greedy_strangers(instance)))
+    for solution in built.solutions(deadline.left):
+        print(json.dumps(solution), flush=True)
+
+
+if __name__ == "__main__":
+    _main(sys.argv[1], float(sys.argv[2]))
