@@ -33,6 +33,7 @@ from cellcolor.solvers.cpsat.model.full import (
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, moved, segments_of
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import ConnectedPart
+from cellcolor.solvers.cpsat.routes.dropping import drop_segments
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
@@ -178,18 +179,30 @@ class PartSearch:
             if self.done or not planner.find_partings(plan):
                 return plan
 
+    def drop_segments(self, deadline: Deadline) -> None:
+        """Better divisions by leaving out a segment and routing all others anew."""
+        self._drop(self._options.seed, deadline)
+
     def improve_large(self, deadline: Deadline) -> None:
         """Better divisions by solving some cells at a time anew, of a part too large for more."""
         if model_size(self.best[0]) >= LARGE_MODEL:
             self._improve(self._options.seed, deadline)
 
     def improve_on(self, deadline: Deadline) -> None:
-        """Better divisions by other windows, as long as there is time."""
+        """Better divisions by other routes and windows, as long as there is time."""
         seed = self._options.seed
         while isfinite(deadline.moment) and not self.done:
             deadline.check()
             seed += 1
+            self._drop(seed, deadline)
             self._improve(seed, deadline)
+
+    def _drop(self, seed: int, deadline: Deadline) -> None:
+        graph, painting = self.best
+        for better in drop_segments(graph, painting, self._regions, seed, deadline):
+            self._offer(graph, better)
+            if self.done:
+                return
 
     def _improve(self, seed: int, deadline: Deadline) -> None:
         graph, painting = self.best

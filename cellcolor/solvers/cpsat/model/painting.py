@@ -10,7 +10,16 @@ from cellcolor.data.solution import Division, number_segments
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.union_find import UnionFind
 
-__all__ = ["Block", "Painting", "canonical", "division_of", "moved", "painting_of", "segments_of"]
+__all__ = [
+    "Block",
+    "Painting",
+    "canonical",
+    "colored_segments",
+    "division_of",
+    "moved",
+    "painting_of",
+    "segments_of",
+]
 
 
 @dataclass(slots=True)
@@ -62,23 +71,28 @@ def painting_of(graph: DartGraph, division: Division) -> Painting:
 
 def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     """The cells that each segment touches."""
+    return [cells for _, cells in colored_segments(graph, painting)]
+
+
+def colored_segments(graph: DartGraph, painting: Painting) -> list[tuple[int, set[int]]]:
+    """The color of each segment, and the cells that it touches."""
     blocks = [block for cell in painting for block in cell]
     cell_of = [number for number, cell in enumerate(painting) for _ in cell]
     holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     reached = [-1] * len(blocks)
-    segments: list[set[int]] = []
-    for first in range(len(blocks)):
+    segments: list[tuple[int, set[int]]] = []
+    for first, block in enumerate(blocks):
         if reached[first] >= 0:
             continue
         reached[first] = len(segments)
-        segments.append({cell_of[first]})
+        segments.append((block.color, {cell_of[first]}))
         stack = [first]
         while stack:
             for dart in blocks[stack.pop()].darts:
                 other = holder[graph.darts[dart].twin]
                 if reached[other] < 0:
                     reached[other] = reached[first]
-                    segments[-1].add(cell_of[other])
+                    segments[-1][1].add(cell_of[other])
                     stack.append(other)
     return segments
 

@@ -1,0 +1,130 @@
+"""A division improved segment by segment: one is left out, and all others are routed anew.
+
+The segments of a division are a segment plan that can be drawn. Without one of them it is a plan
+with one segment less, if other segments can reach the cells that only this one touched. Routing
+such a plan takes a small part of the time of a model, and tries what windows cannot: segments
+that give way to each other all over the surface.
+"""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+from cellcolor.deadline import Deadline
+from cellcolor.solvers.bounds.cover import Region
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.model.painting import Painting, canonical, colored_segments
+from cellcolor.solvers.cpsat.routes.routing import route
+from cellcolor.solvers.cpsat.routes.sectors import refined
+from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, SegmentPlan
+
+__all__ = ["drop_segments"]
+
+ROUNDS = 20
+"""Rounds of routing a plan; most that can be routed take a few."""
+
+RINGS = (1, 1, 2)
+"""Rings of sectors, drawn for each plan: one leaves room enough in most cells, and is quicker."""
+
+FRUITLESS = 3
+"""Tries for each segment of a division before nothing better is expected."""
+
+
+def drop_segments(
+    graph: DartGraph,
+    painting: Painting,
+    regions: Sequence[Region],
+    seed: int,
+    deadline: Deadline,
+) -> Iterator[Painting]:
+    """Better and better divisions of a graph, each with a segment less at least.
+
+    What is as good as before is taken for it, so that the search does not stay at one division.
+
+    Args:
+        graph: the dart graph.
+        painting: a canonical painting of it.
+        regions: the color regions of the instance.
+        seed: of the choice of segments and of routing.
+        deadline: when to stop.
+    """
+    chance = random.Random(seed)
+    region_of = {(region[0], cell): region for region in regions for cell in region[1]}
+    ways = {rings: refined(graph, rings) for rings in set(RINGS)}
+
+    def planned(painting: Painting) -> list[PlannedSegment]:
+        return [
+            PlannedSegment(region_of[color, min(cells)], frozenset(cells))
+            for color, cells in colored_segments(graph, painting)
+        ]
+
+    segments = planned(painting)
+    fruitless, fewest = 0, len(segments)
+    while fruitless < FRUITLESS * len(segments) and not deadline.over:
+        fruitless += 1
+        kept = _without_one(segments, regions, chance)
+        if kept is None:
+            continue
+        plan = _each_cell_once(kept, len(graph.lists), chance)
+        way = ways[chance.choice(RINGS)]
+        changed = canonical(graph, route(way, plan, ROUNDS, chance.randrange(2**20), deadline))
+        found = planned(changed)
+        if len(found) <= len(segments):
+            segments = found
+        if len(found) < fewest:
+            fruitless, fewest = 0, len(found)
+            yield changed
+
+
+def _without_one(
+    segments: Sequence[PlannedSegment], regions: Sequence[Region], chance: random.Random
+) -> list[PlannedSegment] | None:
+    """A segment less, the color regions of which still touch every cell; None if there is no way.
+
+    Where they would not, a segment in another region, that touches what is missing, takes the place
+    of a second one that is not needed then.
+    """
+    holders = Counter(cell for segment in segments for cell in segment.cells)
+    # The fewer cells have no other segment, the likelier others can reach them.
+    weights = [1 / (1 + sum(holders[cell] == 1 for cell in s.cells)) for s in segments]
+    (dropped,) = chance.choices(segments, weights)
+    kept = [segment for segment in segments if segment is not dropped]
+    missed = dropped.cells.difference(*(segment.region[1] for segment in kept))
+    if not missed:
+        return kept
+    others = [r for r in regions if missed <= r[1] and r != dropped.region]
+    if not others:
+        return None
+    added = PlannedSegment(chance.choice(others), missed)
+    used = Counter(segment.region for segment in [*kept, added])
+    reach = Counter(cell for region in used for cell in region[1])
+    spare = [s for s in kept if used[s.region] > 1 or all(reach[cell] > 1 for cell in s.region[1])]
+    if not spare:
+        return None
+    second = chance.choice(spare)
+    return [*(segment for segment in kept if segment is not second), added]
+
+
+def _each_cell_once(
+    segments: Sequence[PlannedSegment], cells: int, chance: random.Random
+) -> SegmentPlan:
+    """The segments, each cell given to one of those that touch it, else to one that could."""
+    order = list(range(len(segments)))
+    chance.shuffle(order)
+    holder: dict[int, int] = {}
+    for number in order:
+        for cell in segments[number].cells:
+            holder.setdefault(cell, number)
+    for cell in range(cells):
+        if cell not in holder:
+            holder[cell] = chance.choice([n for n in order if cell in segments[n].region[1]])
+    own: list[set[int]] = [set() for _ in segments]
+    for cell, number in holder.items():
+        own[number].add(cell)
+    return tuple(
+        PlannedSegment(segment.region, frozenset(its))
+        for segment, its in zip(segments, own, strict=True)
+        if its
+    )
