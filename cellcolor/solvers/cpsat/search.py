@@ -46,8 +46,9 @@ FEW_STRANDS = 2
 """Strands of a seam in the first models. More would only be needed if their result did not meet the
 lower bound."""
 
-PLAN_EFFORT = 0.05
-"""Deterministic seconds for a plan; most take a hundredth of that."""
+PLAN_EFFORT, MORE_EFFORT = 0.05, 2.0
+"""Deterministic seconds for a plan; most take a hundredth of the first number. The second one is for
+plans that were left undecided, before the full model is tried."""
 
 LARGE_MODEL = 200_000
 """Terms of a part's model; a larger part is first improved window by window."""
@@ -100,6 +101,8 @@ class PartSearch:
         self.hubs: HubBound | None = None
         self.notes: list[str] = []
         self._running: int | None = None
+        self._plan_effort = PLAN_EFFORT
+        self._undecided = False
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
         whole: Painting = [[Block(min(colors), set())] for colors in self._colors]
         self.best = graph, canonical(graph, whole)
@@ -145,18 +148,37 @@ class PartSearch:
     def route_plans(self, deadline: Deadline) -> None:
         """Divisions by routing what is planned; where nothing can be planned the bound rises."""
         self.planner = planner = Planner(
-            self.instance, self._regions, self.cover_bound, self._solve_plan, deadline
+            self.instance,
+            self._regions,
+            self.cover_bound,
+            self._solve_plan,
+            deadline,
+            self._planned,
         )
+        self._undecided = True
         with suppress(Undecided):
-            for attempt in range(ATTEMPTS):
-                plan = self._plan_that_holds(planner, attempt, deadline)
-                for rings in (1, 2):
-                    self._route(plan, rings, ROUNDS, attempt, deadline)
-                if self.done:
-                    return
-            looser = planner.plan(self.bound + 1, 0)
-            if looser is not None:
-                self._route(looser, 1, ROUNDS, 0, deadline)
+            self._route_all(planner, deadline)
+            self._undecided = False
+
+    def plan_on(self, deadline: Deadline) -> None:
+        """What was left undecided is planned with more effort, where hubs do not say more."""
+        if self.planner is None or not self._undecided or self.hubs is not None:
+            return
+        self._undecided = False
+        self._plan_effort = MORE_EFFORT
+        with suppress(Undecided):
+            self._route_all(self.planner, deadline)
+
+    def _route_all(self, planner: Planner, deadline: Deadline) -> None:
+        for attempt in range(ATTEMPTS):
+            plan = self._plan_that_holds(planner, attempt, deadline)
+            for rings in (1, 2):
+                self._route(plan, rings, ROUNDS, attempt, deadline)
+            if self.done:
+                return
+        looser = planner.plan(self.bound + 1, 0)
+        if looser is not None:
+            self._route(looser, 1, ROUNDS, 0, deadline)
 
     def _plan_that_holds(self, planner: Planner, attempt: int, deadline: Deadline) -> SegmentPlan:
         """A plan with as many segments as the bound in which no two are known to cross.
@@ -167,7 +189,7 @@ class PartSearch:
         """
         while True:
             deadline.check()
-            plan = planner.plan(self.bound, attempt)
+            plan = planner.plan(self.bound, attempt, self._plan_effort > PLAN_EFFORT)
             if plan is None:
                 self._raise(self.bound + 1)
                 continue
@@ -255,7 +277,7 @@ class PartSearch:
         self, model: cp_model.CpModel, seed: int
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
         # Too small for a portfolio.
-        solver = self._runner.solver(PLAN_EFFORT, workers=1, seed=seed)
+        solver = self._runner.solver(self._plan_effort, workers=1, seed=seed)
         return solver, self._runner.solve(solver, model)
 
     def _route(

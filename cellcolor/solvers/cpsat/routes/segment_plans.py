@@ -43,10 +43,10 @@ MOST_LITERALS = 100_000
 """Literals of the largest model that is built: one for each merged cell
 (``bounds/merged_cells.py``) and each segment that may touch it."""
 
-MOST_PARTED = 2_000
+MOST_PARTED, MOST_PARTED_THOROUGHLY = 2_000, 200_000
 """The most literals in the constraints that keep segments from crossing. With more the planner
 gives up: around a cell with many petals, which are cells with a single live dart, nearly every two
-segments are in conflict, and there the full model has the better bound."""
+segments are in conflict, and there counting links and the full model have the better bounds."""
 
 MOST_PARTINGS = 200
 """How many are looked for in a plan before the next plan is made that heeds them."""
@@ -71,6 +71,7 @@ class Planner:
         fewest: so many regions at least are needed to touch every cell.
         solve: runs a model with a seed, within limits.
         deadline: when to stop looking for partings.
+        cover: color regions that touch every cell, with which the first plan begins.
     """
 
     def __init__(
@@ -80,6 +81,7 @@ class Planner:
         fewest: int,
         solve: SolveWithSeed,
         deadline: Deadline,
+        cover: Sequence[Region] = (),
     ) -> None:
         self._instance = instance
         self._regions = regions
@@ -93,18 +95,22 @@ class Planner:
         self._merged = merge_cells(instance, own)
         self._merged_cells = self._merged.cells()
         self._merged_cells_of = [
-            sorted({self._merged.merged_cell_of[cell] for cell in cells}) for _, cells in regions
+            {self._merged.merged_cell_of[cell] for cell in cells} for _, cells in regions
         ]
         self._pairs: dict[tuple[int, int], RegionPair] = {}
         self._partings: dict[tuple[int, int], list[Parting]] = {}
         self._looked_at: set[tuple[tuple[int, int], int, int]] = set()
+        self._last: dict[tuple[int, int], set[int]] = {
+            (self._number[region], 0): set() for region in cover
+        }
 
-    def plan(self, segments: int, seed: int) -> SegmentPlan | None:
+    def plan(self, segments: int, seed: int, thoroughly: bool = False) -> SegmentPlan | None:
         """A plan with exactly so many segments that heeds all partings found so far.
 
         Args:
             segments: how many, the smallest cover or more.
             seed: other seeds give other plans, where there are several.
+            thoroughly: whether to heed far more partings, which takes longer.
 
         Returns:
             A plan, or None if it is proved that there is none.
@@ -113,15 +119,17 @@ class Planner:
             Undecided: the limits of the solver came first, or there are too many partings.
         """
         copies = segments - self._fewest + 1
+        most = MOST_PARTED_THOROUGHLY if thoroughly else MOST_PARTED
         parted = [parting for partings in self._partings.values() for parting in partings]
-        if copies**2 * sum(2 + len(parting.groups) for parting in parted) > MOST_PARTED:
+        if copies**2 * sum(2 + len(parting.groups) for parting in parted) > most:
             raise Undecided
-        if copies * sum(map(len, self._merged_cells_of)) > MOST_LITERALS:
+        kinds = self._kinds()
+        if copies * sum(len(set(own.values())) for own in kinds) > MOST_LITERALS:
             raise Undecided
         model = cp_model.CpModel()
-        touched = self._add_segments(model, segments)
+        in_use, touched = self._add_segments(model, segments, kinds)
         for one, other in self._partings:
-            self._add_partings(model, touched, one, other)
+            self._add_partings(model, touched, kinds, one, other)
         if seed:
             # Left to themselves, other seeds find the same plan again.
             chance = random.Random(seed)
@@ -132,7 +140,12 @@ class Planner:
             return None
         if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             raise Undecided
-        return self._read(solver, touched)
+        self._last = {
+            segment: {kind for kind, own in touched[segment].items() if solver.boolean_value(own)}
+            for segment, literal in in_use.items()
+            if solver.boolean_value(literal)
+        }
+        return self._read(kinds, seed)
 
     @property
     def partings(self) -> Iterator[tuple[Region, Region, Parting]]:
@@ -198,34 +211,73 @@ class Planner:
                     self._looked_at.add((key, near, far))
                     yield parting
 
-    def _add_segments(self, model: cp_model.CpModel, segments: int) -> _Touched:
-        """Literals for the merged cells that each segment touches, by region and copy."""
+    def _kinds(self) -> list[dict[int, int]]:
+        """Of each region the merged cells that its partings name, and the first of their kind.
+
+        Merged cells that are ends of the same partings, and in the same groups, are of one kind: a
+        segment that touches one of them may touch all. Those that no parting names any segment of
+        the region can touch, so that nothing has to be decided about them.
+        """
+        places: list[dict[int, list[int]]] = [{} for _ in self._regions]
+        number = 0
+        for (one, other), partings in self._partings.items():
+            for parting in partings:
+                ends = ((one, (end,)) for end in parting.ends)
+                for region, group in (*ends, *((other, group) for group in parting.groups)):
+                    number += 1
+                    for merged_cell in self._held(frozenset().union(*group)):
+                        places[region].setdefault(merged_cell, []).append(number)
+        kinds: list[dict[int, int]] = []
+        for own in places:
+            first: dict[tuple[int, ...], int] = {}
+            kinds.append({m: first.setdefault(tuple(own[m]), m) for m in sorted(own)})
+        return kinds
+
+    def _held(self, cells: frozenset[int]) -> set[int]:
+        """The merged cells that some cells are parts of."""
+        return {self._merged.merged_cell_of[cell] for cell in cells}
+
+    def _add_segments(
+        self, model: cp_model.CpModel, segments: int, kinds: Sequence[dict[int, int]]
+    ) -> tuple[dict[tuple[int, int], cp_model.IntVar], _Touched]:
+        """Literals for the segments in use and for what each touches, by region and copy."""
         # The regions in use touch all cells, so there are at least the fewest different ones.
         copies = segments - self._fewest + 1
+        in_use: dict[tuple[int, int], cp_model.IntVar] = {}
         touched: _Touched = {}
-        used: list[cp_model.IntVar] = []
         touching: dict[int, list[cp_model.IntVar]] = {
             merged_cell: [] for merged_cell in self._merged_cells
         }
         for number, merged_cells in enumerate(self._merged_cells_of):
             for copy in range(copies):
-                in_use = model.new_bool_var("")
+                in_use[number, copy] = own = model.new_bool_var("")
+                model.add_hint(own, (number, copy) in self._last)
                 if copy:
-                    model.add_implication(in_use, used[-1])
-                used.append(in_use)
-                touched[number, copy] = {
-                    merged_cell: model.new_bool_var("") for merged_cell in merged_cells
-                }
-                for merged_cell, literal in touched[number, copy].items():
-                    model.add_implication(literal, in_use)
-                    touching[merged_cell].append(literal)
-        for literals in touching.values():
+                    model.add_implication(own, in_use[number, copy - 1])
+                touched[number, copy] = {}
+                last = self._last.get((number, copy), ())
+                for kind in sorted(set(kinds[number].values())):
+                    touched[number, copy][kind] = literal = model.new_bool_var("")
+                    model.add_implication(literal, own)
+                    model.add_hint(literal, kind in last)
+                for merged_cell, kind in kinds[number].items():
+                    touching[merged_cell].append(touched[number, copy][kind])
+            for merged_cell in merged_cells - kinds[number].keys():
+                touching[merged_cell].append(in_use[number, 0])
+        # Most merged cells are touched wherever another one is.
+        different = {tuple(literal.index for literal in own): own for own in touching.values()}
+        for literals in different.values():
             model.add_bool_or(literals)
-        model.add(sum(used) == segments)
-        return touched
+        model.add(sum(in_use.values()) == segments)
+        return in_use, touched
 
     def _add_partings(
-        self, model: cp_model.CpModel, touched: _Touched, one: int, other: int
+        self,
+        model: cp_model.CpModel,
+        touched: _Touched,
+        kinds: Sequence[dict[int, int]],
+        one: int,
+        other: int,
     ) -> None:
         """No segment of a region touches two groups that a segment of another one parts."""
         touching: dict[tuple[int, int, frozenset[int]], cp_model.IntVar] = {}
@@ -234,8 +286,8 @@ class Planner:
             key = region, copy, cells
             if key not in touching:
                 touching[key] = model.new_bool_var("")
-                for merged_cell in sorted({self._merged.merged_cell_of[cell] for cell in cells}):
-                    model.add_implication(touched[region, copy][merged_cell], touching[key])
+                for kind in sorted({kinds[region][m] for m in self._held(cells)}):
+                    model.add_implication(touched[region, copy][kind], touching[key])
             return touching[key]
 
         copies = {copy for _, copy in touched}
@@ -246,18 +298,20 @@ class Planner:
                 parted = [touches(other, far, group) for group in groups]
                 model.add(sum(parted) <= 1).only_enforce_if(ends)
 
-    def _read(self, solver: cp_model.CpSolver, touched: _Touched) -> SegmentPlan:
-        """The plan in which every cell is touched by one segment only."""
-        left = set(self._merged_cells)
-        plan = []
-        for (number, _), literals in touched.items():
-            merged_cells = {
-                merged_cell
-                for merged_cell, literal in literals.items()
-                if solver.boolean_value(literal)
-            }
-            if merged_cells:
-                cells = (self._merged_cells[merged_cell] for merged_cell in merged_cells & left)
-                plan.append(PlannedSegment(self._regions[number], frozenset().union(*cells)))
-                left -= merged_cells
-        return tuple(plan)
+    def _read(self, kinds: Sequence[dict[int, int]], seed: int) -> SegmentPlan:
+        """The last plan, in which every cell is touched by one segment only."""
+        chance = random.Random(seed)
+        cells: dict[tuple[int, int], set[int]] = {segment: set() for segment in self._last}
+        for merged_cell, own in self._merged_cells.items():
+            touching = [
+                (number, copy)
+                for (number, copy), touched in self._last.items()
+                if merged_cell in self._merged_cells_of[number]
+                and (merged_cell not in kinds[number] or kinds[number][merged_cell] in touched)
+            ]
+            cells[chance.choice(touching) if seed else touching[0]] |= own
+        return tuple(
+            PlannedSegment(self._regions[number], frozenset(own))
+            for (number, _), own in cells.items()
+            if own
+        )
