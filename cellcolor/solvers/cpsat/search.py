@@ -47,8 +47,8 @@ FEW_STRANDS = 2
 lower bound."""
 
 PLAN_EFFORT, MORE_EFFORT = 0.05, 2.0
-"""Deterministic seconds for a plan; most take a hundredth of the first number. The second one is for
-plans that were left undecided, before the full model is tried."""
+"""Deterministic seconds for a plan; most take a hundredth of the first number. The second one is
+for plans that were left undecided, before the full model is tried."""
 
 LARGE_MODEL = 200_000
 """Terms of a part's model; a larger part is first improved window by window."""
