@@ -202,8 +202,12 @@ class PartSearch:
                 return plan
 
     def drop_segments(self, deadline: Deadline) -> None:
-        """Better divisions by leaving out a segment and routing all others anew."""
-        self._drop(self._options.seed, deadline)
+        """Better divisions by leaving out a segment and routing all others anew.
+
+        Around hubs the model is the better way, as it is to their bound.
+        """
+        if self.hubs is None:
+            self._drop(self._options.seed, deadline)
 
     def improve_large(self, deadline: Deadline) -> None:
         """Better divisions by solving some cells at a time anew, of a part too large for more."""

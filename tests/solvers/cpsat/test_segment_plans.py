@@ -14,7 +14,8 @@ from cellcolor.deadline import NEVER
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan
+from cellcolor.solvers.cpsat.routes import segment_plans
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
 from cellcolor.solvers.interface import Options
 
 RED, BLUE, GREEN = 0, 1, 2
@@ -76,3 +77,14 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     for cell in instance.cells:
         assert sum(cell.id in segment.cells for segment in plan) == 1
     assert all(segment.cells <= segment.region[1] for segment in plan)
+
+
+def test_more_partings_are_heeded_where_there_is_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Around a hub of two colors in turn: undecided at first, then the bound rises as ever."""
+    planner = planner_of(hub(RED, BLUE, RED, BLUE))
+    plan = planner.plan(2, 0)
+    assert plan is not None and planner.find_partings(plan)
+    monkeypatch.setattr(segment_plans, "MOST_PARTED", 0)
+    with pytest.raises(Undecided):
+        planner.plan(2, 0)
+    assert planner.plan(2, 0, thoroughly=True) is None
