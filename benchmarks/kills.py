@@ -90,9 +90,9 @@ COMMANDS = {
     "solve -o": Command(("solve", "hub.json", "-o", "s.json"), ("s.json",)),
     "solve --all -o": Command(("solve", "many.json", "--all", "-o", "s.jsonl"), ("s.jsonl",)),
     "show": Command(("show", "r.json", "-o", "p.html"), ("p.html",)),
-    "campaign -o": Command(("campaign", "--count", "6", "-o", "kept"), ()),
+    "campaign -o": Command(("bench", "campaign", "--count", "6", "-o", "kept"), ()),
     "campaign -o, all wrong": Command(
-        ("campaign", "--count", "30", "--jobs", "1", "-o", "kept"),
+        ("bench", "campaign", "--count", "30", "--jobs", "1", "-o", "kept"),
         tuple(f"kept/campaign_0_{number}.json" for number in range(30)),
         (1,),
         ("-c", WRONG, "r.json"),
@@ -134,7 +134,7 @@ def prepare(folder: Path, command: Command) -> None:
         cellcolor(folder, "solve", "r.json", *command.arguments[2:])
     if command.arguments[0] == "show":
         cellcolor(folder, "show", "r.surface.json", "--color", "0", *command.arguments[2:])
-    if command.arguments[0] == "campaign":
+    if command.arguments[0] == "bench":
         (folder / "kept").mkdir()
         for number, output in enumerate(command.outputs):
             if number % 2:
@@ -212,7 +212,7 @@ def kill_once(
                 fault(f"{output} is not whole")
         if command.arguments[0] == "build" and changed:
             counted.append(together(folder, command, changed, number, fault))
-        elif command.outputs and command.arguments[0] != "campaign":
+        elif command.outputs and command.arguments[0] != "bench":
             counted.append("new" if changed else "old")
         if number == signal.SIGKILL:
             process = start(folder, command)

@@ -54,7 +54,15 @@ def test_solving_and_checking_an_instance_import_no_networkx(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize(
-    "arguments", [["--help"], ["--version"], ["solve", "--help"], ["bench", "--help"]], ids=" ".join
+    "arguments",
+    [
+        ["--help"],
+        ["--version"],
+        ["solve", "--help"],
+        ["bench", "--help"],
+        ["bench", "run", "--help"],
+    ],
+    ids=" ".join,
 )
 def test_help_imports_nothing_heavy(arguments: list[str]) -> None:
     code, modules = run(*arguments)

@@ -1,12 +1,9 @@
-"""``cellcolor campaign``: every solver against every other, on random instances."""
+"""``cellcolor bench campaign``: every solver against every other, on random instances."""
 
 from __future__ import annotations
 
 import json
-import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from rich import box
@@ -15,6 +12,7 @@ from rich.table import Table
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain
+from cellcolor.cli.workers import progress_bar, workers_for
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.errors import InputError
@@ -24,22 +22,26 @@ from cellcolor.lab.campaign.pool import Outcome, outcomes_of_campaign
 from cellcolor.lab.campaign.summary import Summary, Tally
 
 
-def run_campaign(count: int, seed: int, time_limit: float, jobs: int, output: Path) -> Exit:
+def run_campaign(
+    count: int, seed: int, time_limit: float, jobs: int, cluster: str | None, output: Path
+) -> Exit:
     """Run a campaign, print what it looked at, and keep what went wrong."""
     if is_folder_or_nothing(output):
         remove_strays(output)
     summary = Summary()
     started = time.monotonic()
     interrupted = False
-    with _progress(count) as advance:
-        try:
-            for outcome in outcomes_of_campaign(count, seed, time_limit, jobs):
+    try:
+        with workers_for(jobs, cluster) as workers, progress_bar(count) as advance:
+            for outcome in outcomes_of_campaign(count, seed, time_limit, workers):
                 summary.add(outcome)
                 _keep(outcome, seed, output)
-                advance(summary)
-        except KeyboardInterrupt:
-            interrupted = True
-            complain("interrupted")
+                wrong = summary.total.disagreements
+                text = f"{wrong} disagreements" if wrong else "no disagreement"
+                advance(summary.total.instances, text)
+    except KeyboardInterrupt:
+        interrupted = True
+        complain("interrupted")
     _print(summary, seed, time.monotonic() - started)
     if summary.total.disagreements:
         return Exit.INVALID
@@ -59,30 +61,6 @@ def _keep(outcome: Outcome, seed: int, output: Path) -> None:
         kind = kind_of_format(surface_file.FORMAT if mesh else instance_file.FORMAT)
         write([Output(output / name, kind, [wrong.document.encode()])])
         complain(f"{output / name}: {wrong.message}")
-
-
-@contextmanager
-def _progress(count: int) -> Iterator[Callable[[Summary], None]]:
-    """A bar on standard error, only where somebody watches."""
-    if not sys.stderr.isatty():
-        yield lambda _: None
-        return
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
-    from rich.progress import TimeElapsedColumn as Elapsed
-    from rich.progress import TimeRemainingColumn as Remaining
-
-    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
-    bar = Progress(*columns, Elapsed(), Remaining(), console=Console(stderr=True), transient=True)
-    with bar:
-        task = bar.add_task("no disagreement", total=count)
-
-        def advance(summary: Summary) -> None:
-            wrong = summary.total.disagreements
-            text = f"{wrong} disagreements" if wrong else "no disagreement"
-            bar.update(task, completed=summary.total.instances, description=text)
-
-        yield advance
 
 
 def _print(summary: Summary, seed: int, seconds: float) -> None:

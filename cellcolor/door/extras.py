@@ -13,6 +13,7 @@ DISTRIBUTION = "fewest-lift-offs"
 """What to install; ``cellcolor`` on the Python Package Index is somebody else's program."""
 
 _EXTRAS = {
+    "distributed": "cluster",
     "matplotlib": "viz",
     "mpl_toolkits": "viz",
     "plotly": "viz",

@@ -1,1 +1,1 @@
-"""The laboratory: random instances, solvers held to each other, races between them."""
+"""The laboratory: random instances, solvers held to each other and compared."""

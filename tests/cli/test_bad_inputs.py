@@ -202,7 +202,7 @@ def test_missing_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     refused(["solve", str(tmp_path)], capsys, str(tmp_path), "Is a directory")
     refused(["build", str(missing), "-o", str(tmp_path / "x.json")], capsys, str(missing))
     refused(["check", str(missing), str(missing)], capsys, str(missing))
-    refused(["bench", str(missing)], capsys, str(missing))
+    refused(["bench", "run", str(missing)], capsys, str(missing))
 
 
 def test_scene_without_the_front_end(

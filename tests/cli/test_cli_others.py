@@ -1,4 +1,4 @@
-"""``build``, ``check`` and ``bench``: exit codes, standard output, and what is written."""
+"""``build`` and ``check``: exit codes, standard output, and what is written."""
 
 from __future__ import annotations
 
@@ -177,26 +177,6 @@ class TestCheck:
         out, err = capsys.readouterr()
         assert "unknown: the time limit came before there was a surface" in err
         assert "the time limit" in json_lines(out)[0]["error"]
-
-
-class TestBench:
-    def test_table(self, capsys: Capture) -> None:
-        assert run("bench", RING, ZEROS) == 0
-        rows = [line.split()[:4] for line in capsys.readouterr().out.splitlines()]
-        # Cells, live darts of the cell that has most of them, and the known minimum.
-        assert [str(RING), "3", "2", "2"] in rows
-        assert [str(ZEROS), "5", "6", "2"] in rows
-
-    def test_no_table_of_nothing(self, tmp_path: Path, capsys: Capture) -> None:
-        assert run("bench", tmp_path / "none.json") == 2
-        out, err = capsys.readouterr()
-        assert out == "" and len(err.splitlines()) == 1
-
-    def test_a_bad_file_does_not_stop_the_others(self, tmp_path: Path, capsys: Capture) -> None:
-        assert run("bench", tmp_path / "none.json", RING) == 2
-        out, err = capsys.readouterr()
-        assert str(RING) in out
-        assert len(err.splitlines()) == 1
 
 
 def test_a_plan_is_not_checked_against_a_graph_alone(tmp_path: Path, capsys: Capture) -> None:

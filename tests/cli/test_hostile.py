@@ -164,7 +164,7 @@ class TestControlCharacters:
         assert run("solve", instance, surface) == 0
         assert run("solve", instance, "-o", solution) == 0
         assert run("check", instance, solution) == 0
-        assert run("bench", surface) == 0
+        assert run("bench", "run", surface) == 0
         assert run("solve", surface, surface.with_suffix(".none"), "--json") == 2
         out, err = capsys.readouterr()
         assert all(c.isprintable() or c == "\n" for c in out + err)

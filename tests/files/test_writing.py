@@ -163,7 +163,7 @@ class TestForeignFiles:
         circle = tmp_path / "circle"
         circle.symlink_to(circle)
         for output, named in ((path, path), (path / "a" / "b", path), (circle, circle)):
-            arguments = ["campaign", "--count", 1, "-o", output]
+            arguments = ["bench", "campaign", "--count", 1, "-o", output]
             refused(arguments, capsys, f"{named}: must be a folder")
 
 
@@ -264,7 +264,7 @@ class TestPlaces:
             refused(["build", RING_SURFACE, "-o", path], capsys, "File name too long")
             refused(["solve", path], capsys, "File name too long")
             refused(["show", RING, "-o", path.with_suffix(".json.png")], capsys, "name too long")
-            refused(["campaign", "--count", 1, "-o", path], capsys, "File name too long")
+            refused(["bench", "campaign", "--count", 1, "-o", path], capsys, "File name too long")
             assert list(tmp_path.iterdir()) == []
 
 

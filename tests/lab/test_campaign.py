@@ -6,12 +6,14 @@ import json
 import subprocess
 import sys
 from collections.abc import Iterator
+from concurrent.futures import Future
 from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
 import pytest
 from exhaustive_minima import vertex_minimum
+from here_workers import HereWorkers
 from library import PAPER
 
 from cellcolor.cli import main
@@ -32,6 +34,8 @@ from cellcolor.lab.campaign.pool import Outcome, Wrong, examine, outcomes_of_cam
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 from cellcolor.lab.campaign.summary import Summary
 from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
+from cellcolor.lab.executors.alone import Ended
+from cellcolor.lab.executors.work import Task
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver
@@ -67,7 +71,7 @@ right_schemes = ReferenceSolver.optimal_schemes
 
 
 def test_solvers_agree_on_every_kind() -> None:
-    outcomes = list(outcomes_of_campaign(2 * EVERY_KIND, 7, 20.0, 1))
+    outcomes = list(outcomes_of_campaign(2 * EVERY_KIND, 7, 20.0, HereWorkers()))
     assert [outcome.number for outcome in outcomes] == list(range(2 * EVERY_KIND))
     for outcome in outcomes:
         assert not outcome.wrong, (outcome.kind, outcome.wrong)
@@ -89,11 +93,12 @@ def test_instances_are_a_function_of_seed_and_number() -> None:
 
 
 def test_the_command_on_two_processes() -> None:
-    command = [sys.executable, "-m", "cellcolor", "campaign", "--count", "4", "--jobs", "2"]
+    command = [sys.executable, "-m", "cellcolor", "bench", "campaign"]
+    command += ["--count", "4", "--jobs", "2"]
     done = subprocess.run(command, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     expected = Summary()
-    for outcome in outcomes_of_campaign(4, 0, 20.0, 1):
+    for outcome in outcomes_of_campaign(4, 0, 20.0, HereWorkers()):
         expected.add(outcome)
     for name, bins in expected.histograms().items():
         assert f"{name}: " + ", ".join(f"{v}: {n}" for v, n in bins) in done.stdout.splitlines()
@@ -104,9 +109,10 @@ def test_a_wrong_minimum_is_noticed_and_made_small(
 ) -> None:
     believe_bounds(monkeypatch)
     monkeypatch.setattr(CpSatSolver, "minimize", boast)
+    monkeypatch.setattr("cellcolor.cli.campaign.workers_for", lambda *_: HereWorkers())
     kept = tmp_path / "kept"
     number = next(n for n in range(9) if has_busy_cell(draw_case(0, n).instance))
-    assert main(["campaign", "--count", str(number + 1), "--jobs", "1", "-o", str(kept)]) == 1
+    assert main(["bench", "campaign", "--count", str(number + 1), "-o", str(kept)]) == 1
     file = kept / f"campaign_0_{number}.json"
     assert f"{file}: dfs has" in capsys.readouterr().err
     small = Instance.read(file)
@@ -186,6 +192,28 @@ def test_a_solver_that_breaks_down_is_noticed(monkeypatch: pytest.MonkeyPatch) -
     assert wrong.message == "RuntimeError: no idea"
 
 
+def test_what_ends_its_process_is_a_disagreement_and_loses_no_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """As if number 1 killed its process, alone or together with others."""
+
+    class Deadly(HereWorkers):
+        def submit(self, task: Task, /) -> Future[Ended]:
+            if 1 not in task.arguments[2]:
+                return super().submit(task)
+            future: Future[Ended] = Future()
+            future.set_result(Ended("crashed", error="ended by SIGSEGV", seconds=1.0))
+            return future
+
+    monkeypatch.setattr("cellcolor.lab.campaign.pool._TOGETHER", 2)
+    outcomes = list(outcomes_of_campaign(4, 0, 20.0, Deadly()))
+    assert sorted(outcome.number for outcome in outcomes) == [0, 1, 2, 3]
+    (lost,) = [outcome for outcome in outcomes if outcome.wrong]
+    assert lost.number == 1 and "crashed, ended by SIGSEGV" in lost.wrong[0].message
+    found = Instance.from_document(json.loads(lost.wrong[0].document))
+    assert found.sha256 == draw_case(0, 1).instance.sha256
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_shrinking_an_instance_leaves_nothing_out_that_is_needed(seed: int) -> None:
     instance = planar_graph(seed, 6, 11, 3, self_edges=True)
@@ -256,7 +284,7 @@ def test_exit_code_says_whether_everything_was_compared(
             raise KeyboardInterrupt
 
     monkeypatch.setattr("cellcolor.cli.campaign.outcomes_of_campaign", some)
-    assert main(["campaign", "--count", "9"]) == (0 if ending == "done" else 3)
+    assert main(["bench", "campaign", "--count", "9"]) == (0 if ending == "done" else 3)
     printed = capsys.readouterr()
     assert "seed 0, 1 instances" in printed.out
     assert ("interrupted" in printed.err) == (ending == "interrupted")

@@ -1,16 +1,15 @@
 """The commands and their options. What they do is imported only when one of them runs."""
 
+from cellcolor.cli.commands.bench import bench
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.library import import_, library
 from cellcolor.cli.commands.minimum import build, check, show, solve
 from cellcolor.cli.commands.motion import cover, paint, plan
 from cellcolor.cli.commands.parts import inspect, repair
-from cellcolor.cli.commands.solvers import bench, campaign
 
 __all__ = [
     "bench",
     "build",
-    "campaign",
     "cellcolor",
     "check",
     "cover",

@@ -6,10 +6,10 @@ import click
 
 from cellcolor.version import __version__
 
-__all__ = ["cellcolor"]
+__all__ = ["Commands", "cellcolor"]
 
 
-class _Commands(click.Group):
+class Commands(click.Group):
     """Lists every command with its first paragraph in full; click would cut it to one line."""
 
     def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
@@ -21,7 +21,7 @@ class _Commands(click.Group):
             formatter.write_dl(rows)
 
 
-@click.group(name="cellcolor", cls=_Commands, invoke_without_command=True)
+@click.group(name="cellcolor", cls=Commands, invoke_without_command=True)
 @click.version_option(__version__, message="%(prog)s %(version)s")
 @click.pass_context
 def cellcolor(context: click.Context) -> None:

@@ -1,14 +1,10 @@
-"""A campaign: thousands of random instances on a pool of processes."""
+"""A campaign: thousands of random instances, some of them in each process."""
 
 from __future__ import annotations
 
-import multiprocessing
-import signal
 import time
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
-from multiprocessing import resource_tracker
 from typing import Any
 
 from cellcolor.data.instance import Instance
@@ -23,11 +19,22 @@ from cellcolor.lab.campaign.agreement import (
 )
 from cellcolor.lab.campaign.cases import Case, draw_case
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
+from cellcolor.lab.executors.alone import Ended, Limits
+from cellcolor.lab.executors.work import Task, Workers, as_they_end
 
 __all__ = ["Outcome", "Wrong", "outcomes_of_campaign"]
 
 SHRINK_SECONDS = 60.0
 """Seconds that are spent on making one disagreement small."""
+
+_TOGETHER = 25
+"""Instances that are looked at in one process."""
+
+_START_UP = 60.0
+"""Seconds for the start of a process, the drawing of its instances, and a busy machine."""
+
+_SOLVES = 10
+"""Solves and lists of schemes on one instance, or a few more."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,32 +75,54 @@ class Outcome:
     seconds: float
 
 
-def outcomes_of_campaign(count: int, seed: int, time_limit: float, jobs: int) -> Iterator[Outcome]:
+def outcomes_of_campaign(
+    count: int, seed: int, time_limit: float, workers: Workers
+) -> Iterator[Outcome]:
     """What came of each of ``count`` random instances, in the order in which they are done.
+
+    Several are looked at in one process, since its start takes longer than most of them. If it
+    breaks down or has to be killed, each of its instances gets a process of its own, and what
+    breaks down there is a disagreement.
 
     Args:
         count: how many; the first ones are the same whatever the count.
         seed: of everything random.
         time_limit: seconds for each solve.
-        jobs: processes; with 1 everything happens in this one. More are started from the main
-            thread only.
+        workers: who looks at them.
     """
-    work = partial(examine, seed, time_limit)
-    if jobs == 1:
-        yield from map(work, range(count))
-        return
-    # Not forked: the parent may run threads, and OR-Tools has some of its own.
-    context = multiprocessing.get_context("spawn")
-    # Ctrl-C goes to the whole process group; only the parent is to act on it, from the start. New
-    # processes inherit that the signal is blocked, and here it waits for the end of the block.
-    resource_tracker.ensure_running()  # would lift the block when the first process starts
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    try:
-        pool = context.Pool(jobs)
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-    with pool:
-        yield from pool.imap_unordered(work, range(count), chunksize=4)
+    together = max(1, min(_TOGETHER, count // workers.slots))
+    alone: list[int] = []
+    chunks = (range(i, min(i + together, count)) for i in range(0, count, together))
+    for numbers, ended in as_they_end(workers, _tasks(chunks, seed, time_limit)):
+        if ended.end == "done":
+            yield from ended.value
+        else:
+            alone += numbers
+    singles = (range(i, i + 1) for i in sorted(alone))
+    for numbers, ended in as_they_end(workers, _tasks(singles, seed, time_limit)):
+        if ended.end == "done":
+            yield from ended.value
+        else:
+            yield _lost(draw_case(seed, numbers[0]), ended)
+
+
+def _tasks(chunks: Iterable[range], seed: int, time_limit: float) -> Iterator[tuple[range, Task]]:
+    for numbers in chunks:
+        seconds = _START_UP + len(numbers) * (_SOLVES * time_limit + 2 * SHRINK_SECONDS)
+        task = Task(_examine_some, (seed, time_limit, tuple(numbers)), Limits(seconds))
+        yield numbers, task
+
+
+def _examine_some(seed: int, time_limit: float, numbers: tuple[int, ...]) -> list[Outcome]:
+    return [examine(seed, time_limit, number) for number in numbers]
+
+
+def _lost(case: Case, ended: Ended) -> Outcome:
+    """The outcome of an instance that no process came back from."""
+    message = f"no solver may end its process: {ended.end}, {ended.error}"
+    wrong = Wrong(message, replace(case.instance, meta=_origin(case, message)).to_json())
+    sizes = len(case.instance.cells), case.instance.most_live_darts
+    return Outcome(case.number, case.kind, *sizes, None, None, (wrong,), ended.seconds)
 
 
 def examine(seed: int, time_limit: float, number: int) -> Outcome:

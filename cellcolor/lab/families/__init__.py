@@ -16,10 +16,11 @@ from cellcolor.lab.families.hubs import (
 )
 from cellcolor.lab.families.meshes import SHAPES, Topology
 from cellcolor.lab.families.parts import part
-from cellcolor.lab.families.registry import LARGE, MEDIUM, SMALL, Family
+from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
 from cellcolor.lab.families.voronoi import voronoi
 
 __all__ = [
+    "GROWING",
     "LARGE",
     "MEDIUM",
     "SHAPES",

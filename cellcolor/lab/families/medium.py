@@ -1,4 +1,4 @@
-"""Families of surfaces as hard as those of real scenes: benchmarks/run.py solves sixty of each.
+"""Families of surfaces as hard as those of real scenes: they are what solvers are compared on.
 
 Each is a function of a seed, :func:`cellcolor.lab.families.blobs.blobs` with numbers of its own.
 """

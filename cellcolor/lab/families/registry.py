@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.lab.families import large, medium, small
+from cellcolor.lab.families import growing, large, medium, small
 from cellcolor.lab.families.blobs import blobs
 from cellcolor.lab.families.meshes import SHAPES
 
-__all__ = ["LARGE", "MEDIUM", "SMALL", "Family"]
+__all__ = ["GROWING", "LARGE", "MEDIUM", "SMALL", "Family"]
 
 Family = Callable[[int], Instance | LabelledSurface]
 """The instance that a family makes of a seed, always the same of the same seed."""
@@ -38,7 +38,7 @@ MEDIUM: dict[str, Family] = {
     "48 × 48 points, 8 colors": medium.points_48,
     "64 × 64 points, 10 colors": medium.points_64,
 }
-"""As hard as real scenes: ``benchmarks/run.py families``."""
+"""As hard as real scenes."""
 
 LARGE: dict[str, Family] = {
     **{topology: large.large_voronoi(topology) for topology in SHAPES},
@@ -50,3 +50,10 @@ LARGE: dict[str, Family] = {
     "patches": large.large_patches,
 }
 """At the limits of the solvers and beyond: ``benchmarks/limits.py``."""
+
+GROWING: dict[str, Family] = {
+    "blobs": growing.growing_blobs,
+    "hubs": growing.growing_hub,
+    "grids of hubs": growing.growing_hub_grid,
+}
+"""Larger and larger with the seed, to see where solvers come to their end."""

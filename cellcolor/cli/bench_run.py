@@ -1,0 +1,189 @@
+"""``cellcolor bench run``: families and files, solvers, and a table of their runs."""
+
+from __future__ import annotations
+
+import shlex
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, nullcontext
+from dataclasses import dataclass
+from fnmatch import fnmatchcase
+from functools import partial
+from pathlib import Path
+
+from rich import box
+from rich.table import Table
+
+from cellcolor.cli.exits import Exit
+from cellcolor.cli.inputs import read_instance
+from cellcolor.cli.tables import console
+from cellcolor.cli.terminal import complain, shown
+from cellcolor.cli.workers import progress_bar, workers_for
+from cellcolor.data.solution import SearchSpace
+from cellcolor.data.wording import count
+from cellcolor.door.shipped import find_file, library
+from cellcolor.errors import CellcolorError, InputError, SolverMissing
+from cellcolor.lab.runs.agreement import disagreements
+from cellcolor.lab.runs.contestants import Contestant, contestant
+from cellcolor.lab.runs.row import Row
+from cellcolor.lab.runs.statistics import by, contestants_of, median_seconds
+from cellcolor.lab.runs.subjects import Subject, families_like, of_family, taking_turns
+from cellcolor.lab.runs.sweep import Plan, Sweep
+from cellcolor.lab.runs.table import TableFile
+
+__all__ = ["Request", "command_line", "run_solvers"]
+
+_SHOWN = 60
+"""Instances that are listed at the end; more are for ``bench summary``."""
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """What the command was asked for; the fields are its arguments and options."""
+
+    subjects: tuple[str, ...]
+    solvers: tuple[str, ...]
+    seeds: tuple[int, ...]
+    limits: tuple[float, ...]
+    repetitions: int
+    search_space: SearchSpace
+    megabytes: int
+    jobs: int
+    cluster: str | None
+
+
+def run_solvers(request: Request, output: Path | None) -> Exit:
+    """Make the runs, keep each of them at once, and print what came of them."""
+    subjects = list(
+        taking_turns([list(_subjects(text, request.seeds)) for text in request.subjects])
+    )
+    contestants = list(_contestants(request.solvers))
+    if not contestants:
+        return Exit.BAD_INPUT
+    plan = Plan(
+        subjects,
+        contestants,
+        request.limits,
+        request.repetitions,
+        request.search_space,
+        request.megabytes,
+        command_line(),
+    )
+    table: AbstractContextManager[TableFile[Row] | None] = (
+        nullcontext() if output is None else TableFile(output, Row)
+    )
+    bad: list[Subject] = []
+
+    def tell(subject: Subject, error: CellcolorError) -> None:
+        named = isinstance(error, InputError) and error.file
+        complain(error if named else f"{subject.name}: {error}")
+        bad.append(subject)
+
+    with table as file:
+        sweep = Sweep(plan, {row.key for row in file.rows} if file else (), tell)
+        before = list(file.rows) if file else []
+        made: list[Row] = []
+        interrupted = _make(sweep, plan, request, file, made)
+    wrong = disagreements([*before, *made])
+    _print(made, sweep, wrong)
+    if bad:
+        return Exit.BAD_INPUT
+    if wrong:
+        return Exit.INVALID
+    return Exit.STOPPED if interrupted else Exit.DONE
+
+
+def command_line() -> str:
+    """What was typed, for the record."""
+    return shlex.join(["cellcolor", *sys.argv[1:]])
+
+
+def _make(
+    sweep: Sweep, plan: Plan, request: Request, file: TableFile[Row] | None, made: list[Row]
+) -> bool:
+    """Make the runs; returns whether they were interrupted."""
+    total = len(plan.subjects) * plan.runs_of_each
+    try:
+        with (
+            workers_for(request.jobs, request.cluster) as workers,
+            progress_bar(total) as advance,
+        ):
+            for row in sweep.run(workers):
+                made.append(row)
+                if file is not None:
+                    file.append(row)
+                advance(len(made) + sweep.skipped, f"{shown(row.subject)}: {row.contestant}")
+    except KeyboardInterrupt:
+        complain("interrupted")
+        return True
+    return False
+
+
+def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Subject]:
+    """What an argument stands for: families, shipped files by a pattern, or a file."""
+    families = families_like(text)
+    if families:
+        yield from taking_turns([of_family(name, seeds) for name in families])
+        return
+    patterned = any(letter in text for letter in "*?[") and not Path(text).exists()
+    names = [name for name in library() if fnmatchcase(name, text)] if patterned else [text]
+    if not names:
+        raise InputError(None, None, f"{text}: no family and no shipped name is like this")
+    for name in names:
+        file = find_file(name)
+        family = file.resolve().parent.name
+        yield Subject(family, None, str(file), partial(read_instance, file))
+
+
+def _contestants(names: Sequence[str]) -> Iterator[Contestant]:
+    """Those that can take part; of each of the others a line."""
+    for name in dict.fromkeys(names):
+        try:
+            yield contestant(name)
+        except SolverMissing as error:
+            complain(f"left out: {error}")
+
+
+def _print(made: Sequence[Row], sweep: Sweep, wrong: Sequence[str]) -> None:
+    """A line for each instance, unless there are many, and one for all."""
+    groups = by(made, lambda row: (row.subject, row.sha256, row.limit))
+    if made and len(groups) <= _SHOWN:
+        names = contestants_of(made)
+        table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+        table.add_column("instance", overflow="fold")
+        for head in ("cells", "most live darts", "segments", *(f"{s} seconds" for s in names)):
+            table.add_column(head, justify="right")
+        for (subject, _, _), own in groups.items():
+            runs = by(own, lambda row: row.contestant)
+            table.add_row(
+                shown(subject),
+                str(own[0].cells),
+                str(own[0].live_darts),
+                _segments(own),
+                *(_seconds(runs.get(name, [])) for name in names),
+            )
+        console().print(table)
+    already = f", {sweep.skipped} left out or there already" if sweep.skipped else ""
+    proved = sum(row.solved for row in made)
+    console().print(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
+    for line in wrong:
+        complain(line)
+
+
+def _segments(rows: Sequence[Row]) -> str:
+    """The minimum, or what is known of it."""
+    found = [row.segments for row in rows if row.segments is not None]
+    if not found:
+        return "?"
+    proved = any(row.status == "optimal" for row in rows)
+    return str(min(found)) if proved else f"<= {min(found)}"
+
+
+def _seconds(rows: Sequence[Row]) -> str:
+    """The median of the repetitions, or how they ended else."""
+    if not rows:
+        return ""
+    if 2 * sum(row.solved for row in rows) > len(rows):
+        return f"{median_seconds(rows):.3f}"
+    ends = {row.status for row in rows if not row.solved}
+    return "not proved" if ends <= {"feasible", "unknown", "optimal"} else ", ".join(sorted(ends))

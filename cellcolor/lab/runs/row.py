@@ -1,0 +1,131 @@
+"""A run of a solver on an instance as a row of a table."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from pydantic import ConfigDict
+
+from cellcolor.data.solution import SearchSpace
+
+__all__ = ["FINISHED", "Key", "Row", "Status"]
+
+Status = Literal[
+    "optimal",
+    "feasible",
+    "unknown",
+    "timeout",
+    "memory",
+    "crashed",
+    "refused",
+    "unsupported",
+]
+"""How a run ended. The first three are the solver's own words: a proved minimum, a division, none.
+Killed for its time; killed for its memory, or not begun because it would have been too much; broken
+down; refused by the checker, so that solver or checker is wrong; more than the solver is able to
+do."""
+
+FINISHED: tuple[Status, ...] = ("optimal", "feasible", "unknown")
+"""Those that came back with an answer."""
+
+Key = tuple[str, str, str, str, int | None, float, int]
+"""What makes a run the same as another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One run.
+
+    Attributes:
+        family: what the instance is from; of a file, the name of its folder.
+        seed: of the instance within its family, None for a file.
+        instance: its name.
+        sha256: its fingerprint.
+        cells, edges, colors: how many it has.
+        live_darts: the most that one of its cells has.
+        live_loops: the same for loops.
+        search_space: in which it was solved.
+        solver: its registered name.
+        solver_version: what answered.
+        workers: that the solver was told to use, None if it chose itself.
+        limit: seconds that it was given.
+        repetition: 0, 1, 2, …; also the seed of what is random in the solver.
+        status: how it ended.
+        segments: of the best division, None without one.
+        lower_bound: that was proved in the search space.
+        proved_for_surface: whether the minimum is proved for any division of the surface.
+        seconds: of solving alone, by the solver's own clock.
+        cpu_seconds: of all processors, of the whole process.
+        process_seconds: from the start of the process to its end.
+        peak_mb: the most memory of the whole process, 2**20 bytes.
+        error: a line, None if nothing went wrong.
+        cores, memory_mb, cpu, python, cellcolor: as in :class:`cellcolor.lab.machine.Machine`.
+        load: average of the machine's last minute when the run ended.
+        date: when the run ended, UTC.
+        command: that made the run.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    family: str
+    seed: int | None
+    instance: str
+    sha256: str
+    cells: int
+    edges: int
+    colors: int
+    live_darts: int
+    live_loops: int
+    search_space: SearchSpace
+    solver: str
+    solver_version: str
+    workers: int | None
+    limit: float
+    repetition: int
+    status: Status
+    segments: int | None
+    lower_bound: int | None
+    proved_for_surface: bool | None
+    seconds: float | None
+    cpu_seconds: float
+    process_seconds: float
+    peak_mb: float
+    error: str | None
+    cores: int
+    memory_mb: int
+    cpu: str
+    python: str
+    cellcolor: str
+    load: float
+    date: str
+    command: str
+
+    @property
+    def key(self) -> Key:
+        """Runs with one key are the same run; the machine is not in it."""
+        return (
+            self.sha256,
+            self.search_space,
+            self.solver,
+            self.solver_version,
+            self.workers,
+            self.limit,
+            self.repetition,
+        )
+
+    @property
+    def contestant(self) -> str:
+        """The solver with its number of workers, as it is named on the command line."""
+        return self.solver if self.workers is None else f"{self.solver}@{self.workers}"
+
+    @property
+    def subject(self) -> str:
+        """The instance, so that it can be found again."""
+        return self.instance if self.seed is None else f"{self.family}, seed {self.seed}"
+
+    @property
+    def solved(self) -> bool:
+        """Whether the minimum was proved, no later than a tenth and a second after the limit."""
+        in_time = self.seconds is not None and self.seconds <= 1.1 * self.limit + 1.0
+        return self.status == "optimal" and in_time

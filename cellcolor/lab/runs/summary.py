@@ -1,0 +1,209 @@
+"""A table of results, summed up as Markdown."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from statistics import median
+
+from cellcolor.data.wording import count
+from cellcolor.lab.runs.agreement import compared, disagreements
+from cellcolor.lab.runs.row import FINISHED, Row
+from cellcolor.lab.runs.statistics import by, contestants_of, median_seconds, par2, strongest
+from cellcolor.lab.runs.timings import Timing
+
+__all__ = ["markdown_table", "summary_of_runs", "summary_of_timings"]
+
+_OPEN_SHOWN = 40
+
+
+def summary_of_runs(rows: Sequence[Row]) -> Iterator[str]:
+    """Lines of Markdown: who agrees, who solved what how fast, what failed, and what is open.
+
+    Args:
+        rows: of one table or several.
+    """
+    yield from _about(rows)
+    yield ""
+    yield from _agreement(rows)
+    for (space, limit), own in by(rows, lambda row: (row.search_space, row.limit)).items():
+        yield from ("", f"## Search space {space}, {limit:g} s", "")
+        yield from _by_family(own, "Minima proved, of runs", _solved)
+        yield from ("", *_by_family(own, "Seconds, median", _median))
+        yield from ("", *_by_family(own, "PAR2, seconds", lambda runs: _number(par2(runs))))
+        yield from ("", *_where_others_win(own), "", *_ends(own), "", *_open(own))
+
+
+def summary_of_timings(timings: Sequence[Timing]) -> Iterator[str]:
+    """Lines of Markdown: medians of what is no solver."""
+    groups: dict[tuple[str, str, int | None], list[Timing]] = {}
+    for one in timings:
+        if one.status == "done":
+            groups.setdefault((one.subject, one.way, one.size), []).append(one)
+    units = {one.unit for one in timings if one.unit}
+    head = ["subject", "way", " or ".join(sorted(units)) or "size", "times", "seconds, median"]
+    body = [
+        [
+            subject,
+            way,
+            "" if size is None else str(size),
+            str(len(own)),
+            f"{median(one.seconds for one in own):.3f}",
+            f"{median(one.cpu_seconds for one in own):.3f}",
+            f"{max(one.peak_mb for one in own):.0f}",
+        ]
+        for (subject, way, size), own in groups.items()
+    ]
+    yield from markdown_table([*head, "CPU seconds, median", "most MB"], body)
+    failed = [one for one in timings if one.status != "done"]
+    for one in failed:
+        yield f"\n{one.subject}, {one.way}: {one.status}."
+
+
+def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
+    """A table; all columns but the first are numbers."""
+    yield f"| {' | '.join(head)} |"
+    yield "|---|" + "--:|" * (len(head) - 1)
+    for line in body:
+        yield f"| {' | '.join(cell.replace('|', '&#124;') for cell in line)} |"
+
+
+def _about(rows: Sequence[Row]) -> Iterator[str]:
+    """Machine, versions, date and commands."""
+    instances = len({row.sha256 for row in rows})
+    dates = sorted(row.date for row in rows)
+    loads = sorted(row.load for row in rows)
+    yield (
+        f"{count(len(rows), 'run')} on {count(instances, 'instance')}, {dates[0]} to {dates[-1]}, "
+        f"load {loads[0]:.1f} to {loads[-1]:.1f}."
+    )
+    yield ""
+    machines = dict.fromkeys(
+        f"{row.cpu}, {count(row.cores, 'core')}, {row.memory_mb / 1024:.0f} GiB, Python "
+        f"{row.python}, cellcolor {row.cellcolor}"
+        for row in rows
+    )
+    yield from (f"- {machine}" for machine in machines)
+    versions = dict.fromkeys(f"{row.solver}: {row.solver_version}" for row in rows)
+    yield f"- {'; '.join(versions)}"
+    yield from (f"- `{command}`" for command in dict.fromkeys(row.command for row in rows))
+
+
+def _agreement(rows: Sequence[Row]) -> Iterator[str]:
+    wrong = disagreements(rows)
+    if not wrong:
+        yield (
+            "No two runs contradict each other. On "
+            f"{count(compared(rows), 'instance')} two solvers or more proved the minimum."
+        )
+        return
+    yield f"**{count(len(wrong), 'contradiction')}:**"
+    yield ""
+    yield from (f"- {line}" for line in wrong)
+
+
+def _by_family(
+    rows: Sequence[Row], title: str, cell: Callable[[Sequence[Row]], str]
+) -> Iterator[str]:
+    """A line for each family and one for all, a column for each contestant."""
+    names = contestants_of(rows)
+    families = by(rows, lambda row: row.family)
+    lines = [*families.items(), ("all", list(rows))] if len(families) > 1 else [*families.items()]
+    body = []
+    for family, own in lines:
+        runs = by(own, lambda row: row.contestant)
+        body.append([family, *(cell(runs[name]) if name in runs else "" for name in names)])
+    yield from markdown_table([title, *names], body)
+
+
+def _solved(runs: Sequence[Row]) -> str:
+    return f"{sum(row.solved for row in runs)}/{len(runs)}"
+
+
+def _median(runs: Sequence[Row]) -> str:
+    middle = median_seconds(runs)
+    return _number(middle) if math.isfinite(middle) else f"> {max(r.limit for r in runs):g}"
+
+
+def _number(seconds: float) -> str:
+    return f"{seconds:.3f}" if seconds < 1 else f"{seconds:.1f}"
+
+
+def _where_others_win(rows: Sequence[Row]) -> Iterator[str]:
+    """Families in which another solver proves more minima than the best of ours."""
+    ours = strongest(rows, rivals=False)
+    if ours is None:
+        return
+    won = []
+    for family, own in by(rows, lambda row: row.family).items():
+        runs = by(own, lambda row: row.contestant)
+        proved = {name: sum(row.solved for row in runs[name]) for name in runs}
+        better = [name for name in proved if proved[name] > proved.get(ours, 0)]
+        won += [f"{family}: {name} {proved[name]}, {ours} {proved.get(ours, 0)}" for name in better]
+    if won:
+        yield f"More minima than {ours}:"
+        yield ""
+        yield from (f"- {line}" for line in won)
+    else:
+        yield f"In no family does anybody prove more minima than {ours}."
+
+
+def _ends(rows: Sequence[Row]) -> Iterator[str]:
+    """What did not end with an answer, and what the runs took."""
+    bad = ("timeout", "memory", "crashed", "refused", "unsupported")
+    body = []
+    for name, own in _of_contestants(rows):
+        answered = [row for row in own if row.status in FINISHED]
+        over = max((row.seconds - row.limit for row in answered if row.seconds), default=-math.inf)
+        body.append(
+            [
+                name,
+                str(len(answered)),
+                *(str(sum(row.status == end for row in own)) for end in bad),
+                f"{max(over, 0.0):.1f}",
+                f"{max(row.peak_mb for row in own):.0f}",
+                f"{median(row.process_seconds - (row.seconds or 0) for row in own):.1f}",
+            ]
+        )
+    head = [
+        "solver",
+        "answers",
+        *bad,
+        "most s beyond the limit",
+        "most MB",
+        "s of start-up, median",
+    ]
+    yield from markdown_table(head, body)
+
+
+def _of_contestants(rows: Sequence[Row]) -> Iterator[tuple[str, list[Row]]]:
+    runs = by(rows, lambda row: row.contestant)
+    return ((name, runs[name]) for name in contestants_of(rows))
+
+
+def _open(rows: Sequence[Row]) -> Iterator[str]:
+    """Instances whose minimum nobody proved, with the best of all divisions and bounds."""
+    body = []
+    for own in by(rows, lambda row: row.sha256).values():
+        if any(row.status == "optimal" for row in own):
+            continue
+        best = min((r for r in own if r.segments), key=lambda r: r.segments or 0, default=None)
+        most = max(
+            (r for r in own if r.lower_bound), key=lambda r: r.lower_bound or 0, default=None
+        )
+        body.append(
+            [
+                own[0].subject,
+                str(own[0].cells),
+                "" if best is None else f"{best.segments} ({best.contestant})",
+                "" if most is None else f"{most.lower_bound} ({most.contestant})",
+            ]
+        )
+    if not body:
+        yield "Every minimum was proved by somebody."
+        return
+    yield f"Open: {count(len(body), 'instance')}" + (
+        f", the first {_OPEN_SHOWN}:" if len(body) > _OPEN_SHOWN else ":"
+    )
+    yield ""
+    yield from markdown_table(["instance", "cells", "segments", "at least"], body[:_OPEN_SHOWN])

@@ -1,0 +1,114 @@
+"""What is no solver, measured beside solvers: programs from their start to their end."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from pydantic import ConfigDict
+
+from cellcolor.lab.executors.alone import Ended, Limits, watch
+
+__all__ = ["START_UP", "Timing", "start_up_timings", "timing"]
+
+_LIMITS = Limits(120.0)
+
+START_UP: dict[str, tuple[str, ...]] = {
+    "python": ("-c", "pass"),
+    "import cellcolor": ("-c", "import cellcolor"),
+    "cellcolor --help": ("-m", "cellcolor", "--help"),
+    "cellcolor solve": ("-m", "cellcolor", "solve"),
+}
+"""What the start-up is measured with, as arguments of Python; ``solve`` gets a file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """One measurement.
+
+    Attributes:
+        subject: what was measured.
+        way: how it was done, ``cellcolor`` or something that it is compared with.
+        size: of its input, in ``unit``; None if that is of no interest.
+        unit: what the size counts, None without a size.
+        repetition: 0, 1, 2, …
+        status: ``done``, or how it ended else.
+        seconds: by the clock.
+        cpu_seconds: of all processors.
+        peak_mb: the most memory of the process, 2**20 bytes.
+        cores, memory_mb, cpu, python, cellcolor: as in :class:`cellcolor.lab.machine.Machine`.
+        load: average of the machine's last minute.
+        date: when it ended, UTC.
+        command: that measured it.
+    """
+
+    __pydantic_config__ = ConfigDict(extra="forbid", allow_inf_nan=False)
+
+    subject: str
+    way: str
+    size: int | None
+    unit: str | None
+    repetition: int
+    status: str
+    seconds: float
+    cpu_seconds: float
+    peak_mb: float
+    cores: int
+    memory_mb: int
+    cpu: str
+    python: str
+    cellcolor: str
+    load: float
+    date: str
+    command: str
+
+
+def timing(
+    subject: str,
+    way: str,
+    repetition: int,
+    ended: Ended,
+    command: str,
+    size: int | None = None,
+    unit: str | None = None,
+) -> Timing:
+    """What came of a process as a row."""
+    return Timing(
+        subject=subject,
+        way=way,
+        size=size,
+        unit=unit,
+        repetition=repetition,
+        status=ended.end,
+        seconds=round(ended.seconds, 4),
+        cpu_seconds=round(ended.cpu_seconds, 4),
+        peak_mb=round(ended.peak_mb, 1),
+        **asdict(ended.machine),
+        load=round(ended.load, 2),
+        date=datetime.now(UTC).isoformat(timespec="seconds"),
+        command=command,
+    )
+
+
+def start_up_timings(
+    file: Path,
+    repetitions: int,
+    command: str,
+    run: Callable[[Sequence[str], Limits], Ended] = watch,
+) -> Iterator[Timing]:
+    """How long Python, ``import cellcolor`` and two commands take, in turn.
+
+    Args:
+        file: a small one, for ``solve``.
+        repetitions: of each.
+        command: for the record.
+        run: runs a command.
+    """
+    for repetition in range(repetitions):
+        for subject, arguments in START_UP.items():
+            files = (str(file),) if arguments[-1] == "solve" else ()
+            ended = run([sys.executable, *arguments, *files], _LIMITS)
+            yield timing(subject, "cellcolor", repetition, ended, command)

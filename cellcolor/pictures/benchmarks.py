@@ -1,0 +1,72 @@
+"""Plots of measurements, with Matplotlib."""
+
+from __future__ import annotations
+
+import io
+from itertools import cycle
+
+import matplotlib as mpl
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+
+from cellcolor.data.plot import Plot
+from cellcolor.files.writing import MARKER
+from cellcolor.pictures.palette import GREY, INK, LINES
+
+__all__ = ["render_plot"]
+
+_STYLE = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "cellcolor"}
+_DASHES = ("-", "--", ":", "-.")
+_MARKS = "os^vD<>P"
+
+
+def render_plot(plot: Plot, kind: str) -> bytes:
+    """The plot's file; the same plot gives the same bytes.
+
+    Args:
+        plot: what to draw.
+        kind: ``png`` or ``svg``.
+    """
+    with mpl.rc_context(_STYLE):
+        figure = Figure(figsize=(8, 5), dpi=150, layout="constrained")
+        FigureCanvasAgg(figure)
+        axes = figure.add_subplot()
+        _draw(axes, plot)
+        axes.set_title(plot.title, loc="left")
+        axes.set_xlabel(plot.x)
+        axes.set_ylabel(plot.y)
+        axes.grid(True, color="#DDDDDD", linewidth=0.5)
+        figure.legend(loc="outside right upper", frameon=False, fontsize=8)
+        if plot.note:
+            figure.supxlabel(plot.note, fontsize=7, x=0.01, ha="left")
+        stream = io.BytesIO()
+        metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
+        figure.savefig(stream, format=kind, metadata=metadata)
+    return stream.getvalue()
+
+
+def _draw(axes: Axes, plot: Plot) -> None:
+    """Curves, each told from the others by color and by dashes or marks."""
+    axes.set_xscale("log" if plot.log_x else "linear")
+    axes.set_yscale("log" if plot.log_y else "linear")
+    if plot.diagonal:
+        ends = [value for curve in plot.curves for point in curve.points for value in point]
+        if ends:
+            axes.plot([min(ends), max(ends)], [min(ends), max(ends)], color=GREY, linewidth=0.8)
+    for number, (curve, mark) in enumerate(zip(plot.curves, cycle(_MARKS), strict=False)):
+        xs, ys = ([point[axis] for point in curve.points] for axis in (0, 1))
+        color = LINES[number % len(LINES)]
+        if plot.joined == "points":
+            axes.scatter(
+                xs, ys, s=14, marker=mark, color=color, edgecolor=INK, linewidth=0.3,
+                label=curve.label,
+            )  # fmt: skip
+            continue
+        style = _DASHES[number // len(LINES) % len(_DASHES)]
+        if plot.joined == "steps":
+            axes.step(xs, ys, where="post", color=color, linestyle=style, label=curve.label)
+        else:
+            axes.plot(
+                xs, ys, color=color, linestyle=style, marker=mark, markersize=3, label=curve.label
+            )

@@ -1,0 +1,289 @@
+"""Tables of runs: what is counted, against numbers worked out by hand; files that were cut off."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cellcolor.data.instance import Instance
+from cellcolor.errors import InputError
+from cellcolor.lab.runs.agreement import compared, disagreements
+from cellcolor.lab.runs.row import Row
+from cellcolor.lab.runs.series import cactus, growth, plots_of, scatter
+from cellcolor.lab.runs.statistics import (
+    common,
+    contestants_of,
+    median_seconds,
+    par2,
+    ratios,
+    strongest,
+)
+from cellcolor.lab.runs.subjects import (
+    families_like,
+    family_names,
+    of_family,
+    taking_turns,
+)
+from cellcolor.lab.runs.summary import summary_of_runs
+from cellcolor.lab.runs.table import TableFile, read_table
+
+ROW = Row(
+    family="f",
+    seed=3,
+    instance="one",
+    sha256="a" * 64,
+    cells=4,
+    edges=3,
+    colors=2,
+    live_darts=2,
+    live_loops=1,
+    search_space="paper",
+    solver="cp-sat",
+    solver_version="OR-Tools 9",
+    workers=None,
+    limit=10.0,
+    repetition=0,
+    status="optimal",
+    segments=2,
+    lower_bound=2,
+    proved_for_surface=True,
+    seconds=1.0,
+    cpu_seconds=2.0,
+    process_seconds=3.0,
+    peak_mb=100.0,
+    error=None,
+    cores=2,
+    memory_mb=1024,
+    cpu="a processor",
+    python="3.11",
+    cellcolor="0.1",
+    load=0.5,
+    date="2026-11-22T00:00:00+00:00",
+    command="cellcolor bench run f",
+)
+OPEN = replace(ROW, status="feasible", segments=3, lower_bound=2, seconds=10.0)
+
+
+def times(solver: str, *seconds: float | None, cells: Sequence[int] = ()) -> list[Row]:
+    """A run on each of instances 0, 1, 2, …; None for one that proves nothing."""
+    rows = []
+    for number, spent in enumerate(seconds):
+        row = OPEN if spent is None else replace(ROW, seconds=spent)
+        size = cells[number] if cells else 4
+        rows.append(replace(row, solver=solver, sha256=f"{number:064}", cells=size))
+    return rows
+
+
+class TestStatistics:
+    def test_par2(self) -> None:
+        """Two seconds, four seconds, and twice the limit of ten: 26 by three."""
+        assert par2(times("x", 2.0, 4.0, None)) == pytest.approx(26 / 3)
+
+    def test_what_is_late_does_not_count(self) -> None:
+        """The limit of 10 s is kept within a tenth and a second, until 12 s."""
+        assert [replace(ROW, seconds=s).solved for s in (11.9, 12.1)] == [True, False]
+        assert par2([replace(ROW, seconds=12.1)]) == 20.0
+
+    def test_medians(self) -> None:
+        assert median_seconds(times("x", 1.0, 3.0, None)) == 3.0
+        assert median_seconds(times("x", 1.0, None, None)) == math.inf
+
+    def test_ratios(self) -> None:
+        """On 0 a is twice as quick, on 1 b three times, on 2 only a is done, on 3 nobody."""
+        rows = times("a", 1.0, 6.0, 5.0, None) + times("b", 2.0, 2.0, None, None)
+        inf = math.inf
+        assert ratios(rows) == {"a": [1.0, 1.0, 3.0, inf], "b": [1.0, 2.0, inf, inf]}
+
+    def test_milliseconds_are_not_told_apart(self) -> None:
+        assert ratios(times("a", 0.001) + times("b", 0.009)) == {"a": [1.0], "b": [1.0]}
+
+    def test_contestants(self) -> None:
+        rows = [*times("b", 1.0), *times("cp-sat", 1.0), replace(times("b", 1.0)[0], workers=2)]
+        assert contestants_of(rows) == ["cp-sat", "b", "b@2"]
+
+    def test_strongest(self) -> None:
+        rows = times("cp-sat", 1.0, 1.0) + times("cp-sat-model", 0.1, 0.1)
+        rows += times("slow", 9.0, 8.0) + times("quick", 1.0, 2.0) + times("loser", None, 0.1)
+        assert strongest(rows, rivals=True) == "quick"
+        assert strongest(rows, rivals=False) == "cp-sat"
+        assert strongest(times("cp-sat", 1.0), rivals=True) is None
+
+    def test_only_what_all_have_tried_is_compared(self) -> None:
+        rows = times("a", 1.0, 2.0, 3.0) + times("b", 1.0, 2.0)
+        assert {row.sha256 for row in common(rows)} == {f"{n:064}" for n in (0, 1)}
+
+
+class TestPlots:
+    def test_cactus(self) -> None:
+        (curve,) = cactus(times("a", 3.0, 1.0, None)).curves
+        assert (curve.label, curve.points) == ("a (2)", ((1.0, 1.0), (2.0, 3.0)))
+
+    def test_growth(self) -> None:
+        """Sizes 3 and 4 are one bin, 5 to 8 the next, in which half of the runs prove nothing."""
+        rows = times("a", 1.0, 2.0, 4.0, None, cells=(3, 4, 7, 8))
+        (curve,) = growth(rows, lambda row: row.cells, "cells").curves
+        assert curve.points == ((3.5, 1.5),)
+
+    def test_scatter(self) -> None:
+        plot = scatter(times("a", 3.0, None) + times("b", 1.0, 2.0), "a", "b")
+        assert plot.curves[0].points == ((3.0, 1.0), (20.0, 2.0))
+
+    def test_each_limit_has_plots_of_its_own(self) -> None:
+        rows = times("cp-sat", 1.0) + times("b", 1.0)
+        names = {"cactus", "growth-cells", "growth-darts", "profile", "scatter"}
+        assert set(plots_of(rows)) == names
+        both = rows + [replace(row, limit=20.0) for row in rows]
+        assert set(plots_of(both)) == {f"{n}-paper-{s}s" for n in names for s in (10, 20)}
+
+
+class TestAgreement:
+    def test_nobody_beats_a_bound(self) -> None:
+        worse = replace(ROW, solver="x", segments=4, lower_bound=1, status="feasible")
+        assert disagreements([ROW, worse]) == []
+        beaten = replace(ROW, solver="x", segments=3, lower_bound=3)
+        (line,) = disagreements([ROW, beaten])
+        assert line.startswith("f, seed 3 (paper, aaaaaaaaaaaa): cp-sat has 2 segments, x a lower")
+
+    def test_other_instances_and_search_spaces_are_no_contradiction(self) -> None:
+        other = replace(ROW, solver="x", segments=3, lower_bound=3)
+        assert disagreements([ROW, replace(other, sha256="b" * 64)]) == []
+        assert disagreements([ROW, replace(other, search_space="surface")]) == []
+
+    def test_what_the_checker_refuses_is_named(self) -> None:
+        none = {"segments": None, "lower_bound": None, "seconds": None}
+        refused = replace(ROW, status="refused", error="no division", **none)  # type: ignore[arg-type]
+        assert disagreements([ROW, refused]) == ["f, seed 3: cp-sat: no division"]
+
+    def test_compared(self) -> None:
+        assert compared(times("a", 1.0, 1.0, None) + times("b", 1.0, None, None)) == 1
+
+
+class TestSummary:
+    def text(self, rows: Sequence[Row]) -> str:
+        return "\n".join(summary_of_runs(rows))
+
+    def test_counts(self) -> None:
+        text = self.text(times("cp-sat", 1.0, 3.0, None) + times("x", 2.0, None, None))
+        assert "| Minima proved, of runs | cp-sat | x |" in text and "| f | 2/3 | 1/3 |" in text
+        assert "| f | 3.0 | > 10 |" in text  # medians
+        assert "| f | 8.0 | 14.0 |" in text  # 24 and 42 by three
+        assert "In no family does anybody prove more minima than cp-sat." in text
+        assert "Open: 1 instance" in text and "| f, seed 3 | 4 | 3 (cp-sat) | 2 (cp-sat) |" in text
+
+    def test_where_others_win(self) -> None:
+        text = self.text(times("cp-sat", None) + times("x", 1.0))
+        assert "More minima than cp-sat:\n\n- f: x 1, cp-sat 0" in text
+
+    def test_contradictions_come_first(self) -> None:
+        text = self.text([ROW, replace(ROW, solver="x", segments=3, lower_bound=3)])
+        assert "**1 contradiction:**" in text.partition("##")[0]
+
+
+ROWS = st.builds(
+    Row,
+    **{
+        field.name: {
+            "str": st.text(st.characters(exclude_categories=("Cs", "Cc", "Z")), min_size=1),
+            "int": st.integers(0, 10**9),
+            "float": st.floats(0, 1e6),
+            "int | None": st.none() | st.integers(0, 10**9),
+            "float | None": st.none() | st.floats(0, 1e6),
+            "str | None": st.none() | st.just('a "quoted", line'),
+            "bool | None": st.sampled_from([None, False, True]),
+            "SearchSpace": st.sampled_from(["paper", "surface"]),
+            "Status": st.sampled_from(["optimal", "crashed"]),
+        }[str(field.type)]
+        for field in fields(Row)
+    },
+)
+
+
+class TestFile:
+    @given(st.lists(ROWS, max_size=4), st.integers(0, 400))
+    def test_what_is_cut_off_anywhere_is_continued(
+        self, tmp_path_factory: pytest.TempPathFactory, rows: list[Row], cut: int
+    ) -> None:
+        path = tmp_path_factory.mktemp("table") / "t.csv"
+        with TableFile(path, Row) as table:
+            for row in rows:
+                table.append(row)
+        assert read_table(path, Row) == rows
+        content = path.read_bytes()
+        kept = content[: max(0, len(content) - cut)]
+        path.write_bytes(kept)
+        whole = max(0, kept.count(b"\n") - 1)
+        with TableFile(path, Row) as table:
+            assert table.rows == rows[:whole]
+            for row in rows[whole:]:
+                table.append(row)
+        assert path.read_bytes() == content
+
+    def test_names_with_line_ends_stay_in_their_line(self, tmp_path: Path) -> None:
+        path = tmp_path / "t.csv"
+        with TableFile(path, Row) as table:
+            table.append(replace(ROW, instance="a\nb\u2028c\ud800"))
+        (row,) = read_table(path, Row)
+        assert row.instance == "a b c\\ud800"
+
+    def test_two_at_a_time(self, tmp_path: Path) -> None:
+        path = tmp_path / "t.csv"
+        with (
+            TableFile(path, Row),
+            pytest.raises(InputError, match="is being written by another process"),
+        ):
+            TableFile(path, Row)
+
+    @pytest.mark.parametrize(
+        ("before", "after", "message"),
+        [
+            (",optimal,", ",best,", "line 2: status: "),
+            (",4,3,", ",four,3,", "line 2: cells: "),
+            (",optimal,", ",", "line 2: has 31 cells, the header 32"),
+            ("family,", "", "line 1: is not the header"),
+        ],
+    )
+    def test_what_is_wrong_is_named(
+        self, tmp_path: Path, before: str, after: str, message: str
+    ) -> None:
+        path = tmp_path / "t.csv"
+        with TableFile(path, Row) as table:
+            table.append(ROW)
+        text = path.read_text().replace(before, after, 1)
+        path.write_text(text)
+        for use in (lambda: read_table(path, Row), lambda: TableFile(path, Row)):
+            with pytest.raises(InputError, match=message):
+                use()
+        assert path.read_text() == text
+
+
+class TestSubjects:
+    def test_names(self) -> None:
+        assert "medium/thin" in family_names()
+        assert families_like("medium") == families_like("medium/*")
+        assert families_like("medium/thi?") == ["medium/thin"]
+        assert families_like("thin") == families_like("medium/nothing") == []
+
+    def test_turns(self) -> None:
+        groups = [of_family("small/hubs", (0, 1)), of_family("small/graphs", (5,))]
+        assert [(s.family, s.seed) for s in taking_turns(groups)] == [
+            ("small/hubs", 0),
+            ("small/graphs", 5),
+            ("small/hubs", 1),
+        ]
+        made = groups[0][1].make()
+        assert isinstance(made, Instance) and made.sha256 == groups[0][1].make().sha256
+
+    def test_growing_families_grow_and_say_where_they_end(self) -> None:
+        for name, seeds in (("blobs", (0, 8, 16)), ("hubs", (0, 3, 9)), ("grids of hubs", (0, 2))):
+            subjects = of_family(f"growing/{name}", seeds)
+            sizes = [len(subject.make().cells) for subject in subjects]
+            assert sizes == sorted(set(sizes))
+        (beyond,) = of_family("growing/grids of hubs", (99,))
+        with pytest.raises(InputError, match="grids of hubs have seeds 0 to"):
+            beyond.make()
