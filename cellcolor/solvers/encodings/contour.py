@@ -27,7 +27,7 @@ class Contour(Encoding):
     """The model; each constraint group is a method, in the order in which they are called."""
 
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline
         self.model = model = cp_model.CpModel()
         # Per edge and color: the edge is joined in that color, and the join is counted.
         self.joined = {
@@ -151,6 +151,7 @@ class Contour(Encoding):
         """
         for cell in self.problem.cells:
             for here in range(len(cell)):
+                self.deadline.check()
                 self._at_most_one(
                     self._arcs([cell[here]], cell[: here + 1]),
                     self._arcs(cell[here + 1 :], [cell[here]]),

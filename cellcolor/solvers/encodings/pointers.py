@@ -26,7 +26,7 @@ class Pointers(Encoding):
     """The model; each constraint group is a method, in the order in which they are called."""
 
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline
         self.model = model = cp_model.CpModel()
         # Per edge and color: the edge is joined in that color, and the join is counted.
         self.joined = {
@@ -127,6 +127,7 @@ class Pointers(Encoding):
         """
         for cell in self.problem.cells:
             for place, dart in enumerate(cell):
+                self.deadline.check()
                 for there in range(place + 1, len(cell)):
                     over = [link for d in cell[:place] for link in self._link(d, cell[there])]
                     out = [link for d in cell[there + 1 :] for link in self._link(dart, d)]

@@ -21,9 +21,9 @@ __all__ = ["Pair", "Problem"]
 Pair = tuple[int, int]
 """Two darts of one cell, the one that comes first in its list first."""
 
-LARGEST_MODEL = 1e6
-"""The most terms of a model that is built; a solver may take kilobytes for each."""
-
+LARGEST_MODEL = 6e5
+"""The most terms of a model that is built; a solver may take kilobytes for each. The contour has up
+to twice as many as are estimated."""
 
 MANY_DARTS = 300
 """Pairs of darts are not counted one by one in a cell with more of them."""

@@ -31,7 +31,7 @@ class Ranks(Encoding):
     """The model; each constraint group is a method, in the order in which they are called."""
 
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
-        self.problem = problem
+        self.problem, self.deadline = problem, deadline
         self.model = model = cp_model.CpModel()
         # Per edge and color: the edge is joined in that color, and the join is counted.
         self.joined = {
@@ -118,6 +118,7 @@ class Ranks(Encoding):
         """
         for cell in self.problem.cells:
             for place, dart in enumerate(cell):
+                self.deadline.check()
                 for there in range(place + 1, len(cell)):
                     before, beyond = cell[:place], cell[there + 1 :]
                     over = [

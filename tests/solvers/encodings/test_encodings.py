@@ -140,7 +140,7 @@ def test_several_loops_are_refused(name: str) -> None:
 
 
 def test_models_that_would_not_fit_are_refused(name: str) -> None:
-    with pytest.raises(TooLarge, match=r"a model of more than 1e\+06 terms is not built"):
+    with pytest.raises(TooLarge, match=r"a model of more than 6e\+05 terms is not built"):
         solve(hub(0, 220, 4), Options(), name)
 
 
@@ -188,3 +188,14 @@ def test_interrupts_end_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_versions(name: str) -> None:
     assert solver_version(name).startswith("OR-Tools 9.")
+
+
+@pytest.mark.parametrize("encoding", [Pointers, Ranks, Contour])
+def test_the_deadline_is_looked_at_for_every_dart_of_a_large_cell(
+    encoding: type[Pointers | Ranks | Contour], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its constraints against crossing are nearly all of a model."""
+    asked: list[Deadline] = []
+    monkeypatch.setattr(Deadline, "check", lambda deadline: asked.append(deadline))
+    encoding(Problem.of(hub(0, 40, 4)), Deadline())
+    assert len(asked) > 40
