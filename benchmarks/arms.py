@@ -35,7 +35,8 @@ OFF = (1e-2, 1e-4, 1e-7, 0.0)  # rad
 
 def solutions(name: str, poses: int) -> str:
     """A row: how the arm's family and ssik agree."""
-    from solution_sets import KINDS, Arm
+    from near_singular import KINDS, near_singular
+    from solution_sets import Arm
 
     arm = Arm.of(Setup.read(ROBOTS / f"{name}_polishing.toml"))
     q = np.random.default_rng(6).uniform(-np.pi, np.pi, (poses, 6))
@@ -44,7 +45,7 @@ def solutions(name: str, poses: int) -> str:
         (arm.compared(rows), arm.lost(rows, 1e-9 / off) if off >= 1e-4 else 0)
         for kind in KINDS
         for off in OFF
-        for rows in [arm.near_singular(kind, off, max(1, poses // 50))]
+        for rows in [near_singular(arm.robot, arm.family.reach, kind, off, max(1, poses // 50))]
     ]
     return (
         f"| {name} | {found.poses} | {found.solutions} | {found.different} | {found.farthest:.0e} "

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field, TypeAdapter
 
-from cellcolor.files.documents import take_body, validate
+from cellcolor.files.documents import about_a_file, take_body, validate
 from cellcolor.files.validation import settle
 
 __all__ = ["FORMAT", "PlanImprovement", "PlanVerdict", "PlanViolation", "SegmentRange"]
@@ -126,8 +126,7 @@ class PlanVerdict:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object, the file's name first."""
-        members = asdict(self)
-        return {"file": members.pop("file"), "format": FORMAT, "version": 1} | members
+        return about_a_file(self, FORMAT)
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> PlanVerdict:

@@ -14,6 +14,7 @@ import signal
 import sys
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from mmap import mmap
 from typing import Any
 
@@ -56,8 +57,11 @@ def share_out(work: Callable[[int], None], parts: int, at_least: int = 1) -> int
         return count
     done = shared((parts,), np.bool_)
     _working = True
-    children = [_forked(work, range(first, parts, count), done) for first in range(1, count)]
+    children: list[multiprocessing.process.BaseProcess] = []
     try:
+        with suppress(OSError):  # no room for another process: what it would do is done here
+            for first in range(1, count):
+                children.append(_forked(work, range(first, parts, count), done))
         _do(work, range(0, parts, count), done)
         for child in children:
             child.join()
@@ -67,7 +71,7 @@ def share_out(work: Callable[[int], None], parts: int, at_least: int = 1) -> int
         for child in children:
             child.kill()
             child.join()
-    return count
+    return 1 + len(children)
 
 
 def _cores() -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -16,6 +17,7 @@ from hypothesis import strategies as st
 
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.frontend import Scene, build_surface, processes, stages
+from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.reach import validity
 
@@ -92,6 +94,25 @@ def test_work_within_work_stays_in_its_process():
     assert share_out(lambda _part: None, 8) == 4  # and afterwards there are several again
 
 
+def test_where_no_process_can_be_begun_there_is_one(monkeypatch):
+    """And a second time there is nothing left of the first."""
+    tries = []
+
+    def no_room():
+        tries.append(os.getpid())
+        raise BlockingIOError
+
+    monkeypatch.setattr(os, "fork", no_room)
+    for time_ in (1, 2):
+        found = shared((8,), np.int64)
+
+        def work(part, found=found):
+            found[part] += 1
+
+        assert share_out(work, 8) == 1
+        assert found.tolist() == [1] * 8 and len(tries) == time_
+
+
 def test_a_daemon_has_no_children(monkeypatch):
     monkeypatch.setitem(multiprocessing.current_process()._config, "daemon", True)
     assert share_out(lambda _part: None, 8) == 1
@@ -124,8 +145,52 @@ def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
 
 
 def test_a_time_out_in_several_processes(fine_scene, monkeypatch):
+    """It comes while candidates are judged, shared out, and not before."""
+    place = prepare(fine_scene).workplace
     monkeypatch.setattr(validity, "_AT_ONCE", 64)
     monkeypatch.setattr(validity, "_PAYS", 1)
+    begun, forked = [], processes._forked
+
+    def noted(*arguments):
+        begun.append(forked(*arguments))
+        return begun[-1]
+
+    monkeypatch.setattr(processes, "_forked", noted)
     with pytest.raises(OutOfTime):
-        build_surface(fine_scene, Deadline.after(0.01))
-    assert not multiprocessing.active_children()
+        validity.Judge(place, (), Deadline.after(0))(np.zeros((640, 6)))
+    assert len(begun) == 3 and not multiprocessing.active_children()
+
+
+SLOW_BUILD = """
+import os, sys, time
+os.sched_getaffinity = lambda _process: {0, 1, 2}
+from cellcolor.frontend.reach import validity
+validity._AT_ONCE, validity._PAYS, judged = 64, 1, validity.Judge._judged
+def slowly(judge, configurations):
+    time.sleep(1)
+    return judged(judge, configurations)
+validity.Judge._judged = slowly
+from cellcolor.cli import main
+sys.exit(main())
+"""
+
+
+def test_ctrl_c_ends_all_processes_of_a_build(tmp_path):
+    """As a terminal sends it: to parent and children at once."""
+    out = tmp_path / "wok.json"
+    command = [sys.executable, "-c", SLOW_BUILD, "build", str(WOK), "-o", str(out)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, start_new_session=True)
+    try:
+        of_it = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        children = []
+        while len(children) < 2 and process.poll() is None:
+            children = of_it.read_text().split()
+            time.sleep(0.02)
+        os.killpg(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=30)
+    finally:
+        process.kill()
+    assert said == "cellcolor: interrupted\n" and process.returncode == 3
+    assert len(children) == 2
+    assert not any(Path(f"/proc/{child}").exists() for child in children)
+    assert not list(tmp_path.iterdir())

@@ -7,19 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from independent import set_distance, wrapped
 from other_solver import Ssik
-from scipy.optimize import brentq
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.signs import signs_of
 from cellcolor.frontend.prepared import family_of, robot_of
 from cellcolor.frontend.setup import Setup
 
 REGULAR = 1e-5  # of reach^3; nearer to a singularity two solutions are about to meet
 SAME = 1e-5  # rad
-KINDS = {"wrist": (4, 2), "elbow": (2, 1), "shoulder": (1, 0)}  # joint that leads there, factor
 
 
 @dataclass(frozen=True)
@@ -85,30 +82,3 @@ class Arm:
             wrapped(ours - own[:5]).max(axis=1).min(initial=np.inf) > within
             for own, ours in zip(q, self.solved(poses.tip, poses.tool_axis), strict=True)
         )
-
-    def near_singular(self, kind: str, off: float, count: int, seed: int = 29) -> Array:
-        """Configurations (count, 6) that are ``off`` rad in one joint from a singularity."""
-        signs = signs_of(self.robot, self.family.reach, 1e-6)
-        assert signs is not None
-        joint, number = KINDS[kind]
-
-        def factor(angle: float, row: Array) -> float:
-            turned = np.array(row)
-            turned[joint] = angle
-            factors = signs.factors(forward(self.robot, turned[None]))[0]
-            # The elbow's factor changes its sign with the shoulder's as well.
-            return float(factors[number] * (np.sign(factors[0]) if number == 1 else 1.0))
-
-        rows, found = np.random.default_rng(seed).uniform(-np.pi, np.pi, (20 * count, 6)), []
-        for row in rows:
-            turns = np.linspace(-3.1, 3.0, 20)
-            values = np.array([factor(turn, row) for turn in turns])
-            crossed = np.flatnonzero(values[1:] * values[:-1] < 0)
-            if len(crossed):
-                low, high = turns[crossed[0]], turns[crossed[0] + 1]
-                row[joint] = brentq(factor, low, high, args=(row,), xtol=1e-14) + off
-                found.append(row)
-            if len(found) == count:
-                break
-        assert len(found) == count
-        return np.array(found)

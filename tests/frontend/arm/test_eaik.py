@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from independent import set_distance, wrapped
-from scipy.optimize import brentq
+from near_singular import KINDS, near_singular
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
@@ -93,41 +93,13 @@ def test_solutions_of_ssik_for_five_thousand_poses(name: str) -> None:
     assert more <= (0 if name in NAMED else 5)
 
 
-def near_singular(name: str, kind: str, off: float, count: int) -> Array:
-    """Configurations that are ``off`` rad in one joint from a singularity of a kind."""
-    signs = FAMILIES[name]._signs
-    assert signs is not None
-    joint, number = {"wrist": (4, 2), "elbow": (2, 1), "shoulder": (1, 0)}[kind]
-
-    def factor(angle: float, row: Array) -> float:
-        turned = np.array(row)
-        turned[joint] = angle
-        factors = signs.factors(forward(ROBOTS[name], turned[None]))[0]
-        # The elbow's factor changes its sign with the shoulder's as well.
-        return float(factors[number] * (np.sign(factors[0]) if number == 1 else 1.0))
-
-    rows, found = np.random.default_rng(29).uniform(-np.pi, np.pi, (20 * count, 6)), []
-    for row in rows:
-        turns = np.linspace(-3.1, 3.0, 20)
-        values = np.array([factor(turn, row) for turn in turns])
-        crossed = np.flatnonzero(values[1:] * values[:-1] < 0)
-        if len(crossed):
-            low, high = turns[crossed[0]], turns[crossed[0] + 1]
-            row[joint] = brentq(factor, low, high, args=(row,), xtol=1e-14) + off
-            found.append(row)
-        if len(found) == count:
-            break
-    assert len(found) == count
-    return np.array(found)
-
-
 @pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-7, 0.0])
-@pytest.mark.parametrize("kind", ["wrist", "elbow", "shoulder"])
+@pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("name", ["kr6", "puma560"])
 def test_no_solution_is_lost_next_to_a_singularity(name: str, kind: str, off: float) -> None:
     """Compared are those with a determinant above a share of reach^3; the own one always."""
     pytest.importorskip("ssik")
-    q = near_singular(name, kind, off, 10)
+    q = near_singular(ROBOTS[name], FAMILIES[name].reach, kind, off, 10)
     same_sets(name, q, regular_only=True)
     poses = forward(ROBOTS[name], q)
     for own, ours in zip(q, solved(name, poses.tip, poses.tool_axis), strict=True):

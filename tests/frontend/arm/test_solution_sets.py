@@ -11,7 +11,8 @@ from cellcolor.frontend.setup import Setup
 
 pytest.importorskip("ssik")
 
-from solution_sets import KINDS, Arm
+from near_singular import KINDS, near_singular
+from solution_sets import Arm
 
 ARMS = ("ur5", "ur3e", "ur5e", "ur10e", "ur16e", "kr6", "irb120", "tx2_60")
 
@@ -41,7 +42,7 @@ def test_none_is_lost_next_to_a_singularity(name: str, kind: str) -> None:
     """Beyond a determinant of 1e-5 of the cube of the reach sets are the same, at any distance."""
     one = arm(name)
     for off in (1e-2, 1e-4, 1e-7, 0.0):
-        q = one.near_singular(kind, off, 4)
+        q = near_singular(one.robot, one.family.reach, kind, off, 4)
         assert one.compared(q).different == 0
         if off >= 1e-4:  # half of the digits are lost where two solutions meet
             assert one.lost(q, within=1e-9 / off) == 0
