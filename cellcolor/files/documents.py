@@ -163,7 +163,7 @@ def field_name(location: tuple[int | str, ...]) -> str:
 
 
 def about_a_file(value: DataclassInstance, form: str) -> dict[str, Any]:
-    """The JSON object of what is said about a file, whose name, the member ``file``, comes first."""
+    """The JSON object of what is said about a file, whose name, in ``file``, comes first."""
     members = asdict(value)
     return {"file": members.pop("file"), "format": form, "version": 1} | members
 

@@ -16,6 +16,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.conditioning import conditioning, task_determinants
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
 from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot
 from cellcolor.frontend.arm.task_space import TaskSpace
 from cellcolor.frontend.arm.tool_turn import turn_at
@@ -94,7 +95,9 @@ class PreparedScene:
     def measure(self) -> Measure:
         """By what motions along mesh edges are measured."""
         near_singular = self.workplace.conditioning.near_singular_determinant
-        return Measure(self.setup.continuity, near_singular, self.kinematics.lever)
+        slides = self.robot.slides if self.robot.slides.any() else None
+        policy, own = self.setup.continuity, self.kinematics
+        return Measure(policy, near_singular, own.lever, slides, own.reach)
 
     @property
     def tracker(self) -> Tracker:
@@ -121,7 +124,9 @@ class PreparedScene:
         turn = self.setup.task.turn
         if turn is None:
             return np.zeros(len(points), dtype=bool)
-        return np.isnan(turn_at(turn, points, directions)[:, 0])
+        taken = self.kinematics.taken(directions)
+        from_behind = np.isnan(taken[:, 0]) & ~np.isnan(directions[:, 0])
+        return np.isnan(turn_at(turn, points, taken)[:, 0]) & ~from_behind
 
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, joints) in rad, NaN where it has no solution."""
@@ -175,7 +180,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     ground = None if scene.ground is None else scene.ground.half_space
     tip = Tip(robot, setup.task.contact_radius_m, obstacles, ground)
     with in_file(setup.file):
-        limits = conditioning(setup, kinematics.reach, robot.task)
+        limits = conditioning(setup, kinematics.reach, robot)
     workplace = Workplace(robot, setup, limits, ground, tuple(obstacles), target, tip)
     judge = Judge(workplace, scene.validity_test, deadline)
     notes = robot.warnings
@@ -208,9 +213,15 @@ def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
 def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
     """The arm's inverse kinematics for the task of its setup."""
     family, turn = family_of(setup), setup.task.turn
-    if turn is None:
-        return family(robot, setup.robot)
-    return TurnedKinematics(family, robot, setup.robot, turn)
+    kinematics = (
+        family(robot, setup.robot)
+        if turn is None
+        else TurnedKinematics(family, robot, setup.robot, turn)
+    )
+    if family.prismatic and not kinematics.branches:
+        message = "with a prismatic joint that moves the solutions of an arm need names (branches)"
+        raise InputError(None, "robot.kinematics", message)
+    return kinematics
 
 
 def _check_spacings(setup: Setup, lengths: Array) -> None:
@@ -262,8 +273,10 @@ def _robot(setup: Setup) -> Robot:
         ),
         may_touch=files.may_touch,
         force=setup.constraints.force,
+        prismatic=family.prismatic,
     )
     robot = replace(robot, task=_task(setup, family))
+    _check_last_joint(robot)
     unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
     if unknown:
         raise InputError(None, "robot.may_touch_ground", f"no solid link {min(unknown)!r}")
@@ -277,7 +290,8 @@ def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
     if task is None:
         message = (
             f"arms of the family {name!r} are redundant if the tool's turn is free: give it "
-            "(task.turn), or fix the last joint ([robot.fixed_joints]) and name 'planar-2r'"
+            "(task.turn), or fix the joint that makes it ([robot.fixed_joints]) and name a family "
+            "without that joint: 'planar-2r' for 'planar-3r', 'scara-rrp' for 'scara'"
         )
         raise InputError(None, "robot.kinematics", message)
     if given and joints < task.joints:
@@ -294,6 +308,24 @@ def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
         )
         raise InputError(None, "robot.kinematics", message)
     return task
+
+
+def _check_last_joint(robot: Robot) -> None:
+    """Refuse a joint that only turns the tool where its turn is free, and no joint is locked.
+
+    Raises:
+        InputError: the arm is redundant.
+    """
+    task = robot.task
+    turns_tool = task.most_joints > task.joints >= robot.joints
+    if turns_tool and not robot.slides[-1] and is_tool_on_last_axis(pose_at_zero(robot)):
+        name = robot.joint_names[-1]
+        raise InputError(
+            str(robot.files[0]),
+            f"joint[{name}]",
+            "the arm is redundant: this joint only turns the tool about its axis, and that turn is "
+            f"free; fix it ([robot.fixed_joints], as {name} = 0.0) and name a family without it",
+        )
 
 
 def _urdf(named: str, key: str, folder: Path) -> Urdf:

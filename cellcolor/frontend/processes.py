@@ -61,7 +61,8 @@ def share_out(work: Callable[[int], None], parts: int, at_least: int = 1) -> int
     try:
         with suppress(OSError):  # no room for another process: what it would do is done here
             for first in range(1, count):
-                children.append(_forked(work, range(first, parts, count), done))
+                child = _forked(work, range(first, parts, count), done)
+                children.append(child)  # if the next one fails this one stands
         _do(work, range(0, parts, count), done)
         for child in children:
             child.join()

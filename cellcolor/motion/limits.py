@@ -21,13 +21,20 @@ def motion_of(prepared: PreparedScene) -> Motion:
     Raises:
         InputError: there is none, or a list has another number of joints than the arm, the home
             position is outside the limits, the tool retracts less than it has to keep clear, the
-            arm's solutions have no names, or the arm is planar.
+            arm's solutions have no names, or the arm is planar or has a prismatic joint.
     """
     setup, robot = prepared.setup, prepared.robot
     with in_file(setup.file):
         prepared.check_named()
         if robot.task.plane:
             message = "a planar arm does not lift its tool off the part, so no motion is planned"
+            raise InputError(None, "robot.kinematics", message)
+        if not robot.task.direction or robot.slides.any():
+            message = (
+                "motions are laid out for joints that turn and a tool against the normal, so none "
+                "is planned for an arm with a prismatic joint that moves, nor where the tool's "
+                "direction is not asked for"
+            )
             raise InputError(None, "robot.kinematics", message)
         motion = setup.motion
         if motion is None:

@@ -151,7 +151,8 @@ def color_costs(robot: Robot, candidates: Candidates) -> Array:
 
     Two things count, and the worse of them: the task determinant as a share of the greatest one on
     this surface, and how far the joint that is nearest to its limits is from them, as a share of a
-    quarter turn. Joints may be turned by full circles. Candidates that are not valid cost 1.
+    quarter turn, or of a quarter of the way between them if it is prismatic. Joints may be turned
+    by full circles. Candidates that are not valid cost 1.
     """
     valid = candidates.valid
     determinants = np.where(valid, candidates.determinants, 0.0)
@@ -165,6 +166,7 @@ def color_costs(robot: Robot, candidates: Candidates) -> Array:
     lower, upper = np.where(endless, 0.0, robot.lower), np.where(endless, 0.0, robot.upper)
     middle, half = (lower + upper) / 2, np.where(endless, np.inf, (upper - lower) / 2)
     off = np.abs(joints - middle)
-    nearest = np.minimum(off % circle, circle - off % circle)
-    room = np.clip((half - nearest) / _ROOMY, 0.0, 1.0).min(axis=2)
+    nearest = np.where(robot.slides, off, np.minimum(off % circle, circle - off % circle))
+    roomy = np.where(robot.slides, half / 2, _ROOMY)
+    room = np.clip((half - nearest) / roomy, 0.0, 1.0).min(axis=2)
     return np.asarray(np.where(valid, 1.0 - np.minimum(good, room), 1.0))

@@ -91,7 +91,10 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     if scene.ground is not None:
         points = np.concatenate([layer.points for layer in layers])
         ground = (_ground(scene.ground.half_space, points),)
-    degrees = ", ".join(f"{angle:.1f}" for angle in np.degrees(configuration))
+    joints = ", ".join(
+        f"{1000 * value:.1f} mm" if slides else f"{np.degrees(value):.1f}°"
+        for value, slides in zip(configuration, robot.slides, strict=True)
+    )
     place = ", ".join(f"{value:.3f}" for value in target)
     return Picture3D(
         f"{scene.name}: vertex {vertex}, {result.branches[branch]}",
@@ -100,7 +103,7 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
         (),
         (
             "Collision shapes of the URDF files.",
-            f"Joints [°]: {degrees}",
+            f"Joints: {joints}",
             f"Vertex [m]: {place}",
         ),
         _free_view(robot, poses, vertex_normals(*mesh)[vertex]),

@@ -34,11 +34,12 @@ class AtVertices:
         vertex: (k,) the vertices.
         color: (k,) the color that each configuration has there, -1 for none.
         off: (k,) how far the tip is from the vertex, m.
-        tilt: (k,) how far the tool is from the vertex's normal, rad.
+        tilt: (k,) how far the tool is from the vertex's normal, rad; 0 if the task does not ask for
+            its direction.
         turned: (k,) how far it is from the turn that the setup gives for the branch, rad; 0 if it
             gives none.
         branch: (k,) of the scene's configurations there the nearest.
-        apart: (k,) how far the joint that is farthest from it is, rad; infinite without any.
+        apart: (k,) how far the joint that is farthest from it is, rad or m; infinite without any.
     """
 
     built: BuildResult
@@ -63,10 +64,11 @@ class AtVertices:
             return "the scene has no configuration there"
         vertex, branch = int(self.vertex[row]), int(self.branch[row])
         name = self.built.branches[branch]
+        meters = " (or m)" if self.built.robot.slides.any() else ""
         if apart > AT_VERTEX:
             return (
-                f"the scene's nearest configuration there, {name!r}, is {apart:.4g} rad off, "
-                f"allowed are {AT_VERTEX:g}"
+                f"the scene's nearest configuration there, {name!r}, is {apart:.4g} rad{meters} "
+                f"off, allowed are {AT_VERTEX:g}"
             )
         turned = float(np.degrees(self.turned[row]))
         if self.turned[row] > TURN:
@@ -105,10 +107,11 @@ def at_vertices(
 ) -> AtVertices:
     """The color that each configuration has at its vertex.
 
-    It has to put tip and tool there as in any contact. Then it is of the branch of the nearest of
-    the scene's configurations, which may be no farther than ``AT_VERTEX`` in any joint modulo
-    full circles. A last joint that only turns the tool about its axis is not compared: the scene
-    keeps it locked, and the task leaves it free. If the setup gives the turn, it is compared.
+    It has to put tip and tool there as in any contact; the tool's direction counts if the task asks
+    for it. Then it is of the branch of the nearest of the scene's configurations, which may be no
+    farther than ``AT_VERTEX`` in any joint modulo full circles, in m of prismatic ones. A last
+    joint that only turns the tool about its axis is not compared: the scene keeps it locked, and
+    the task leaves it free. If the setup gives the turn, it is compared.
 
     Args:
         built: the scene.
@@ -126,31 +129,44 @@ def at_vertices(
     off = np.linalg.norm(tips - surface.vertices[vertex], axis=1)
     chord = np.linalg.norm(axes + surface.normals[vertex], axis=1)
     tilt = 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0))
+    if not robot.task.direction:
+        tilt = np.zeros(len(joints))
     compared = _compared(robot)
     branch, apart = np.zeros(len(joints), dtype=np.int64), np.full(len(joints), np.inf)
     for first in range(0, len(joints), _AT_ONCE):
         deadline.check()
         rows = slice(first, first + _AT_ONCE)
         way = built.configurations[vertex[rows]][:, :, compared] - joints[rows, None][..., compared]
-        way = np.abs(np.remainder(way + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+        around = np.remainder(way + np.pi, 2 * np.pi) - np.pi
+        way = np.abs(np.where(robot.slides[compared], way, around)).max(axis=2)
         way = np.where(np.isnan(way), np.inf, way)
         branch[rows] = np.argmin(way, axis=1)
         apart[rows] = way[np.arange(len(way)), branch[rows]]
-    turned = _turned(built, vertex, branch, joints, deadline)
+    turned = _turned(built, vertex, branch, joints, axes, deadline)
     reached = (off <= OFF_SURFACE) & (tilt <= TILT) & (apart <= AT_VERTEX) & (turned <= TURN)
     color = np.where(reached, built.node_color[vertex, branch], -1)
     return AtVertices(built, vertex, color, off, tilt, turned, branch, apart)
 
 
 def _turned(
-    built: BuildResult, vertex: Index, branch: Index, joints: Array, deadline: Deadline
+    built: BuildResult,
+    vertex: Index,
+    branch: Index,
+    joints: Array,
+    axes: Array,
+    deadline: Deadline,
 ) -> Array:
-    """How far the tool is from the turn that the setup gives for the branch, (k,) rad."""
+    """How far the tool is from the turn that the setup gives for the branch, (k,) rad.
+
+    Args:
+        axes: (k, 3) the tool's own direction, which counts if the task asks for none.
+    """
     turn, surface = built.scene.setup.task.turn, built.stages.surface
     if turn is None:
         return np.zeros(len(vertex))
     across = across_of(built.robot, joints, deadline)
-    off = turns_off(turn, surface.vertices[vertex], -surface.normals[vertex], across)
+    directions = -surface.normals[vertex] if built.robot.task.direction else axes
+    off = turns_off(turn, surface.vertices[vertex], directions, across)
     each = len(built.branches) // len(turn.degrees) if turn.is_choice else len(built.branches)
     return np.asarray(off[np.arange(len(vertex)), branch // each])
 

@@ -55,13 +55,14 @@ def check_trajectory(
 
     Raises:
         InputError: the trajectory is of another arm, or the setup's velocities are; or the arm's
-            solutions have no names.
+            solutions have no names, or it has a prismatic joint.
         OutOfTime: the deadline came first.
         TooLarge: surface or trajectory would not fit into memory.
     """
     report = progress or (lambda _: None)
     robot, motion = prepared.robot, prepared.setup.motion
     prepared.check_named()
+    _check_task(prepared)
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)
     notes: list[str] = []
@@ -126,6 +127,18 @@ def _verdict(
         covered=covered,
         notes=tuple(notes),
     )
+
+
+def _check_task(prepared: PreparedScene) -> None:
+    """Refuse what contacts and joints are not judged for: the tool is held to the normal here."""
+    robot = prepared.robot
+    if robot.slides.any() or not (robot.task.direction or robot.task.plane):
+        message = (
+            "trajectories are judged for joints that turn and a tool against the normal, so none "
+            "of an arm with a prismatic joint that moves, nor where the tool's direction is not "
+            "asked for"
+        )
+        raise InputError(None, "robot.kinematics", message)
 
 
 def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:

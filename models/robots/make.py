@@ -2,8 +2,8 @@
 
     python models/robots/make.py
 
-writes every URDF and setup but those of the UR5, the SCARA, the tool and the camera: these are
-handmade.
+writes every URDF and setup but those of the UR5, the KR 6 R700 Z200, the tool and the camera: these
+are handmade.
 ``tables.py`` has the facts and where they are from; what is the same for all arms is here.
 """
 
@@ -59,6 +59,38 @@ retract_m = 0.05                      # along the normal
 clearance_m = 0.005                   # to everything, between segments
 home_rad = {home}
 """
+SCARA = """\
+# {about}, dispensing: the tip follows the part, the tool is upright and always turned the same way.
+# Written by make.py. File names are relative to this file; the world frame is the arm's root link.
+
+[robot]
+arm_urdf = "{name}.urdf"
+flange_link = "{flange}"
+tool_urdf = "polishing_tool.urdf"
+tip_link = "tool_tip"                 # its z axis points down, whatever the surface's normal
+kinematics = "{kinematics}"
+may_touch_ground = ["base_link"]
+
+[task]
+normal_force_n = 0.0
+contact_radius_m = 0.005              # obstacles and the ground stay farther off the tip than this
+gravity_m_per_s2 = [0.0, 0.0, -9.81]
+
+[task.turn]
+along = [1.0, 0.0, 0.0]               # the tool's x axis, in the world
+{constraints}
+# Shares of the square of the arm's reach: the prismatic joint's column has no length.
+[thresholds]
+min_manipulability = 0.02             # translational, four joints (Yoshikawa 1990)
+min_task_determinant = 0.02           # |det| of the 4x4 Jacobian of tip and turn
+
+[continuity]
+base_step_rad = 0.1
+step_per_length_rad_per_m = 30.0
+near_singular_determinant = 0.05
+probe_spacing_m = 0.0005
+validity_spacing_m = 0.001
+"""
 NO_FORCE = """
 [constraints]
 force = false                         # the URDF has no masses
@@ -67,7 +99,8 @@ force = false                         # the URDF has no masses
 
 def setup(name: str, arm: Arm) -> str:
     """The text of an arm's setup."""
-    return SETUP.format(
+    template = SCARA if arm.kinematics == "scara" else SETUP
+    return template.format(
         about=arm.about,
         name=name,
         flange=arm.flange[0],
@@ -99,13 +132,16 @@ def urdf(name: str, arm: Arm) -> str:
 
 
 def _joint(link: Link, parent: str) -> str:
-    lower, upper = map(math.radians, link.limits)
+    unit = 1.0 if link.prismatic else math.radians(1)
+    kind = "prismatic" if link.prismatic else "revolute"
+    lower, upper = (unit * end for end in link.limits)
     limit = f'lower="{_number(lower)}" upper="{_number(upper)}"'
-    limit += f' velocity="{_number(math.radians(link.speed))}"'
+    if link.speed is not None:
+        limit += f' velocity="{_number(unit * link.speed)}"'
     if link.effort is not None:
         limit += f' effort="{_number(link.effort)}"'
     return (
-        f'  <joint name="{link.joint}" type="revolute">\n'
+        f'  <joint name="{link.joint}" type="{kind}">\n'
         f'    <parent link="{parent}"/>\n    <child link="{link.name}"/>\n'
         f"    {_origin(link.origin, link.turn)}\n"
         f'    <axis xyz="{_row(link.axis)}"/>\n    <limit {limit}/>\n  </joint>\n'
@@ -169,7 +205,8 @@ def written() -> dict[str, str]:
     files = {}
     for name, arm in ARMS.items():
         files[f"{name}.urdf"] = urdf(name, arm)
-        files[f"{name}_polishing.toml"] = setup(name, arm)
+        task = "dispensing" if arm.kinematics == "scara" else "polishing"
+        files[f"{name}_{task}.toml"] = setup(name, arm)
     return files
 
 

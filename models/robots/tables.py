@@ -27,10 +27,11 @@ class Link:
 
     Attributes:
         origin, turn: of the joint in the frame of the link before; the turn is extrinsic x, y, z.
-        limits: lower and upper, degrees.
-        speed: degrees/s.
+        limits: lower and upper, degrees, or m if it is prismatic.
+        speed: degrees/s; None where it was not found.
         effort: N m; None where it was not found.
         mass, center: kg, m; None where it was not found.
+        prismatic: whether the joint slides along its axis.
     """
 
     name: str
@@ -40,10 +41,11 @@ class Link:
     turn: Vector = (0, 0, 0)
     axis: Vector = (0, 0, 1)
     limits: tuple[float, float] = (-360, 360)
-    speed: float = 0
+    speed: float | None = 0
     effort: float | None = None
     mass: float | None = None
     center: Vector | None = None
+    prismatic: bool = False
 
 
 @dataclass(frozen=True)
@@ -57,7 +59,7 @@ class Arm:
         flange: name of the link that carries the tool, and its turn on the last link; its z axis
             points out of the flange.
         kinematics: the family.
-        home: angles of the joints, rad.
+        home: angles of the joints, rad; none for an arm whose motions are not planned.
         force: whether the force constraint can be tested: masses and efforts are known.
     """
 
@@ -328,7 +330,36 @@ TX2_60 = arm_of(
 )  # fmt: skip
 
 ARMS = {name: ur_arm(name, constants) for name, constants in UR.items()}
+# --- SCARA ----------------------------------------------------------------------------------------
+
+COBRA_600 = Arm(
+    about="Adept Cobra 600, a SCARA",
+    sources=(
+        "lengths, height, stroke and ranges of joints 1 and 2: the public model of Corke's Robotics",
+        "  Toolbox (mdl_cobra600), not compared with a data sheet; joint 4 turns freely there",
+        "speeds, masses, centers of mass, efforts: not found, left out, so the force constraint is off",
+        "capsules: estimated",
+        "Frames: those of that model; from joint 3 on z points down.",
+    ),
+    links=(
+        Link("base_link", (Capsule((0, 0, 0.0), (0, 0, 0.3), 0.09, flat=True),)),
+        Link("link_1", (Capsule((0, 0, 0), (0.325, 0, 0), 0.05),), "joint_1", (0, 0, 0.387),
+             limits=(-50, 50), speed=None),
+        Link("link_2", (Capsule((0, 0, 0.11), (0.275, 0, 0.11), 0.05),), "joint_2", (0.325, 0, 0),
+             limits=(-88, 88), speed=None),
+        Link("shaft", (Capsule((0, 0, -0.35), (0, 0, -0.03), 0.012),), "joint_3", (0.275, 0, 0),
+             (180, 0, 0), limits=(0, 0.21), speed=None, prismatic=True),
+        Link("link_4", (Capsule((0, 0, -0.01), (0, 0, 0), 0.02, flat=True),), "joint_4",
+             limits=(-360, 360), speed=None),
+    ),
+    flange=("flange", (0, 0, 0)),
+    kinematics="scara",
+    home=(),
+    force=False,
+)  # fmt: skip
+
 ARMS |= {
+    "cobra600": COBRA_600,
     "ur5e_calibrated": calibrated(ARMS["ur5e"]),
     "kr6": KR6,
     "irb120": IRB120,

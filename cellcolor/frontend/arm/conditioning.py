@@ -3,7 +3,8 @@
 Manipulability and task determinant are volumes: the three rows of the Jacobian for the tip's
 position are in meters, and those for a direction have no unit. So a share of the cube of the arm's
 reach means the same for a small arm and a large one, and a number in cubic meters does not. In a
-plane they are areas, and a share is one of the square of the reach.
+plane, or with a prismatic joint in space, they are areas, and a share is one of the square of the
+reach.
 """
 
 from __future__ import annotations
@@ -21,7 +22,6 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
 from cellcolor.frontend.setup import Continuity, Setup, Thresholds
 
 __all__ = ["Conditioning", "conditioning", "task_determinants"]
@@ -29,7 +29,7 @@ __all__ = ["Conditioning", "conditioning", "task_determinants"]
 
 @dataclass(frozen=True)
 class Conditioning:
-    """Thresholds in m^3, or in m^2 for a task in a plane.
+    """Thresholds in m^3, or with fewer meters (:func:`conditioning`).
 
     Attributes:
         min_manipulability, min_task_determinant: what is below is not valid.
@@ -41,28 +41,35 @@ class Conditioning:
     near_singular_determinant: float
 
 
-def conditioning(setup: Setup, reach: float, task: TaskSpace = FREE_TURN) -> Conditioning:
+def conditioning(setup: Setup, reach: float, robot: Robot) -> Conditioning:
     """The thresholds of a setup for an arm of a reach in m, whichever way the setup has them.
 
+    The measures are products of so many lengths as the task has rows that are lengths, less one
+    for each prismatic joint, whose column of the Jacobian has none.
+
     Raises:
-        InputError: one is in cubic meters and the task is in a plane; names the key.
+        InputError: one is in cubic meters and the measures are not; names the key.
     """
     limits, policy = setup.thresholds, setup.continuity
+    lengths = robot.task.lengths - int(robot.slides.sum())
     return Conditioning(
-        _measure("thresholds", limits, "min_manipulability", reach, task),
-        _measure("thresholds", limits, "min_task_determinant", reach, task),
-        _measure("continuity", policy, "near_singular_determinant", reach, task),
+        _measure("thresholds", limits, "min_manipulability", reach, lengths),
+        _measure("thresholds", limits, "min_task_determinant", reach, lengths),
+        _measure("continuity", policy, "near_singular_determinant", reach, lengths),
     )
 
 
 def _measure(
-    table: str, given: Thresholds | Continuity, name: str, reach: float, task: TaskSpace
+    table: str, given: Thresholds | Continuity, name: str, reach: float, lengths: int
 ) -> float:
     absolute, share = getattr(given, f"{name}_m3"), getattr(given, name)
     if absolute is None:
-        return float(share * reach**task.lengths)  # one of both: the setup has been checked
-    if task.plane:
-        message = f"in a plane this is an area: give a share of the reach's square, {name}"
+        return float(share * reach**lengths)  # one of both: the setup has been checked
+    if lengths != 3:
+        message = (
+            f"of this arm it is no volume, but m^{lengths}: give a share of that power of the "
+            f"reach, {name}"
+        )
         raise InputError(None, f"{table}.{name}_m3", message)
     return float(absolute)
 

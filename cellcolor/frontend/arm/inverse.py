@@ -24,7 +24,9 @@ class InverseKinematics(ABC):
     ``cellcolor.kinematics``, under the name that setups have for it.
 
     Attributes:
-        joints: how many revolute joints the arms of the family have, between base and tip.
+        joints: how many joints the arms of the family have, between base and tip.
+        prismatic: how many of these are prismatic; positions of these are in m wherever those of
+            joints are in rad. The branches of such an arm have names.
         free_turn: what the task asks for if the tool's turn is free; None if the arm is redundant
             then.
         given_turn: the same if the turn is given; it may have more joints than the arm.
@@ -40,6 +42,7 @@ class InverseKinematics(ABC):
     """
 
     joints: ClassVar[int]
+    prismatic: ClassVar[int] = 0
     free_turn: ClassVar[TaskSpace | None] = FREE_TURN
     given_turn: ClassVar[TaskSpace] = GIVEN_TURN
     branches: tuple[str, ...]
@@ -75,6 +78,14 @@ class InverseKinematics(ABC):
             once, for an s of its own choice.
         """
 
+    def taken(self, directions: Array) -> Array:
+        """The directions that the tool takes where some are asked for, (n, 3).
+
+        These themselves, but with a task that does not ask for the direction; NaN where the tool
+        would come from behind.
+        """
+        return directions
+
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:  # noqa: ARG002
         """What a user should know of the solutions for some poses, a sentence each; nothing here.
 
@@ -92,5 +103,7 @@ KINEMATICS: Registry[InverseKinematics] = Registry(
         "eaik": "cellcolor.frontend.arm.eaik:EaikKinematics",
         "planar-2r": "cellcolor.frontend.arm.planar:PlanarTwo",
         "planar-3r": "cellcolor.frontend.arm.planar:PlanarThree",
+        "scara": "cellcolor.frontend.arm.scara:Scara",
+        "scara-rrp": "cellcolor.frontend.arm.scara:ScaraWithoutTurn",
     },
 )

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
 
@@ -43,6 +43,7 @@ class Poses:
         axis: (n, joints, 3) joint axes.
         tip: (n, 3) tool tip in m.
         tool_axis: (n, 3) the tool's z axis, from the flange to the tip.
+        slides: (joints,) which joints are prismatic.
     """
 
     rotation: Array
@@ -50,6 +51,7 @@ class Poses:
     axis: Array
     tip: Array
     tool_axis: Array
+    slides: Mask
 
     def take(self, rows: NDArray[np.intp]) -> Poses:
         """The poses of some of the configurations."""
@@ -59,11 +61,12 @@ class Poses:
             self.axis[rows],
             self.tip[rows],
             self.tool_axis[rows],
+            self.slides,
         )
 
 
 def forward(robot: Robot, configurations: Array) -> Poses:
-    """Poses of all frames for configurations (n, joints) in rad."""
+    """Poses of all frames for configurations (n, joints) in rad, prismatic joints in m."""
     n = len(configurations)
     # In memory joint after joint, so that one frame of all configurations is one piece.
     rotation = np.empty((robot.joints + 1, n, 3, 3)).swapaxes(0, 1)
@@ -72,6 +75,12 @@ def forward(robot: Robot, configurations: Array) -> Poses:
     rotation[:, 0], origin[:, 0] = np.eye(3), 0.0
     for joint in range(robot.joints):
         fixed, (x, y, z) = robot.placement[joint], robot.axis[joint]
+        if robot.slides[joint]:
+            rotation[:, joint + 1] = turned(rotation[:, joint], fixed[:3, :3])
+            axis[:, joint] = turned(rotation[:, joint + 1], robot.axis[joint])
+            origin[:, joint + 1] = origin[:, joint] + turned(rotation[:, joint], fixed[:3, 3])
+            origin[:, joint + 1] += configurations[:, joint, None] * axis[:, joint]
+            continue
         # Rodrigues' formula, its constant matrices multiplied for all configurations at once.
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         before, once, twice = (
@@ -89,7 +98,7 @@ def forward(robot: Robot, configurations: Array) -> Poses:
         axis[:, joint] = turned(before, robot.axis[joint])
     tip = origin[:, -1] + turned(rotation[:, -1], robot.tip[:3, 3])
     tool_axis = turned(rotation[:, -1], robot.tip[:3, 2])
-    return Poses(rotation, origin, axis, tip, tool_axis)
+    return Poses(rotation, origin, axis, tip, tool_axis, robot.slides)
 
 
 def turned(rotation: Array, columns: Array) -> Array:
@@ -99,10 +108,16 @@ def turned(rotation: Array, columns: Array) -> Array:
 
 
 def tip_jacobian(poses: Poses) -> tuple[Array, Array]:
-    """Linear and angular Jacobian of the tip, (n, 3, joints) each: m and rad per rad."""
+    """Linear and angular Jacobian of the tip, (n, 3, joints) each: m and rad per rad.
+
+    Per m of a prismatic joint, which moves the tip along its axis and turns nothing.
+    """
     arm = poses.tip[:, None] - poses.origin[:, 1:]
-    linear = np.cross(poses.axis, arm)
-    return linear.transpose(0, 2, 1), poses.axis.transpose(0, 2, 1)
+    linear, angular = np.cross(poses.axis, arm), poses.axis
+    if poses.slides.any():
+        slides = poses.slides[:, None]
+        linear, angular = np.where(slides, angular, linear), np.where(slides, 0.0, angular)
+    return linear.transpose(0, 2, 1), angular.transpose(0, 2, 1)
 
 
 def tool_across(robot: Robot, poses: Poses) -> Array:
@@ -114,7 +129,8 @@ def manipulability(linear: Array, task: TaskSpace = FREE_TURN) -> Array:
     """Translational manipulability sqrt(det(J J^T)) of the task's joints, (n,), m^3.
 
     Yoshikawa, Translational and rotational manipulability of robotic manipulators, 1990. In a plane
-    J has two rows, whichever two directions they are for, and the unit is m^2.
+    J has two rows, whichever two directions they are for, and the unit is m^2. For each prismatic
+    joint there is a meter less in the unit, if all minors of J that are not zero have its column.
     """
     columns = linear[:, :, : task.joints]
     gram = columns @ columns.transpose(0, 2, 1)
@@ -129,10 +145,12 @@ def manipulability(linear: Array, task: TaskSpace = FREE_TURN) -> Array:
 def task_determinant(
     linear: Array, angular: Array, tool_axis: Array, task: TaskSpace = FREE_TURN
 ) -> Array:
-    """Absolute determinant (n,) of the task's Jacobian, m^3, or m^2 in a plane.
+    """Absolute determinant (n,) of the task's Jacobian, m^3; m^2 in a plane.
 
-    Its rows are those of the tip's position, of the tool's direction and, if the task asks for it,
-    of the tool's turn. The direction has two rows, the angular velocity across the tool axis; which
+    For each prismatic joint there is a meter less.
+
+    Its rows are those that the task asks for: of the tip's position, of the tool's direction, of
+    the tool's turn. The direction has two rows, the angular velocity across the tool axis; which
     two perpendicular ones does not change the absolute value. Unlike translational manipulability
     it vanishes at every singularity of the task, the aligned wrist included. With fewer joints than
     rows it is the volume that their columns span, lengths in m and angles in rad mixed.
@@ -170,7 +188,9 @@ def task_jacobian(poses: Poses) -> tuple[Array, Array]:
 def _rows(linear: Array, angular: Array, tool_axis: Array, task: TaskSpace) -> Array:
     """The task's Jacobian (n, dimensions, task joints), m and rad per rad."""
     across = _across(tool_axis)
-    rows = [across @ linear] if task.plane else [linear, across @ angular]
+    rows = [across @ linear if task.plane else linear]
+    if task.direction:
+        rows.append(across @ angular)
     if task.turn:
         rows.append(tool_axis[:, None] @ angular)
     return np.concatenate(rows, axis=1)[:, :, : task.joints]
@@ -186,13 +206,18 @@ def _across(tool_axis: Array) -> Array:
 
 
 def gravity_torques(robot: Robot, poses: Poses, gravity: Array) -> Array:
-    """Torques (n, joints) in N m that hold arm and tool still against gravity (3,) in m/s^2."""
+    """Torques (n, joints) in N m that hold arm and tool still against gravity (3,) in m/s^2.
+
+    Forces in N of prismatic joints.
+    """
     centers = poses.origin[:, 1:] + np.einsum("njab,jb->nja", poses.rotation[:, 1:], robot.center)
     # Mass and first moment of all that hangs behind each joint.
     behind = np.cumsum(robot.mass[::-1])[::-1]
     moments = np.cumsum((robot.mass[:, None] * centers)[:, ::-1], axis=1)[:, ::-1]
     lever = moments - behind[:, None] * poses.origin[:, 1:]
-    torques: Array = -np.einsum("nja,nja->nj", poses.axis, np.cross(lever, gravity))
+    loads = np.cross(lever, gravity)
+    loads[:, poses.slides] = (behind[:, None] * gravity)[poses.slides]
+    torques: Array = -np.einsum("nja,nja->nj", poses.axis, loads)
     return torques
 
 
@@ -201,7 +226,8 @@ def static_torques(
 ) -> Array:
     """Torques (n, joints) in N m while the tip presses along the tool axis with a force in N.
 
-    Gravity plus J^T times the force that the robot exerts on the surface.
+    Forces in N of prismatic joints. Gravity plus J^T times the force that the robot exerts on the
+    surface.
     """
     push: Array = normal_force * np.einsum("naj,na->nj", linear, poses.tool_axis)
     return gravity_torques(robot, poses, gravity) + push

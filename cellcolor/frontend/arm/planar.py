@@ -1,7 +1,8 @@
 """Planar arms: two or three joints with parallel axes, and the tool along them.
 
-A SCARA is one if its prismatic joint is fixed: it works at one height then. The tip moves in a
-plane across the tool, so the part is flat and lies in that plane.
+A SCARA is one if its prismatic joint is fixed: it works at one height then (one that moves has a
+family of its own, :mod:`cellcolor.frontend.arm.scara`). The tip moves in a plane across the tool,
+so the part is flat and lies in that plane.
 
 Tip and elbow make a triangle with the shoulder, which has two solutions: elbow left and elbow
 right of the straight line from shoulder to tip, seen from where the tool comes from. The task
@@ -15,7 +16,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.last_joint import pose_at_zero
@@ -42,8 +43,8 @@ class PlanarTwo(InverseKinematics):
     def __init__(self, robot: Robot, files: RobotFiles) -> None:
         """The lengths of both links, and their angles with the joints at zero."""
         self._check_locked(files)
-        poses = pose_at_zero(robot)
-        axes, origins, tip = poses.axis[0], poses.origin[0, 1:], poses.tip[0]
+        poses, self._turning = pose_at_zero(robot), robot.turning
+        axes, origins, tip = poses.axis[0], poses.origin[0, 1:][self._turning], poses.tip[0]
         up = -poses.tool_axis[0]
         for name, axis in zip(robot.joint_names, axes, strict=True):
             if np.linalg.norm(np.cross(axis, up)) > _TOLERANCE:
@@ -59,12 +60,12 @@ class PlanarTwo(InverseKinematics):
         upper, fore = elbow - self._shoulder, end - elbow
         self._upper, self._fore = float(np.linalg.norm(upper)), float(np.linalg.norm(fore))
         if min(self._upper, self._fore) < _TOLERANCE:
-            name = robot.joint_names[int(self._upper >= _TOLERANCE)]
+            name = robot.joint_names[self._turning[int(self._upper >= _TOLERANCE)]]
             message = "not a planar arm: the link behind it has no length"
             raise InputError(str(robot.files[0]), f"joint[{name}]", message)
         first = np.arctan2(upper[1], upper[0])
         self._zero = np.array([first, np.arctan2(fore[1], fore[0]) - first])
-        self._sign = np.sign(axes[:2] @ up)
+        self._sign = np.sign(axes[self._turning[:2]] @ up)
         self.lever, self.reach = self._fore, self._upper + self._fore
         above = np.array([*self._shoulder, self._height + self.reach])
         self.viewpoints = (self._frame @ above)[None]
@@ -83,8 +84,7 @@ class PlanarTwo(InverseKinematics):
         """
         place = points @ self._frame
         x, y = (place[:, :2] - self._shoulder).T
-        far = np.abs(place[:, 2] - self._height) > _OFF_PLANE
-        far |= ~(np.linalg.norm(directions - self._tool, axis=1) <= _TILT)
+        far = self._never(place[:, 2], directions)
         cosine = (x**2 + y**2 - self._upper**2 - self._fore**2) / (2 * self._upper * self._fore)
         cosine[far | (np.abs(cosine) > 1 + _ROUNDING)] = np.nan
         bend = np.arccos(np.clip(cosine, -1, 1))
@@ -95,9 +95,14 @@ class PlanarTwo(InverseKinematics):
             found.append(np.column_stack([np.arctan2(y, x) - ahead, turned]))
         two = (np.stack(found, axis=1) - self._zero) * self._sign
         every = np.zeros((len(points), 2, self.joints))
-        every[:, :, :2] = np.pi - np.mod(np.pi - two, 2 * np.pi)  # (-pi, pi]
+        every[:, :, self._turning[:2]] = np.pi - np.mod(np.pi - two, 2 * np.pi)  # (-pi, pi]
         every[np.isnan(two).any(axis=2)] = np.nan
         return every if branches is None else every[np.arange(len(points)), branches][:, None]
+
+    def _never(self, heights: Array, directions: Array) -> Mask:
+        """Where there is no solution, whatever the elbow does, (n,)."""
+        off = np.abs(heights - self._height) > _OFF_PLANE
+        return np.asarray(off | ~(np.linalg.norm(directions - self._tool, axis=1) <= _TILT))
 
 
 class PlanarThree(PlanarTwo):

@@ -19,14 +19,16 @@ _GAIN = 1e-13  # m; a round that brings less is the last
 def farthest_reach(robot: Robot, shoulder: Array) -> float:
     """The farthest that the tip gets from a point (3,) on the first joint's axis, m.
 
-    From the best of many configurations, always the same ones, one joint after the other is turned
-    to where the tip is farthest: opposite to the point, as seen along the joint's axis.
+    Prismatic joints stand at zero. From the best of many configurations, always the same ones, one
+    joint after the other is turned to where the tip is farthest: opposite to the point, as seen
+    along the joint's axis.
     """
     tries = np.random.default_rng(0).uniform(-np.pi, np.pi, (_TRIES, robot.joints))
+    tries[:, robot.slides] = 0.0
     best = np.argsort(-_distances(robot, tries, shoulder), kind="stable")[:_CLIMBED]
     q, farthest = tries[best], 0.0
     for _ in range(_ROUNDS):
-        for joint in range(1, robot.joints):
+        for joint in robot.turning[1:]:
             poses = forward(robot, q)
             axis, start = poses.axis[:, joint], poses.origin[:, joint + 1]
             moved, away = poses.tip - start, start - shoulder

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pinocchio as pin
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount
 from cellcolor.frontend.arm.body import Body, StandIn
@@ -31,14 +31,16 @@ _WAY_OUT = (
 
 @dataclass(frozen=True)
 class Robot:
-    """Revolute joints in a row, a tool, and what collides. The world frame is the root link.
+    """Joints in a row, a tool, and what collides. The world frame is the root link.
 
     Attributes:
         placement: (joints, 4, 4) fixed pose of each joint frame in the one before it.
         axis: (joints, 3) unit axis of each joint in its own frame.
-        lower, upper: (joints,) joint limits in rad, infinite for continuous joints.
-        velocity: (joints,) limits in rad/s, NaN where the file has none.
-        effort: (joints,) torque limits in N m, NaN where the file has none.
+        slides: (joints,) which joints are prismatic; the others turn.
+        lower, upper: (joints,) joint limits in rad, infinite for continuous joints; in m of
+            prismatic ones.
+        velocity: (joints,) limits in rad/s or m/s, NaN where the file has none.
+        effort: (joints,) limits of torques in N m or forces in N, NaN where the file has none.
         mass: (joints,) mass that each joint's frame carries, in kg; fixed links and tool included.
         center: (joints, 3) its center of mass in that frame, m.
         tip: (4, 4) pose of the tool tip in the frame of the last joint; the tool works along +z.
@@ -56,6 +58,7 @@ class Robot:
     files: tuple[Path, Path]
     placement: Array
     axis: Array
+    slides: Mask
     lower: Array
     upper: Array
     velocity: Array
@@ -78,6 +81,11 @@ class Robot:
         return len(self.axis)
 
     @property
+    def turning(self) -> Index:
+        """The joints that are not prismatic."""
+        return np.flatnonzero(~self.slides)
+
+    @property
     def has_solids(self) -> bool:
         """Whether bodies with flat faces are among the collision shapes."""
         return any(body.solid is not None for body in self.bodies)
@@ -95,6 +103,7 @@ def load_robot(
     shapes: Shapes | None = None,
     may_touch: tuple[tuple[str, str], ...] = (),
     force: bool = True,
+    prismatic: int = 0,
 ) -> Robot:
     """Put the tool on the arm's flange, both from files or as they have been read.
 
@@ -105,11 +114,12 @@ def load_robot(
         shapes: how meshes collide; as hulls without it.
         may_touch: pairs of links that are not tested against each other.
         force: whether forces are asked for, so that masses and efforts have to be known.
+        prismatic: how many of the joints are prismatic.
 
     Raises:
         InputError: a fault in either URDF (see :mod:`cellcolor.frontend.arm.urdf`), no such tip
-            link, not so many joints between base and tip, one there that follows another or is
-            prismatic, one elsewhere that moves, a mesh that cannot be found or read, or
+            link, not so many joints of either kind between base and tip, one there that follows
+            another, one elsewhere that moves, a mesh that cannot be found or read, or
             Pinocchio read other collision shapes than the file has.
     """
     arm, tool = (given if isinstance(given, Urdf) else load_urdf(given) for given in (arm, tool))
@@ -124,7 +134,7 @@ def load_robot(
     if tip_link != tool.root and tip_link not in tool.parent:
         raise InputError(str(tool_file), f"link[{tip_link}]", "the tip link is not in the tool")
     whole = mount(arm, flange_link, tool, *mounted)
-    _check_chain(whole, arm, tool, tip_link, joints)
+    _check_chain(whole, arm, tool, tip_link, (joints - prismatic, prismatic))
     if force and whole.weightless:
         fault = whole.weightless[0]
         places = {f"link[{link}].inertial" for link in (tool.root, *tool.parent)}
@@ -145,6 +155,7 @@ def load_robot(
         files=(arm_file, tool_file),
         placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, joints + 1)]),
         axis=_axes(model),
+        slides=np.array([whole.kinds[name] == PRISMATIC for name in names], dtype=bool),
         lower=np.where(endless, -np.inf, model.lowerPositionLimit),
         upper=np.where(endless, np.inf, model.upperPositionLimit),
         velocity=_where_given(model.velocityLimit),
@@ -162,8 +173,10 @@ def load_robot(
     )
 
 
-def _check_chain(whole: Urdf, arm: Urdf, tool: Urdf, tip_link: str, joints: int) -> None:
-    """Hold the tree to so many turning joints in a row to the tip, and none elsewhere."""
+def _check_chain(
+    whole: Urdf, arm: Urdf, tool: Urdf, tip_link: str, wanted: tuple[int, int]
+) -> None:
+    """Hold the tree to so many turning and prismatic joints in a row to the tip, none elsewhere."""
     in_chain = [whole.joint_above[link] for link in whole.chain(tip_link)[1:]]
 
     def refuse(name: str, key: str, message: str) -> InputError:
@@ -179,13 +192,25 @@ def _check_chain(whole: Urdf, arm: Urdf, tool: Urdf, tip_link: str, joints: int)
             raise refuse(name, "", f"a tool may not move: {_FIX.format(name)}")
         if name not in in_chain:
             raise refuse(name, "", f"it moves beside the chain to the tip: {_FIX.format(name)}")
-        if kind == PRISMATIC:
-            message = f"prismatic, only turning joints may move: {_FIX.format(name)}"
+        if kind == PRISMATIC and not wanted[1]:
+            message = (
+                "prismatic, in arms of this family only turning joints may move: "
+                f"{_FIX.format(name)}, or name one whose arms have such a joint, as 'scara'"
+            )
             raise refuse(name, ".type", message)
-    if len(whole.kinds) != joints:
-        message = f"needs {joints} revolute joints in a row to the tip, has {len(whole.kinds)}"
-        way_out = _WAY_OUT if len(whole.kinds) > joints else ""
+    sliding = sum(kind == PRISMATIC for kind in whole.kinds.values())
+    found = len(whole.kinds) - sliding, sliding
+    if found != wanted:
+        having = _counted(found) if max(wanted[1], sliding) else str(found[0])
+        message = f"needs {_counted(wanted)} in a row to the tip, has {having}"
+        way_out = _WAY_OUT if sum(found) > sum(wanted) else ""
         raise InputError(str(arm.file), "robot", message + way_out)
+
+
+def _counted(joints: tuple[int, int]) -> str:
+    """Numbers of turning and prismatic joints in words."""
+    turning, sliding = joints
+    return f"{turning} revolute joints" + (f" and {sliding} prismatic" if sliding else "")
 
 
 def _where_given(limits: Array) -> Array:
@@ -210,11 +235,16 @@ def _listed(names: tuple[str, ...]) -> str:
 
 
 def _axes(model: pin.Model) -> Array:
-    """Each joint's axis in its own frame, from the world Jacobian at zero."""
+    """Each joint's axis in its own frame, from the world Jacobian at zero.
+
+    A prismatic joint turns nothing, and all that it carries moves along its axis.
+    """
     data = model.createData()
     zero = np.zeros(model.nv)
     jacobian = pin.computeJointJacobians(model, data, zero)
-    return np.array([data.oMi[i + 1].rotation.T @ jacobian[3:, i] for i in range(model.nv)])
+    linear, angular = jacobian[:3], jacobian[3:]
+    axes = np.where(np.abs(angular).max(axis=0) > 0, angular, linear)
+    return np.array([data.oMi[i + 1].rotation.T @ axes[:, i] for i in range(model.nv)])
 
 
 def _tested_pairs(

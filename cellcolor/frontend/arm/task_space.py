@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = ["FREE_IN_PLANE", "FREE_TURN", "GIVEN_IN_PLANE", "GIVEN_TURN", "TaskSpace"]
+__all__ = [
+    "FREE_IN_PLANE",
+    "FREE_TURN",
+    "GIVEN_IN_PLANE",
+    "GIVEN_TURN",
+    "POSITION",
+    "POSITION_AND_TURN",
+    "TaskSpace",
+]
 
 
 @dataclass(frozen=True)
@@ -15,29 +23,31 @@ class TaskSpace:
         joints: how many joints answer, counted from the base; those after them move nothing that is
             asked for.
         turn: whether the turn of the tool about its axis is asked for, one row in rad.
-        plane: whether the tip moves in a plane across the tool, two rows in m, and the tool's
-            direction is what it is. Otherwise the tip's position is asked for, three rows in m, and
-            the tool's direction, two rows in rad.
+        lengths: how many rows are lengths: 3 for the tip's position, 2 where the tip moves in a
+            plane across the tool.
+        direction: whether the tool's direction is asked for, two rows in rad. Otherwise it is what
+            it is.
     """
 
     joints: int
     turn: bool
-    plane: bool = False
+    lengths: int = 3
+    direction: bool = True
 
     @property
     def dimensions(self) -> int:
         """How many rows there are."""
-        return (2 if self.plane else 5) + self.turn
+        return self.lengths + 2 * self.direction + self.turn
 
     @property
     def most_joints(self) -> int:
         """How many an arm may have: one more may turn the tool about its axis, and is locked."""
-        return self.joints if self.turn or self.plane else self.joints + 1
+        return self.joints + 1 if self.direction and not self.turn else self.joints
 
     @property
-    def lengths(self) -> int:
-        """How many of them are lengths."""
-        return 2 if self.plane else 3
+    def plane(self) -> bool:
+        """Whether the tip moves in a plane across the tool."""
+        return self.lengths == 2
 
 
 FREE_TURN = TaskSpace(joints=5, turn=False)
@@ -46,8 +56,14 @@ FREE_TURN = TaskSpace(joints=5, turn=False)
 GIVEN_TURN = TaskSpace(joints=6, turn=True)
 """The tool's whole pose is asked for."""
 
-FREE_IN_PLANE = TaskSpace(joints=2, turn=False, plane=True)
+POSITION = TaskSpace(joints=3, turn=False, direction=False)
+"""Where the tip is, and nothing else."""
+
+POSITION_AND_TURN = TaskSpace(joints=4, turn=True, direction=False)
+"""Where the tip is, and how the tool is turned about its own axis, whose direction is fixed."""
+
+FREE_IN_PLANE = TaskSpace(joints=2, turn=False, lengths=2, direction=False)
 """Where the tip is in a plane, and nothing else."""
 
-GIVEN_IN_PLANE = TaskSpace(joints=3, turn=True, plane=True)
+GIVEN_IN_PLANE = TaskSpace(joints=3, turn=True, lengths=2, direction=False)
 """The same, and the tool's turn."""

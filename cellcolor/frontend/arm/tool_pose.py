@@ -1,4 +1,7 @@
-"""Whole poses of the tool, reduced to those of a tool on the last joint's axis."""
+"""Whole poses of the tool, reduced to those of a tool on the last joint's axis.
+
+The last joint is the last one that turns: a prismatic one behind it only moves the tool along.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +29,7 @@ def wrist_of(robot: Robot) -> Array:
     If they are parallel, where it is nearest to the tip.
     """
     poses = pose_at_zero(robot)
-    axes, origins = poses.axis[0], poses.origin[0, 1:]
+    axes, origins = poses.axis[0, robot.turning], poses.origin[0, 1:][robot.turning]
     if np.linalg.norm(np.cross(axes[-1], axes[-2])) < _PARALLEL:
         return np.asarray(origins[-1] + ((poses.tip[0] - origins[-1]) @ axes[-1]) * axes[-1])
     return nearest_points(origins[-1], axes[-1], origins[-2], axes[-2])[0]
@@ -35,7 +38,7 @@ def wrist_of(robot: Robot) -> Array:
 def shoulder_of(robot: Robot) -> Array:
     """The same of the first axis and the second."""
     poses = pose_at_zero(robot)
-    axes, origins = poses.axis[0], poses.origin[0, 1:]
+    axes, origins = poses.axis[0, robot.turning], poses.origin[0, 1:][robot.turning]
     if np.linalg.norm(np.cross(axes[0], axes[1])) < _PARALLEL:
         return np.asarray(origins[0] + ((poses.tip[0] - origins[0]) @ axes[0]) * axes[0])
     return nearest_points(origins[0], axes[0], origins[1], axes[1])[0]
@@ -64,7 +67,7 @@ def on_last_axis(robot: Robot) -> Robot:
     Its z axis goes along the last axis, away from the wrist, to the true tip's side.
     """
     poses, wrist = pose_at_zero(robot), wrist_of(robot)
-    axis = poses.axis[0, -1]
+    axis = poses.axis[0, robot.turning[-1]]
     out = float((poses.tip[0] - wrist) @ axis)
     sense = -1.0 if out < 0 else 1.0
     foot = wrist + sense * max(abs(out), _LEAST) * axis
@@ -81,15 +84,18 @@ def with_last_joint(robot: Robot, configurations: Array, rotation: Array) -> Arr
     """Configurations (k, joints) with the last joint turned so that the frame behind it fits.
 
     Args:
-        configurations: in rad; their last joint is not looked at.
+        configurations: in rad; their last turning joint is not looked at.
         rotation: (k, 3, 3) the frame as it shall be; about the last axis it is turned to.
     """
-    found = configurations.copy()
-    found[:, -1] = 0.0
+    found, last = configurations.copy(), robot.turning[-1]
+    found[:, last] = 0.0
     poses = forward(robot, found)
-    across = _any_across(robot.axis[-1])
+    axis = robot.axis[last]
+    for placement in robot.placement[last + 1 :]:  # nothing turns behind it
+        axis = placement[:3, :3].T @ axis
+    across = _any_across(axis)
     have, wanted = turned(poses.rotation[:, -1], across), turned(rotation, across)
-    found[:, -1] = angle_about(poses.axis[:, -1], have, wanted)
+    found[:, last] = angle_about(poses.axis[:, last], have, wanted)
     return found
 
 

@@ -29,6 +29,8 @@ from cellcolor.frontend.setup import RobotFiles, Turn
 
 __all__ = ["TurnedKinematics"]
 
+_PARALLEL = 1e-6  # rad
+
 
 class TurnedKinematics(InverseKinematics):
     """Inverse kinematics of a point and a direction, where a rule adds the tool's turn.
@@ -53,6 +55,7 @@ class TurnedKinematics(InverseKinematics):
         if files.locked_joint_6_rad is not None:
             message = "no joint is locked with the tool's turn given (task.turn): leave it out"
             raise InputError(None, "robot.locked_joint_6_rad", message)
+        _check_slides(robot)
         self._robot, self.turn = robot, turn
         self._straight = on_last_axis(robot)
         # What the last joint is locked at does not matter: it is solved for afterwards.
@@ -87,6 +90,7 @@ class TurnedKinematics(InverseKinematics):
 
         See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
         """
+        directions = self.taken(directions)
         count, across = len(points), turn_at(self.turn, points, directions)
         rows = np.flatnonzero(~np.isnan(across[:, 0]))
         points, directions, across = points[rows], directions[rows], across[rows]
@@ -124,8 +128,13 @@ class TurnedKinematics(InverseKinematics):
         found[row, branch] = with_last_joint(self._robot, found[row, branch], rotation[row])
         return found
 
+    def taken(self, directions: Array) -> Array:
+        """Those of the arm's family."""
+        return self.own.taken(directions)
+
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """Those of the arm's family on all turns of the tool together."""
+        directions = self.taken(directions)
         across = turn_at(self.turn, points, directions)
         rows = np.flatnonzero(~np.isnan(across[:, 0]))
         every = [
@@ -146,6 +155,21 @@ class TurnedKinematics(InverseKinematics):
         rotation, origin = last_frames(self._robot, points, directions, across)
         tip = self._straight.tip
         return rotation, origin + rotation @ tip[:3, 3], rotation @ tip[:3, 2]
+
+
+def _check_slides(robot: Robot) -> None:
+    """Refuse a prismatic joint behind the last one that turns, unless it slides along its axis.
+
+    Otherwise no other tool stays on that axis.
+    """
+    poses, last = pose_at_zero(robot), robot.turning[-1] if len(robot.turning) else -1
+    if last < 0:
+        raise InputError(str(robot.files[0]), "robot", "no joint turns, so none can turn the tool")
+    for joint in range(last + 1, robot.joints):
+        if np.linalg.norm(np.cross(poses.axis[0, joint], poses.axis[0, last])) > _PARALLEL:
+            name = robot.joint_names[joint]
+            message = "slides across the last axis that turns, so the tool's turn cannot be given"
+            raise InputError(str(robot.files[0]), f"joint[{name}]", message)
 
 
 def _spread(found: Array, rows: NDArray[np.intp], count: int) -> Array:

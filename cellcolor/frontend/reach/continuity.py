@@ -31,7 +31,7 @@ __all__ = [
     "stays_in_limits",
 ]
 
-_ROUNDING = 1e-9  # rad; an angle on its limit is inside
+_ROUNDING = 1e-9  # rad, m; an angle on its limit is inside
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,12 @@ class Coloring:
 
 
 def stays_in_limits(
-    lower: Array, upper: Array, start: Array, lowest: Array, highest: Array
+    lower: Array,
+    upper: Array,
+    start: Array,
+    lowest: Array,
+    highest: Array,
+    slides: Mask | None = None,
 ) -> Mask:
     """Whether motions fit into the joint limits (joints,), turned by full circles where need be.
 
@@ -60,10 +65,15 @@ def stays_in_limits(
     Args:
         start: (..., joints) where the motions begin, rad.
         lowest, highest: (..., joints) how far each joint gets from there, at most and at least 0.
+        slides: (joints,) which joints are prismatic, in m; none without it.
     """
     circle = 2 * np.pi
     turns = np.ceil((lower - start - lowest) / circle - _ROUNDING)
-    return np.asarray((start + highest + circle * turns <= upper + _ROUNDING).all(axis=-1))
+    fits = start + highest + circle * turns <= upper + _ROUNDING
+    if slides is not None:
+        within = (start + lowest >= lower - _ROUNDING) & (start + highest <= upper + _ROUNDING)
+        fits = np.where(slides, within, fits)
+    return np.asarray(fits.all(axis=-1))
 
 
 def link(
@@ -82,7 +92,8 @@ def link(
     Args:
         edges: (k, 2) vertex indices.
         measure: what is a jump.
-        limits: lower and upper (joints,) of the joints in rad, which the motion has to keep.
+        limits: lower and upper (joints,) of the joints in rad, or in m, which the motion has to
+            keep.
         probe: see :data:`~cellcolor.frontend.reach.smooth.Probe`; called with points in between.
     """
     i, j = edges.T
@@ -101,7 +112,8 @@ def link(
     )
     smooth = motions.smooth
     if limits is not None:
-        smooth = smooth & stays_in_limits(*limits, start, motions.lowest, motions.highest)
+        moved = motions.lowest, motions.highest
+        smooth = smooth & stays_in_limits(*limits, start, *moved, measure.slides)
     linked[rows, branches] = smooth
     return linked
 

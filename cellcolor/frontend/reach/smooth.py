@@ -37,11 +37,22 @@ class Measure:
         policy: the bounds on steps.
         near_singular: task determinant from which on down steps are always looked into, m^3.
         lever: by so much a turn of the tool by one rad counts as a way, m.
+        slides: (joints,) which joints are prismatic; none without it.
+        reach: a prismatic joint that moves so far, in m, counts as one that turns by one rad.
     """
 
     policy: Continuity
     near_singular: float
     lever: float
+    slides: Mask | None = None
+    reach: float = 1.0
+
+    def step(self, first: Array, second: Array) -> Array:
+        """The largest movement of a joint between configurations (..., joints), in rad."""
+        if self.slides is None:
+            return joint_step(first, second)
+        way = np.abs(shorter_way(first, second, self.slides))
+        return np.asarray(np.where(self.slides, way / self.reach, way).max(axis=-1))
 
     def changes(self, lengths: Array, turns: Array, low: Array, high: Array) -> Array:
         """The change of the tool's pose (k,) in m on parts of edges, from where to where (0 to 1).
@@ -148,7 +159,7 @@ def follow_edges(
         """Keep what is settled, note jumps; what is open comes back in pieces."""
         row = steps.row
         change = measure.changes(lengths[row], turns[row], steps.low, steps.high)
-        step = joint_step(steps.first, steps.last)
+        step = measure.step(steps.first, steps.last)
         nearest = np.fmin(steps.first_determinant, steps.last_determinant)
         done = measure.settled(step, change, nearest)
         settled.append(steps.take(done))
@@ -167,7 +178,7 @@ def follow_edges(
         smooth[steps.row[np.isnan(at_middle)]] = False
         found = smooth[steps.row]
         open_ += sort(steps.take(found).halves(middle[found], joints[found], at_middle[found]))
-    return Motions(smooth, *_excursions(len(edges), settled))
+    return Motions(smooth, *_excursions(len(edges), settled, measure.slides))
 
 
 def _turned(turns: Array, way: Array) -> Array:
@@ -175,12 +186,17 @@ def _turned(turns: Array, way: Array) -> Array:
     return np.arctan2(way * np.sin(turns), 1 - way + way * np.cos(turns))
 
 
-def shorter_way(first: Array, second: Array) -> Array:
-    """How far each joint moves between configurations (..., joints), modulo 2 pi, in rad."""
-    return np.asarray(np.remainder(second - first + np.pi, 2 * np.pi) - np.pi)
+def shorter_way(first: Array, second: Array, slides: Mask | None = None) -> Array:
+    """How far each joint moves between configurations (..., joints), modulo 2 pi, in rad.
+
+    Args:
+        slides: (joints,) which joints are prismatic, in m and not modulo anything; none without it.
+    """
+    way = np.remainder(second - first + np.pi, 2 * np.pi) - np.pi
+    return np.asarray(way if slides is None else np.where(slides, second - first, way))
 
 
-def _excursions(count: int, settled: list[_Steps]) -> tuple[Array, Array]:
+def _excursions(count: int, settled: list[_Steps], slides: Mask | None) -> tuple[Array, Array]:
     """Lowest and highest angles (count, joints) on motions of settled steps, from 0 at the start.
 
     Args:
@@ -189,7 +205,7 @@ def _excursions(count: int, settled: list[_Steps]) -> tuple[Array, Array]:
     whole = settled[0]
     joints = whole.first.shape[1]
     lowest, highest = np.zeros((count, joints)), np.zeros((count, joints))
-    moved = shorter_way(whole.first, whole.last)
+    moved = shorter_way(whole.first, whole.last, slides)
     lowest[whole.row], highest[whole.row] = np.minimum(moved, 0.0), np.maximum(moved, 0.0)
     if not any(map(len, settled[1:])):
         return lowest, highest
@@ -198,7 +214,7 @@ def _excursions(count: int, settled: list[_Steps]) -> tuple[Array, Array]:
         for name in ("row", "low", "first", "last")
     )
     order = np.lexsort((low, row))
-    row, moved = row[order], shorter_way(first[order], last[order])
+    row, moved = row[order], shorter_way(first[order], last[order], slides)
     # Where each motion begins; a running total over all of them, less what was there before.
     start = np.flatnonzero(np.diff(row, prepend=-1))
     total = np.cumsum(moved, axis=0)

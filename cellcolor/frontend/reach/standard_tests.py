@@ -29,12 +29,13 @@ class JointLimits(StandardTest):
     """The configurations have been turned into the limits where that is possible."""
 
     name = "joint limits"
-    sentence = "no equivalent angle (modulo 360 degrees) inside the limits"
+    sentence = "no equivalent angle (modulo 360 degrees) inside the limits, or a slide outside them"
     constraint = "collision"
 
     def failed(self, postures: Postures) -> Mask:
-        """Those with a joint beyond its upper limit; none is below its lower one."""
-        beyond = postures.configurations > postures.workplace.robot.upper
+        """Those with a joint beyond its upper limit; only prismatic ones are below the lower."""
+        robot, joints = postures.workplace.robot, postures.configurations
+        beyond = (joints > robot.upper) | (robot.slides & (joints < robot.lower))
         return np.asarray(beyond.any(axis=1))
 
 

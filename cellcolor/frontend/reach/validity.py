@@ -85,7 +85,7 @@ class Verdicts:
 
 
 def turned_into_limits(robot: Robot, configurations: Array) -> Array:
-    """Turn joints by full circles into their limits.
+    """Turn joints by full circles into their limits; prismatic ones stay where they are.
 
     An angle inside its limits stays as it is; another one takes the smallest equivalent that is not
     below them, which is beyond them if none is inside.
@@ -93,7 +93,7 @@ def turned_into_limits(robot: Robot, configurations: Array) -> Array:
     circle = 2 * np.pi
     turned = configurations + circle * np.ceil((robot.lower - configurations) / circle)
     inside = (configurations >= robot.lower) & (configurations <= robot.upper)
-    return np.where(inside, configurations, turned)
+    return np.where(inside | robot.slides, configurations, turned)
 
 
 class Judge:
