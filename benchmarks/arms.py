@@ -5,8 +5,10 @@
 
 ``solutions`` compares the sets of all solutions, both ways and modulo full turns: of the poses of
 random configurations, and of a fiftieth as many near each kind of singularity, 1e-2, 1e-4, 1e-7 and
-0 rad from it. ``scenes`` builds and solves; ``benchmarks/motions.py SCENE`` plans motions on the
-same ones and judges them. Without names: all arms but the calibrated one, whose judge is another
+0 rad from it. Of the SCARA the other solver is Newton's method on Pinocchio's Jacobian from 16
+starts for each pose, and near singularities only lost ones are counted. ``scenes`` builds and
+solves; ``benchmarks/motions.py SCENE`` plans motions on the same ones and judges them. Without
+names: all arms but the calibrated one, whose judge is another
 (tests/frontend/arm/test_calibrated.py), and all scenes in instances/arms. docs/arms.md has what
 came out.
 """
@@ -25,11 +27,14 @@ sys.path.insert(0, str(TOP / "tests" / "support"))
 from cellcolor.deadline import Deadline  # noqa: E402
 from cellcolor.decomposition import decompose  # noqa: E402
 from cellcolor.frontend import build_surface  # noqa: E402
+from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics  # noqa: E402
+from cellcolor.frontend.prepared import prepare  # noqa: E402
 from cellcolor.frontend.setup import Setup  # noqa: E402
 from cellcolor.solvers.checked import solve  # noqa: E402
 from cellcolor.solvers.interface import Options  # noqa: E402
 
 ROBOTS, SCENES = TOP / "models" / "robots", TOP / "instances" / "arms"
+SCARA = "cobra600"
 OFF = (1e-2, 1e-4, 1e-7, 0.0)  # rad
 
 
@@ -51,6 +56,41 @@ def solutions(name: str, poses: int) -> str:
         f"| {name} | {found.poses} | {found.solutions} | {found.different} | {found.farthest:.0e} "
         f"| {sum(each.poses for each, _ in near)} | {sum(each.different for each, _ in near)} "
         f"| {sum(lost for _, lost in near)} |"
+    )
+
+
+def scara_solutions(name: str, poses: int) -> str:
+    """The same row of an arm whose solutions the tests find by Newton's method."""
+    from bent_tools import tip_frame, tip_frames
+    from scaras import configurations, distance, newton_solutions, sets_apart
+
+    prepared = prepare(TOP / "instances" / "planar" / f"{name}_pipe.toml")
+    robot, family = prepared.robot, prepared.kinematics
+    assert isinstance(family, TurnedKinematics)
+    q = configurations(robot, poses, 6)
+    count = different = lost = 0
+    farthest = 0.0
+    for row, ours in enumerate(family.solve_pose(*tip_frames(robot.model, q))):
+        starts = configurations(robot, 16, row)
+        apart = sets_apart(
+            robot, ours, newton_solutions(robot, tip_frame(robot.model, q[row]), starts)
+        )
+        count += len(ours)
+        different += apart > 1e-5
+        farthest = max(farthest, apart if apart <= 1e-5 else 0.0)
+    # A straight elbow and a folded one are all the singularities that there are.
+    near = configurations(robot, 8 * max(1, poses // 50), 29)
+    for number, rows in enumerate(np.array_split(np.arange(len(near)), 8)):
+        near[rows, 1] = OFF[number % 4] + np.pi * (number // 4)
+        for own, ours in zip(
+            near[rows], family.solve_pose(*tip_frames(robot.model, near[rows])), strict=True
+        ):
+            off = OFF[number % 4]
+            nearest = min((distance(robot, own, each) for each in ours), default=np.inf)
+            lost += off >= 1e-4 and not nearest <= 1e-9 / off
+    return (
+        f"| {name} | {poses} | {count} | {different} | {farthest:.0e} | {len(near)} | not asked "
+        f"| {lost} |"
     )
 
 
@@ -81,15 +121,16 @@ def main() -> None:
     if given.what == "solutions":
         setups = sorted(path.stem for path in ROBOTS.glob("*_polishing.toml"))
         names = [name.removesuffix("_polishing") for name in setups if "calibrated" not in name]
+        names.append(SCARA)
         print("| arm | poses | solutions | different | rad | near singular | different | lost |")
     else:
         names = sorted(path.stem for path in SCENES.glob("*.toml"))
         print("| scene | vertices | reached | given up | colors | cells | lift-offs | proof |")
     print("|---|" + "--:|" * 7)
     for name in given.name or names:
-        print(
-            solutions(name, given.poses) if given.what == "solutions" else scene(name), flush=True
-        )
+        asked = scara_solutions if name == SCARA else solutions
+        row = asked(name, given.poses) if given.what == "solutions" else scene(name)
+        print(row, flush=True)
 
 
 if __name__ == "__main__":

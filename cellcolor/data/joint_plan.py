@@ -24,8 +24,8 @@ class JointPlan:
     It has a name of its own because a bare array of joint angles could be a path as well.
 
     Attributes:
-        joints: (n, joints) float64, rad, modulo full circles; a row of NaN where the vertex gets no
-            contact.
+        joints: (n, joints) float64, rad, modulo full circles, in m of prismatic ones; a row of NaN
+            where the vertex gets no contact.
 
     Raises:
         InputError: that is no such array, or a row has some numbers and some NaN.
@@ -54,7 +54,7 @@ class ContactPath:
     A stretch of samples in contact is a **stroke**; between two strokes the tool is lifted off.
 
     Attributes:
-        joints: (k, joints) float64, rad, modulo full circles.
+        joints: (k, joints) float64, rad, modulo full circles, in m of prismatic ones.
         points: (k, 3) float64, where the tool's tip is, in the world, m, to be held against the
             joints; None leaves it to them.
         contact: (k,) whether the tool is on the surface; None for all along: one stroke.

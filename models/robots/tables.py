@@ -335,9 +335,10 @@ ARMS = {name: ur_arm(name, constants) for name, constants in UR.items()}
 COBRA_600 = Arm(
     about="Adept Cobra 600, a SCARA",
     sources=(
-        "lengths, height, stroke and ranges of joints 1 and 2: the public model of Corke's Robotics",
-        "  Toolbox (mdl_cobra600), not compared with a data sheet; joint 4 turns freely there",
-        "speeds, masses, centers of mass, efforts: not found, left out, so the force constraint is off",
+        "lengths, height, stroke and ranges of joints 1 and 2: the public model of Corke's",
+        "  Robotics Toolbox (mdl_cobra600), not compared with a data sheet; joint 4 has no range there",
+        "speeds, masses, centers of mass, efforts: not found, left out, so there is no force",
+        "  constraint",
         "capsules: estimated",
         "Frames: those of that model; from joint 3 on z points down.",
     ),

@@ -36,7 +36,17 @@ SCENES = [
     "ur3e_half_pipe",
     "ur5e_calibrated_wok",
     "ur5e_half_pipe",
+    "cobra600_pipe",
 ]
+
+
+def scene_of(name: str) -> Scene:
+    """A scene in which an arm hits itself, the ground and the part now and then."""
+    if name != "cobra600_pipe":
+        return Scene.read(TOP / "instances" / "arms" / f"{name}.toml")
+    scene = Scene.read(TOP / "instances" / "planar" / f"{name}.toml")
+    near = scene.moved(position_m=(0.2, 0.0, 0.04), rpy_rad=(0.5, 0.0, 0.0))
+    return near.varied(ground={"height_m": 0.25})
 
 
 def not_neighbors(world: World) -> set[frozenset[str]]:
@@ -56,8 +66,10 @@ def kinematics_apart(prepared: PreparedScene, joints: Array) -> float:
     tip = model.getFrameId(prepared.setup.robot.tip_link)
     poses = forward(robot, joints)
     linear, angular = tip_jacobian(poses)
-    measure = manipulability(linear)
-    determinant = task_determinant(linear, angular, poses.tool_axis)
+    task = robot.task
+    measure = manipulability(linear, task)
+    determinant = task_determinant(linear, angular, poses.tool_axis, task)
+    rows = [0, 1, 2, *([3, 4] if task.direction else []), *([5] if task.turn else [])]
     worst = 0.0
     for row, q in enumerate(joints):
         own = pin.computeFrameJacobian(model, data, q, tip, pin.ReferenceFrame.LOCAL)
@@ -67,8 +79,8 @@ def kinematics_apart(prepared: PreparedScene, joints: Array) -> float:
             (poses.tip[row], there.translation),
             (poses.tool_axis[row], there.rotation[:, 2]),
             (linear[row], there.rotation @ own[:3]),
-            (measure[row], np.linalg.svd(own[:3, :5], compute_uv=False).prod()),
-            (determinant[row], abs(np.linalg.det(own[:5, :5]))),
+            (measure[row], np.linalg.svd(own[:3, : task.joints], compute_uv=False).prod()),
+            (determinant[row], abs(np.linalg.det(own[rows, : task.joints]))),
         ):
             worst = max(worst, float(np.abs(ours - theirs).max()))
     return worst
@@ -76,10 +88,9 @@ def kinematics_apart(prepared: PreparedScene, joints: Array) -> float:
 
 def check(name: str, vertices: int, count: int) -> None:
     """Candidates that have a configuration, whatever became of them."""
-    scene = Scene.read(TOP / "instances" / "arms" / f"{name}.toml")
-    scene = scene.varied(object={"target_vertices": vertices})
+    scene = scene_of(name).varied(object={"target_vertices": vertices})
     prepared, built = prepare(scene), build_surface(scene)
-    flat = built.configurations.reshape(-1, 6)
+    flat = built.configurations.reshape(-1, prepared.robot.joints)
     solved = np.flatnonzero(built.reasons.ravel() != Reason.NO_SOLUTION)
     rows = np.random.default_rng(5).choice(solved, min(count, len(solved)), replace=False)
     joints = flat[rows]

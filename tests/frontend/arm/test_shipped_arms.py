@@ -47,7 +47,7 @@ def robot(name: str) -> Robot:
 
 def test_files_are_what_the_tables_give() -> None:
     written = MAKE.written()
-    assert set(TABLES.ARMS) == {*UR, *REACH, CALIBRATED}
+    assert set(TABLES.ARMS) == {*UR, *REACH, CALIBRATED, "cobra600"}
     for name, text in written.items():
         assert (ROBOTS / name).read_text(encoding="utf-8") == text, "run models/robots/make.py"
     handmade = {"ur5.urdf", "polishing_tool.urdf", "camera.urdf", "kr6_r700_z200.urdf"}
@@ -121,6 +121,25 @@ def test_at_home_nothing_is_hit_and_the_tool_looks_down(name: str) -> None:
     assert np.allclose(poses.tool_axis, [0, 0, -1], atol=0.01)
     assert np.hypot(*poses.tip[0, :2]) > 0.2  # away from the base
     assert arm.warnings == ()
+
+
+def test_the_scara_is_that_of_the_published_constants() -> None:
+    """By Denavit-Hartenberg: d1 387, a1 325, a2 275 mm; down from joint 3 on, 210 of stroke."""
+    arm = robot_of(Setup.read(ROBOTS / "cobra600_dispensing.toml"))
+    model, data = arm.model, arm.model.createData()
+    flange = model.getFrameId("flange")
+    for q in np.random.default_rng(1).uniform([-3, -3, 0, -3], [3, 3, 0.21, 3], (20, 4)):
+        pin.framesForwardKinematics(model, data, q)
+        place, around = data.oMf[flange].translation, q[0] + q[1]
+        x, y = (0.325 * f(q[0]) + 0.275 * f(around) for f in (np.cos, np.sin))
+        assert np.allclose(place, [x, y, 0.387 - q[2]], atol=1e-12)
+        turn = data.oMf[flange].rotation
+        assert np.allclose(turn[:, 2], [0, 0, -1])
+        ahead = around - q[3]  # down is the axis of joint 4
+        assert np.allclose(turn[:, 0], [np.cos(ahead), np.sin(ahead), 0])
+    degrees = np.degrees(arm.upper[:2])
+    assert degrees == pytest.approx([50, 88]) and arm.upper[2] == 0.21 and arm.lower[2] == 0.0
+    assert (arm.lower[:2] == -arm.upper[:2]).all() and arm.warnings == ()
 
 
 def test_the_calibrated_arm_differs_as_a_calibrated_arm_does() -> None:
