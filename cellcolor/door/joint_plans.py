@@ -82,7 +82,7 @@ def colors_of_joints(
         if color < 0:
             reasons[vertex] = found.why_none(row)
     violations = tuple(
-        _violation(surface.vertices[vertex], vertex, reasons[vertex], joints[vertex])
+        _violation(built, vertex, reasons[vertex], joints[vertex])
         for vertex in sorted(reasons)
     )
     return Plan(tuple(colors)), violations
@@ -124,7 +124,7 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
             reason = "no contact"
         else:
             reason = f"no contact nearer than {1000 * found.nearest[vertex]:.4g} mm"
-        violations.append(_violation(surface.vertices[vertex], vertex, reason, joints))
+        violations.append(_violation(built, vertex, reason, joints))
     misplaced = [
         f"points[{sample}]: the joints put the tip {1000 * by:.4g} mm from there"
         for sample, by in zip(found.misplaced.tolist(), found.misplaced_by.tolist(), strict=True)
@@ -133,10 +133,13 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
     return PathColors(path, coloring, tuple(violations), problems, len(reachable))
 
 
-def _violation(place: Array, vertex: int, reason: str, joints: Array | None) -> JointViolation:
-    x, y, z = place.tolist()
+def _violation(
+    built: BuildResult, vertex: int, reason: str, joints: Array | None
+) -> JointViolation:
+    x, y, z = built.surface.vertices[vertex].tolist()
     own = None if joints is None or np.isnan(joints).any() else tuple(joints.tolist())
-    return JointViolation(vertex, None, (x, y, z), reason, own)
+    slides = tuple(np.flatnonzero(built.robot.slides).tolist())
+    return JointViolation(vertex, None, (x, y, z), reason, own, slides)
 
 
 def _built(subject: Subject) -> BuildResult:

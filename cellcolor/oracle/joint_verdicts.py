@@ -19,15 +19,20 @@ class JointViolation(Violation):
 
     Attributes:
         joints: the configuration, rad; None if there is none.
+        prismatic: the joints whose positions are in m.
     """
 
     joints: tuple[float, ...] | None = None
+    prismatic: tuple[int, ...] = ()
 
     def __str__(self) -> str:
         place = ", ".join(f"{part:.3f}" for part in self.place)
         if self.joints is None:
             return f"vertex {self.vertex} at ({place}) m: {self.reason}"
-        joints = ", ".join(f"{angle:.4f}" for angle in self.joints)
+        joints = ", ".join(
+            f"{value:.4f}" + (" m" if joint in self.prismatic else "")
+            for joint, value in enumerate(self.joints)
+        )
         return f"vertex {self.vertex} at ({place}) m: {self.reason}; joints ({joints}) rad"
 
 

@@ -336,7 +336,7 @@ COBRA_600 = Arm(
     about="Adept Cobra 600, a SCARA",
     sources=(
         "lengths, height, stroke and ranges of joints 1 and 2: the public model of Corke's",
-        "  Robotics Toolbox (mdl_cobra600), not compared with a data sheet; joint 4 has no range there",
+        "  Robotics Toolbox (mdl_cobra600), not compared with a data sheet; joint 4 has none",
         "speeds, masses, centers of mass, efforts: not found, left out, so there is no force",
         "  constraint",
         "capsules: estimated",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pinocchio as pin
 import pytest
@@ -43,6 +45,8 @@ from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.setup import RobotFiles, Turn
+from cellcolor.motion.scene_painting import color_costs
+from cellcolor.pictures.arm import arm_at
 
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 SCENE = TOP / "instances" / "planar" / "cobra600_pipe.toml"
@@ -285,9 +289,24 @@ def test_a_plan_in_joints_is_held_to_meters(built: BuildResult) -> None:
     joints[vertex, 2] += 0.01
     off = oracle.judge(cellcolor.JointPlan(joints))
     assert len(off.problems) == 1 and "10 mm off the vertex" in off.problems[0]
+    assert re.search(r"joints \(\S+, \S+, \S+ m, \S+\) rad$", off.problems[0])
     joints[vertex, 2] += 2 * np.pi - 0.01
     far = oracle.judge(cellcolor.JointPlan(joints))
     assert "6283 mm off the vertex" in far.problems[0]
+
+
+def test_it_is_painted_and_drawn_with_its_units(built: BuildResult) -> None:
+    found = cellcolor.solve(built)
+    painted = cellcolor.paint(built, found)
+    verdict = cellcolor.Oracle(painted.surface).judge(painted.plan)
+    assert verdict.problems == () and verdict.segments == 2
+    costs = color_costs(built.robot, built.stages.candidates)
+    valid = built.reasons == VALID
+    assert (costs[~valid] == 1).all() and (costs[valid] < 1).all()
+    vertex, branch = np.argwhere(valid)[0]
+    q = built.configurations[vertex, branch]
+    picture = arm_at(built, int(vertex), int(branch))
+    assert any(f"{1000 * q[2]:.1f} mm" in note for note in picture.notes)
 
 
 # --- refusals -----------------------------------------------------------------------------------
