@@ -82,8 +82,7 @@ def colors_of_joints(
         if color < 0:
             reasons[vertex] = found.why_none(row)
     violations = tuple(
-        _violation(built, vertex, reasons[vertex], joints[vertex])
-        for vertex in sorted(reasons)
+        _violation(built, vertex, reasons[vertex], joints[vertex]) for vertex in sorted(reasons)
     )
     return Plan(tuple(colors)), violations
 
