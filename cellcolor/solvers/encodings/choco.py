@@ -35,6 +35,7 @@ from cellcolor.solvers.joined_chains import division_of_chains
 
 if TYPE_CHECKING:
     from pychoco.variables.boolvar import BoolVar
+    from pychoco.variables.intvar import IntVar
 
 __all__ = ["ChocoSolver"]
 
@@ -80,6 +81,7 @@ class Ranks:
         self.links_of: dict[int, list[BoolVar]] = defaultdict(list)
         for (one, _other), literal in self.link.items():
             self.links_of[problem.cell_of[one]].append(literal)
+        self.linked: dict[int, IntVar] = {}
         self.segments = model.intvar(fewest, len(problem.cells), "segments")
         for group in (
             self._one_color,
@@ -91,6 +93,7 @@ class Ranks:
             self._cover,
             self._most_links,
             self._homes,
+            self._hubs,
         ):
             group()
         model.sum(self.root + self.alone, "=", self.segments).post()
@@ -103,6 +106,11 @@ class Ranks:
         domains over degrees, of conflicts, of activity) is for the search without.
         """
         solver = self.model.get_solver()
+        # Every cell alone, a division that is always there, to begin with.
+        for literal in (*self.counted.values(), *self.up.values(), *self.link.values(), *self.root):
+            solver.add_hint(literal, 0)  # type: ignore[no-untyped-call]
+        for literal in self.alone:
+            solver.add_hint(literal, 1)  # type: ignore[no-untyped-call]
         if math.isfinite(seconds):
             solver.limit_time(f"{max(seconds, 0.001):.3f}s")
         while solver.solve():
@@ -165,7 +173,7 @@ class Ranks:
             alone, root = self.alone[number], self.root[number]
             counted = [self.counted[abs(dart)] for dart in cell]
             ups = [self.up[dart] for dart in cell]
-            taken = [*self.links_of[number], *ups, root]
+            taken = [*self.links_of.get(number, ()), *ups, root]
             signs = [1] * len(counted) + [-1] * len(taken)
             self.model.scalar([*counted, *taken], signs, "=", 0).post()
             self._clause([alone, *counted])
@@ -194,15 +202,50 @@ class Ranks:
         self.model.scalar([*self.root, *used], signs, ">=", 0).post()
 
     def _most_links(self) -> None:
+        """A number for the links of each cell, which has that bound in other sums as well."""
         for cell, links in self.links_of.items():
-            if links:
-                colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
-                self.model.sum(links, "<=", most_links(colors)).post()
+            colors = [self.problem.colors_of(dart) for dart in self.problem.cells[cell]]
+            self.linked[cell] = self.model.intvar(0, most_links(colors), f"links_{cell}")
+            self.model.sum(links, "=", self.linked[cell]).post()
 
     def _homes(self) -> None:
         for cell in sorted(self.problem.homes):
             for dart in self.problem.cells[cell]:
                 self._clause([], [self.up[dart]])
+
+    def _hubs(self) -> None:
+        """The segments once more, in one sum whose bounds say something about hubs.
+
+        A cell has alone + counted - links - 1 sub-cells beyond the first, 0 or more. Summed up over
+        all cells, segments = cells + those further sub-cells - joins. Let no two of some cells, the
+        hubs, be neighbors. Each join at a hub stands twice in the sum, once for the hub's darts and
+        once as a join, and drops out: what is left of a hub is alone - links - 1. CP-SAT finds this
+        in its linear relaxation; Choco looks at one constraint at a time.
+        """
+        problem = self.problem
+        hubs: set[int] = set()
+        for cell in sorted(range(len(problem.cells)), key=lambda cell: -len(problem.cells[cell])):
+            around = {problem.cell_of[-dart] for dart in problem.cells[cell]}
+            if around and hubs.isdisjoint(around) and cell not in around:
+                hubs.add(cell)
+        plus: list[IntVar] = []
+        minus: list[IntVar] = [self.segments]
+        for cell, darts in enumerate(problem.cells):
+            if cell in hubs:
+                plus.append(self.alone[cell])
+                minus += [self.linked[cell]] if cell in self.linked else []
+            elif darts:
+                further = self.model.intvar(0, len(darts), f"further_{cell}")
+                counted = [self.counted[abs(dart)] for dart in darts]
+                taken = [*self.links_of.get(cell, ()), further]
+                signs = [1] * (1 + len(counted)) + [-1] * len(taken)
+                self.model.scalar([self.alone[cell], *counted, *taken], signs, "=", 1).post()
+                plus.append(further)
+        for edge, literal in self.counted.items():
+            if hubs.isdisjoint((problem.cell_of[edge], problem.cell_of[-edge])):
+                minus.append(literal)
+        signs = [1] * len(plus) + [-1] * len(minus)
+        self.model.scalar([*plus, *minus], signs, "=", len(hubs) - len(problem.cells)).post()
 
 
 class ChocoSolver:
