@@ -102,8 +102,7 @@ class Ranks:
     def solutions(self, seconds: float) -> Iterator[dict[str, Any]]:
         """Better and better solutions, and last whether the best is proved; within a time limit.
 
-        Choco's own search for models with learning is left as it is. What else it has (weights of
-        domains over degrees, of conflicts, of activity) is for the search without.
+        Choco's own search for models with learning is left as it is.
         """
         solver = self.model.get_solver()
         # Every cell alone, a division that is always there, to begin with.

@@ -65,6 +65,16 @@ def test_hubs(seed: int, petals: int) -> None:
     assert minimum(instance) == hub_minimum([cell.colors[0] for cell in instance.cells[1:]])
 
 
+def test_a_hub_is_bounded_before_the_search() -> None:
+    """The petals less the most links of the hub, which the sum over all cells tells at once."""
+    instance = hub(0, 24, 4)
+    built = choco.Ranks(Problem.of(instance), 0)
+    fewest = hub_minimum([cell.colors[0] for cell in instance.cells[1:]])
+    built.model.arithm(built.segments, "<", fewest).post()
+    assert [*built.solutions(60.0)] == [{"proved": True}]
+    assert built.model.get_solver().get_fail_count() <= 1
+
+
 def test_in_a_process_of_its_own() -> None:
     """The whole way, and the checker has seen the division."""
     heard: list[int | None] = []
