@@ -10,7 +10,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex
-from cellcolor.data.wording import span
 from cellcolor.lab.library import INDEX, graph_of
 from cellcolor.pictures.thumbnail import thumbnail
 
@@ -54,8 +53,7 @@ def _row(entry: LibraryEntry) -> list[str]:
 
 def _span(known: KnownRange) -> str:
     """The range of the minimum, in bold where it is open."""
-    text = span(known.lower.value, None if known.upper is None else known.upper.value)
-    return text if known.proved else f"**{text}**"
+    return str(known) if known.proved else f"**{known}**"
 
 
 def _found(known: KnownRange) -> str:

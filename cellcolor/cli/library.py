@@ -14,8 +14,8 @@ from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import apart_from, print_json, say
 from cellcolor.data import instance as instance_file
 from cellcolor.data.imcgs import read_imcgs
-from cellcolor.data.library_index import KnownRange, LibraryEntry
-from cellcolor.data.wording import count, listed, span
+from cellcolor.data.library_index import LibraryEntry
+from cellcolor.data.wording import count, listed
 from cellcolor.door.shipped import library
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
@@ -64,14 +64,10 @@ def _row(entry: LibraryEntry) -> list[str]:
         entry.name,
         entry.family,
         *map(str, numbers),
-        _span(entry.paper),
-        _span(entry.surface),
+        str(entry.paper),
+        str(entry.surface),
         lower.kind if lower.verified else "",
     ]
-
-
-def _span(known: KnownRange) -> str:
-    return span(known.lower.value, None if known.upper is None else known.upper.value)
 
 
 def import_graph(source: Path, output: Path, corrections: Sequence[str]) -> Exit:
@@ -83,5 +79,5 @@ def import_graph(source: Path, output: Path, corrections: Sequence[str]) -> Exit
         say(f"wrote {output}: {str(instance).partition(': ')[2]}")
         for entry in library().index.entries:
             if entry.fingerprint == instance.sha256:
-                say(f"This is {entry.name} of the library: {_span(entry.paper)} segments.")
+                say(f"This is {entry.name} of the library: {entry.paper} segments.")
     return Exit.DONE

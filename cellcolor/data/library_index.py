@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from pydantic import ConfigDict, Field, NonNegativeInt, TypeAdapter
 
 from cellcolor.data.solution import SearchSpace
+from cellcolor.data.wording import span
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.validation import settle
@@ -100,6 +101,9 @@ class KnownRange:
         if self.upper is not None and self.lower.value > self.upper.value:
             message = f"is {self.lower.value}, above that of a division, {self.upper.value}"
             raise InputError(None, "lower.value", message)
+
+    def __str__(self) -> str:
+        return span(self.lower.value, None if self.upper is None else self.upper.value)
 
     @property
     def proved(self) -> bool:

@@ -113,9 +113,10 @@ def _folder() -> Path:
 def _files() -> dict[str, Path]:
     """Every shipped file by its name, and by its name without the ending."""
     found: dict[str, Path] = {}
+    index = index_file()
     for place in ("instances", "models/robots"):
         for path in sorted((_folder() / place).rglob("*")):
-            if path.suffix in (".toml", ".json") and path != index_file():
+            if path.suffix in (".toml", ".json") and path != index:
                 found[path.name] = path
     for ending in _ENDINGS:
         for name, path in list(found.items()):

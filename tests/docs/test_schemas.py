@@ -55,7 +55,7 @@ TABLES = {
     "scene": sorted(INSTANCES.rglob("*.toml")),
     "setup": sorted((INSTANCES.parent / "models").rglob("*.toml")),
 }
-SHIPPED = sorted(INSTANCES.rglob("*.json"))
+SHIPPED = sorted(path for path in INSTANCES.rglob("*.json") if path.parent.name != "solutions")
 
 Document = dict[str, Any]
 
