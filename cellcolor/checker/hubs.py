@@ -15,6 +15,7 @@ from collections.abc import Callable, Collection, Sequence
 
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.groups import Groups
+from cellcolor.checker.hubs_with_loops import most_links
 from cellcolor.data.instance import OUTSIDE, Instance
 
 __all__ = ["Hubs"]
@@ -55,30 +56,29 @@ class Hubs:
 
     def problem(self, hub: int) -> str:
         """Why the links of a cell do not limit what it saves; empty if they do."""
-        loops = [
-            live for loop in self._instance.cells[hub].loops if (live := self._live_darts(loop))
-        ]
-        if len(loops) > 1:
-            return f"hub {hub} has several loops with edges that can be joined"
-        for dart in loops[0] if loops else ():
+        loops = self._live_loops(hub)
+        for dart in (dart for loop in loops for dart in loop):
             beyond = self._instance.across(dart)
             if beyond in self._hubs:
                 return f"hub {hub} shares edge {abs(dart)} with a hub"
             others = [self._live_darts(loop) for loop in self._instance.cells[beyond].loops]
             if len(self._live(dart)) > 1 and sum(map(len, others)) > 1:
                 return f"edge {abs(dart)} of hub {hub} may be crossed more than once"
+            if len(self._live(dart)) > 1 and len(loops) > 1:
+                return f"edge {abs(dart)} of hub {hub} has several colors beside several loops"
         return ""
 
     def links(self, hub: int, count: Callable[[], None]) -> int:
-        """The most links that a cell can have.
+        """The most links that a cell can have, or more.
 
         Args:
             hub: the cell.
-            count: called once for each two darts that may be linked.
+            count: called once for each choice that is tried.
         """
-        darts = [
-            dart for loop in self._instance.cells[hub].loops for dart in self._live_darts(loop)
-        ]
+        loops = self._live_loops(hub)
+        if len(loops) > 1:
+            return most_links([[min(self._live(d)) for d in loop] for loop in loops], count)
+        darts = [dart for loop in loops for dart in loop]
         colors = [self._live(dart) for dart in darts]
         # most[i][j]: of the darts from i to j, j left out. chains[i, color][j]: the same if dart i
         # is in a sub-cell of that color.
@@ -109,3 +109,7 @@ class Hubs:
 
     def _live_darts(self, loop: Sequence[int]) -> list[int]:
         return [dart for dart in loop if self._live(dart)]
+
+    def _live_loops(self, cell: int) -> list[list[int]]:
+        found = map(self._live_darts, self._instance.cells[cell].loops)
+        return [live for live in found if live]

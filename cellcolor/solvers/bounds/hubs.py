@@ -6,17 +6,15 @@ more segments than it has links: connections between its edges in one color that
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
 
-import numpy as np
-
-from cellcolor.arrays import Index
 from cellcolor.data.instance import Instance
-from cellcolor.deadline import NEVER, Deadline
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import greedy_strangers
+from cellcolor.solvers.bounds.links import links_bound
 
-__all__ = ["HubBound", "hub_bound", "most_links"]
+__all__ = ["HubBound", "hub_bound", "joinable_colors"]
 
 FEWEST_DARTS = 4
 """Live darts of a hub; around a cell with fewer no two connections can cross."""
@@ -49,15 +47,20 @@ def hub_bound(instance: Instance, deadline: Deadline = NEVER) -> HubBound:
     """
     found = HubBound(0, cells=tuple(greedy_strangers(instance)))
     links, fewest = 0, len(found.cells)
-    live = {cell: loops[0] for cell, loops in enumerate(instance.live_loops) if len(loops) == 1}
-    hardest = sorted(live, key=lambda cell: -len(live[cell]))[:MOST_HUBS]
+    darts = [sum(map(len, loops)) for loops in instance.live_loops]
+    hardest = sorted(range(len(darts)), key=lambda cell: -darts[cell])[:MOST_HUBS]
     for cell in hardest:
-        darts = live[cell]
-        if deadline.over or len(darts) < FEWEST_DARTS:
+        if deadline.over or darts[cell] < FEWEST_DARTS:
             break
         if not _is_hub(instance, cell, found.hubs):
             continue
-        saved = links + most_links([frozenset(instance.joinable(dart)) for dart in darts])
+        try:
+            most = links_bound(joinable_colors(instance, cell), deadline)
+        except OutOfTime:
+            break
+        if most is None:
+            continue
+        saved = links + most
         hubs = (*found.hubs, cell)
         cells = greedy_strangers(instance, hubs)
         # One hub of several that share their petals may be of use only together with the others.
@@ -67,9 +70,16 @@ def hub_bound(instance: Instance, deadline: Deadline = NEVER) -> HubBound:
     return found
 
 
+def joinable_colors(instance: Instance, cell: int) -> list[list[frozenset[int]]]:
+    """The colors in which each live dart of a cell can be joined, loop by loop."""
+    return [
+        [frozenset(instance.joinable(dart)) for dart in loop] for loop in instance.live_loops[cell]
+    ]
+
+
 def _is_hub(instance: Instance, cell: int, hubs: Collection[int]) -> bool:
     """Whether every live edge of a cell is crossed once at most, and leads to none of the hubs."""
-    for dart in instance.live_loops[cell][0]:
+    for dart in (dart for loop in instance.live_loops[cell] for dart in loop):
         beyond = instance.across(dart)
         if beyond == cell or beyond in hubs:
             return False
@@ -77,28 +87,3 @@ def _is_hub(instance: Instance, cell: int, hubs: Collection[int]) -> bool:
         if not petal and len(instance.joinable(dart)) > 1:
             return False
     return True
-
-
-def most_links(colors: Sequence[frozenset[int]]) -> int:
-    """Most links between the darts of a list, in groups of one color that do not cross each other.
-
-    ``best[i, j]`` is that of the darts from i to j, j left out. Dart i is in no group with a later
-    one, or it is linked in some color to a next dart k, with everything between them by itself.
-
-    Args:
-        colors: those that each dart can be joined in, in cyclic order.
-    """
-    count = len(colors)
-    best = np.zeros((count + 1, count + 1), dtype=np.int64)
-    linked: dict[tuple[int, int], Index] = {}
-    for one in reversed(range(count)):
-        best[one] = best[one + 1]
-        for color in colors[one]:
-            found = best[one + 1].copy()
-            for other in range(one + 1, count):
-                if color in colors[other]:
-                    with_other = best[one + 1, other] + 1 + linked[other, color][other + 1 :]
-                    np.maximum(found[other + 1 :], with_other, out=found[other + 1 :])
-            linked[one, color] = found
-            np.maximum(best[one], found, out=best[one])
-    return int(best[0, count])

@@ -18,6 +18,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.bounds.hubs import HubBound, hub_bound
+from cellcolor.solvers.cpsat.hubs.division import divide_hubs
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, widened
 from cellcolor.solvers.cpsat.model.full import (
     LARGEST_MODEL,
@@ -106,7 +107,7 @@ class PartSearch:
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
         whole: Painting = [[Block(min(colors), set())] for colors in self._colors]
         self.best = graph, canonical(graph, whole)
-        self.segments = _segments(*self.best)
+        self.segments = len(segments_of(*self.best))
 
     @property
     def done(self) -> bool:
@@ -139,11 +140,14 @@ class PartSearch:
         self._offer(self.best[0], whole)
 
     def count_links(self, deadline: Deadline) -> None:
-        """A bound by what fits side by side in cells with many edges."""
+        """A bound by what fits side by side in cells with many edges, and a division like it."""
         found = hub_bound(self.instance, deadline)
         if found.value > self.surface_bound:
-            self.hubs = found
             self._raise(found.value)
+            self.hubs = found
+        if found.hubs:
+            whole = {cell: color for color, cells in self._planned for cell in cells}
+            self._offer(*divide_hubs(self._part, found.hubs, whole, self._options.seed, deadline))
 
     def route_plans(self, deadline: Deadline) -> None:
         """Divisions by routing what is planned; where nothing can be planned the bound rises."""
@@ -352,7 +356,7 @@ class PartSearch:
 
     def _offer(self, graph: DartGraph, painting: Painting) -> None:
         painting = canonical(graph, painting)
-        segments = _segments(graph, painting)
+        segments = len(segments_of(graph, painting))
         if segments < self.segments:
             self.segments = segments
             self.best = graph, painting
@@ -362,14 +366,11 @@ class PartSearch:
         if bound > self.bound:
             self.bound = bound
             self._report()
-        if for_surface:
-            self.surface_bound = max(self.surface_bound, bound)
+        if for_surface and bound > self.surface_bound:
+            self.surface_bound = bound
+            self.hubs = None
 
     def _watch(self, segments: int) -> None:
         # What the running model has found is not offered before it ends, but stays known.
         self._running = segments
         self._report()
-
-
-def _segments(graph: DartGraph, painting: Painting) -> int:
-    return len(segments_of(graph, painting))

@@ -11,8 +11,8 @@ from collections.abc import Callable, Sequence
 
 from ortools.sat.python import cp_model
 
-from cellcolor.solvers.bounds import hubs
 from cellcolor.solvers.bounds.cover import Region
+from cellcolor.solvers.bounds.links import best_grouping
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.variables import Variables
 
@@ -139,7 +139,8 @@ def most_links(
             for link in v.links(one, other)
         ]
         if found:
-            model.add(sum(found) <= hubs.most_links([graph.darts[dart].colors for dart in cell]))
+            most = best_grouping([graph.darts[dart].colors for dart in cell]).links
+            model.add(sum(found) <= most)
 
 
 def fixed_roots(graph: DartGraph, regions: Sequence[Region]) -> set[int]:

@@ -1,0 +1,1 @@
+"""Divisions of cells with many edges, made of the links that a bound counts (docs/routes.md)."""
