@@ -358,8 +358,7 @@ class PartSearch:
         painting = canonical(graph, painting)
         segments = len(segments_of(graph, painting))
         if segments < self.segments:
-            self.segments = segments
-            self.best = graph, painting
+            self.segments, self.best = segments, (graph, painting)
             self._report()
 
     def _raise(self, bound: int, for_surface: bool = True) -> None:

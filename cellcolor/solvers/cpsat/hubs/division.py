@@ -74,7 +74,7 @@ def divide_hubs(
                 block.darts.add(index[strand])
             if block.darts:
                 painting[hub].append(block)
-        painting[hub] = painting[hub] or [Block(min(instance.cells[hub].colors), set())]
+        painting[hub] = painting[hub] or [Block(own_areas[0].color, set())]
     return graph, painting
 
 
@@ -98,6 +98,6 @@ def _divided(
     seams = [seam for seam in part.seams if seam.cell == hub]
     areas, widths = lead_seams(loops, areas, seams)
     return (
-        [area for area in areas if len(area.darts) > 1],
+        [area for area in areas if len(area.darts) > 1] or areas[:1],
         [replace(seam, strands=width) for seam, width in zip(seams, widths, strict=True)],
     )
