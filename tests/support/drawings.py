@@ -44,14 +44,11 @@ def most_links_drawn(loops: Sequence[Sequence[int]]) -> int:
         loops: the color of each dart.
     """
     colors = [color for loop in loops for color in loop]
-    return max(
-        len(colors) - len(groups)
-        for groups in _groupings(colors)
-        if any(
-            len(loops) + len(groups) - len(colors) + walks == 2 * parts
-            for walks, parts in (walks_and_parts(loops, turned) for turned in _orders(groups))
-        )
-    )
+    for groups in sorted(_groupings(colors), key=len):
+        for walks, parts in (walks_and_parts(loops, turned) for turned in _orders(groups)):
+            if len(loops) + len(groups) - len(colors) + walks == 2 * parts:
+                return len(colors) - len(groups)
+    raise AssertionError("each dart by itself can always be drawn")
 
 
 def _groupings(colors: Sequence[int]) -> list[list[list[int]]]:

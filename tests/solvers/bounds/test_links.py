@@ -18,7 +18,9 @@ from cellcolor.solvers.bounds.links import Grouping, best_grouping, links_bound
 from cellcolor.solvers.cpsat.hubs.several_loops import many_links
 
 COLORS = st.frozensets(st.integers(0, 3), min_size=1, max_size=3)
-LOOPS = st.lists(st.lists(st.integers(0, 3), min_size=1, max_size=4), min_size=2, max_size=3)
+LOOPS = st.lists(
+    st.lists(st.integers(0, 3), min_size=1, max_size=4), min_size=2, max_size=3
+).filter(lambda loops: sum(map(len, loops)) <= 8)
 
 
 def check(grouping: Grouping, colors: Sequence[frozenset[int]]) -> None:
