@@ -1,7 +1,8 @@
-"""Solve one file with some constraint groups of the CP-SAT model: ``ablation.py FILE VARIANT S``.
+"""The CP-SAT model less one redundant constraint group at a time: ``benchmarks/ablation.py``.
 
-Prints the seconds that the proof took, or the gap that was left. Neither a first division nor a
-hint helps the search, so that only the groups make the difference.
+Prints the seconds that each proof took, or the gap that was left. Neither a first division nor a
+hint helps the search, so that only the groups make the difference. Each solve is a process of its
+own.
 """
 
 from __future__ import annotations
@@ -14,11 +15,22 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
+from cellcolor.lab.executors.alone import Limits, run_alone
+from cellcolor.lab.families import hub_grid
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.bounds.domination import drop_dominated
+from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, Group
 from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.full import full_model
+
+SHIPPED = Path(__file__).resolve().parents[1] / "instances"
+SUBJECTS = (
+    Instance.read(SHIPPED / "random" / "hub_24.json"),
+    LabelledSurface.read(SHIPPED / "random" / "blobs_0.surface.json"),
+    LabelledSurface.read(SHIPPED / "random" / "blobs_2.surface.json"),
+    LabelledSurface.read(SHIPPED / "scenes" / "feasibility" / "wok_obstacle_2000.surface.json"),
+    hub_grid(0, 2, 2, 4, 3),
+)
 
 
 def variants() -> dict[str, tuple[Group, ...]]:
@@ -30,13 +42,9 @@ def variants() -> dict[str, tuple[Group, ...]]:
     return found
 
 
-def main(file: Path, variant: str, seconds: float) -> str:
+def proof(instance: Instance, variant: str, seconds: float) -> str:
     """What the table shows."""
-    if file.name.endswith(".surface.json"):
-        instance = decompose(LabelledSurface.read(file))
-    else:
-        instance = Instance.read(file)
-    colors = drop_dominated(instance)
+    colors = drop_dominated(instance, left_out(instance))
     strands = {edge.id: 1 for edge in instance.edges}
     graph = dart_graph(instance, colors, strands, seams_of(instance, colors, strands, None))
     groups = DEFINING + variants()[variant]
@@ -51,5 +59,20 @@ def main(file: Path, variant: str, seconds: float) -> str:
     return f"{solver.best_objective_bound:.0f} to {best}"
 
 
+def main(seconds: float) -> None:
+    """Print the table."""
+    names = list(variants())
+    print(f"| instance | {' | '.join(names)} |\n|{'---|' * (len(names) + 1)}")
+    for subject in SUBJECTS:
+        instance = decompose(subject) if isinstance(subject, LabelledSurface) else subject
+        cells = []
+        for name in names:
+            ended = run_alone(proof, (instance, name, seconds), Limits(seconds + 60))
+            cells.append(ended.value or ended.error)
+        print(f"| {instance.name} | {' | '.join(cells)} |", flush=True)
+
+
 if __name__ == "__main__":
-    print(main(Path(sys.argv[1]), sys.argv[2], float(sys.argv[3])))
+    from ablation import proof  # by the name that other processes can import
+
+    main(float(sys.argv[1]) if sys.argv[1:] else 10.0)

@@ -1,17 +1,25 @@
 """Microseconds per candidate of the front end, against a straightforward loop, in one run.
 
-    python benchmarks/frontend_speed.py [SCENE.toml] [VERTICES] [SAMPLE]
+    python benchmarks/frontend_speed.py [SCENE.toml] [--vertices N …] [--sample N] [-o TABLE.csv]
 
 The loop takes one candidate at a time: Pinocchio for kinematics, Jacobian and gravity, python-fcl
 with objects built beforehand for collisions, the tests in the front end's order, and the first
-failure ends it. Inverse kinematics is not counted there. It runs on a random SAMPLE of the
-candidates; verdicts are compared. Build times are the best of three runs.
+failure ends it. Inverse kinematics is not counted there. It runs on a random sample of the
+candidates, and its time is that of all of them in proportion; verdicts are compared. Printed are
+the times of the best of three builds.
 """
 
 from __future__ import annotations
 
+import argparse
+import os
+import resource
+import shlex
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import nullcontext
+from dataclasses import replace
 from pathlib import Path
 
 import fcl
@@ -19,11 +27,22 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array
-from cellcolor.frontend import Scene, build_surface
-from cellcolor.frontend.contact.collision import body_shape
+from cellcolor.frontend import BuildResult, Scene, build_surface
+from cellcolor.frontend.contact.fcl_bodies import body_shape
 from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.lab.executors.alone import Ended
+from cellcolor.lab.runs.table import TableFile
+from cellcolor.lab.runs.timings import Timing, timing
 
-TOP = Path(__file__).parents[1]
+SCENE = Path(__file__).parents[1] / "instances" / "scenes" / "hemisphere_flat.toml"
+BUILDS = 3
+NOT_IN_THE_LOOP = (
+    "preparation",
+    "inverse kinematics",
+    "continuity",
+    "validity between vertices",
+    "colors and cracks",
+)
 
 
 class Loop:
@@ -118,23 +137,25 @@ class Loop:
         return "valid"
 
 
-def main(scene: Path, vertices: int, sample: int) -> None:
-    """Print the figures."""
+def measure(scene: Path, vertices: int, sample: int) -> Iterator[Timing]:
+    """Print the figures of one number of vertices; a row for each time."""
     varied = Scene.read(scene).varied(object={"target_vertices": vertices})
     runs = []
-    for _ in range(3):
-        started = time.perf_counter()
+    for repetition in range(BUILDS):
+        clocks = time.perf_counter(), time.process_time()
         result = build_surface(varied)
-        runs.append((time.perf_counter() - started, result))
+        ended = ended_since(clocks)
+        runs.append((ended.seconds, result))
+        size = len(result.reasons)
+        yield row("front end, whole build", "cellcolor", repetition, ended, size)
+        tests = Ended("done", seconds=tests_of(result), load=ended.load, peak_mb=ended.peak_mb)
+        yield row("front end, validity tests", "cellcolor", repetition, tests, size)
     prepared = prepare(varied)
     total, result = min(runs, key=lambda run: run[0])
     candidates = result.reasons.size
     print(f"{scene.stem}: {len(result.reasons)} vertices, {candidates} candidates, {total:.2f} s")
     for name, seconds in result.report.seconds.items():
         print(f"  {name:<26} {1e6 * seconds / candidates:7.2f} us a candidate  {seconds:6.2f} s")
-    later = ("preparation", "inverse kinematics", "continuity", "validity between vertices",
-             "colors and cracks")  # fmt: skip
-    tests = sum(s for name, s in result.report.seconds.items() if name not in later)
 
     loop = Loop(prepared)
     rows = np.random.default_rng(0).choice(candidates, min(sample, candidates), replace=False)
@@ -143,20 +164,58 @@ def main(scene: Path, vertices: int, sample: int) -> None:
         np.array(result.reason_names)[result.reasons.flat[rows]],
     )
     solved = expected != "no solution"
-    started = time.perf_counter()
+    clocks = time.perf_counter(), time.process_time()
     found = [loop(q) for q in joints[solved]]
-    spent = (time.perf_counter() - started) / len(rows)
+    ended = ended_since(clocks)
+    whole = candidates / len(rows)
+    ended = replace(ended, seconds=ended.seconds * whole, cpu_seconds=ended.cpu_seconds * whole)
+    yield row("front end, validity tests", "one candidate at a time", 0, ended, len(result.reasons))
     differ = sum(int(a != b) for a, b in zip(found, expected[solved], strict=True))
+    fast, slow = tests_of(result), ended.seconds
     print(
-        f"  all tests {1e6 * tests / candidates:.1f} us a candidate, loop {1e6 * spent:.1f} us:"
-        f" {spent * candidates / tests:.1f} times; {differ} of {len(found)} verdicts differ"
+        f"  all tests {1e6 * fast / candidates:.1f} us a candidate, loop"
+        f" {1e6 * slow / candidates:.1f} us:"
+        f" {slow / fast:.1f} times; {differ} of {len(found)} verdicts differ"
     )
+
+
+def tests_of(result: BuildResult) -> float:
+    """Seconds of the tests that the loop makes too."""
+    return sum(s for name, s in result.report.seconds.items() if name not in NOT_IN_THE_LOOP)
+
+
+def ended_since(clocks: tuple[float, float]) -> Ended:
+    """What this process has taken since both clocks were read."""
+    return Ended(
+        "done",
+        seconds=time.perf_counter() - clocks[0],
+        cpu_seconds=time.process_time() - clocks[1],
+        peak_mb=resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024,
+        load=os.getloadavg()[0],
+    )
+
+
+def row(subject: str, way: str, repetition: int, ended: Ended, vertices: int) -> Timing:
+    """One time as a row of a table."""
+    command = shlex.join(["python", "benchmarks/frontend_speed.py", *sys.argv[1:]])
+    return timing(subject, way, repetition, ended, command, vertices, "vertices")
+
+
+def main() -> None:
+    """Measure, print, and keep the rows."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("scene", nargs="?", type=Path, default=SCENE)
+    parser.add_argument("--vertices", nargs="+", type=int, default=[8000])
+    parser.add_argument("--sample", type=int, default=6000, help="candidates for the loop")
+    parser.add_argument("-o", "--output", type=Path, help="a table for cellcolor bench summary")
+    arguments = parser.parse_args()
+    output = arguments.output
+    with nullcontext() if output is None else TableFile(output, Timing) as table:
+        for vertices in arguments.vertices:
+            for one in measure(arguments.scene, vertices, arguments.sample):
+                if table is not None:
+                    table.append(one)
 
 
 if __name__ == "__main__":
-    given = sys.argv[1:]
-    main(
-        Path(given[0]) if given else TOP / "instances" / "scenes" / "hemisphere_flat.toml",
-        int(given[1]) if len(given) > 1 else 8000,
-        int(given[2]) if len(given) > 2 else 6000,
-    )
+    main()

@@ -31,6 +31,9 @@ from cellcolor.lab.runs.subjects import Subject, families_like, of_family, takin
 from cellcolor.lab.runs.sweep import Plan, Sweep
 from cellcolor.lab.runs.table import TableFile
 
+_LIBRARY = "library"
+"""Stands before the families of the library's graphs (docs/library.md)."""
+
 __all__ = ["Request", "command_line", "run_solvers"]
 
 _SHOWN = 60
@@ -120,10 +123,13 @@ def _make(
 
 
 def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Subject]:
-    """What an argument stands for: families, shipped files by a pattern, or a file."""
+    """What an argument stands for: families, the library, shipped files by a pattern, a file."""
     families = families_like(text)
     if families:
         yield from taking_turns([of_family(name, seeds) for name in families])
+        return
+    if text.partition("/")[0] == _LIBRARY and not Path(text).exists():
+        yield from taking_turns(_shipped_families(text))
         return
     patterned = any(letter in text for letter in "*?[") and not Path(text).exists()
     names = [name for name in library() if fnmatchcase(name, text)] if patterned else [text]
@@ -133,6 +139,20 @@ def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Subject]:
         file = find_file(name)
         family = file.resolve().parent.name
         yield Subject(family, None, str(file), partial(read_instance, file))
+
+
+def _shipped_families(pattern: str) -> list[list[Subject]]:
+    """The graphs of the library whose family, as ``library/family``, is like a pattern."""
+    wanted = f"{_LIBRARY}/*" if pattern == _LIBRARY else pattern
+    families: dict[str, list[Subject]] = {}
+    for entry in library().index.entries:
+        family = f"{_LIBRARY}/{entry.family}"
+        if entry.file is not None and fnmatchcase(family, wanted):
+            make = partial(read_instance, find_file(entry.name))
+            families.setdefault(family, []).append(Subject(family, None, entry.name, make))
+    if not families:
+        raise InputError(None, None, f"{pattern}: the library has no family like this")
+    return list(families.values())
 
 
 def _contestants(names: Sequence[str]) -> Iterator[Contestant]:

@@ -15,6 +15,7 @@ from commands import run
 from library import PAPER
 from plugins import install
 
+from cellcolor import library
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.table import read_table
 from cellcolor.lab.runs.timings import START_UP, Timing
@@ -89,6 +90,15 @@ class TestRun:
             )
             assert min(row.process_seconds, row.cpu_seconds, row.peak_mb) > 0
         assert found[1].solver_version.startswith("OR-Tools ") and found[1].workers == 1
+
+    def test_the_library(self, tmp_path: Path) -> None:
+        table = tmp_path / "t.csv"
+        assert run("bench", "run", "library/paper", "--solver", "dfs", "-o", table) == 0
+        entries = [entry for entry in library().index.entries if entry.family == "paper"]
+        assert [row.instance for row in rows(table)] == [entry.name for entry in entries]
+        for row, entry in zip(rows(table), entries, strict=True):
+            assert (row.family, row.sha256) == ("library/paper", entry.fingerprint)
+            assert entry.paper.upper is not None and row.segments == entry.paper.upper.value
 
     def test_families_take_turns_and_a_table_is_continued(
         self, tmp_path: Path, capsys: Capture
@@ -195,6 +205,7 @@ class TestRun:
         ("arguments", "message"),
         [
             (["nothing*"], "nothing*: no family and no shipped name is like this"),
+            (["library/none"], "library/none: the library has no family like this"),
             (["small", "--solver", "nobody"], "solver: there is no 'nobody'"),
             (["small", "--solver", "dfs@0"], "dfs@0: no number of workers after @"),
             (["small", "--seeds", "a-b"], "'a-b' is nothing like 0-9"),

@@ -126,9 +126,9 @@ def run(
 ) -> int:
     """Run solvers on instances, each solve in a process of its own.
 
-    FAMILY is a set of random families (small, medium, large, growing) or one family, such as
-    medium/thin; * stands for anything. Solvers that are not installed are left out. Exit code 1 if
-    two runs contradict each other.
+    FAMILY is a set of random families (small, medium, large, growing), the library of shipped
+    graphs (library) or one family, such as medium/thin; * stands for anything. Solvers that are
+    not installed are left out. Exit code 1 if two runs contradict each other.
     """
     from cellcolor.cli.bench_run import Request, run_solvers
 

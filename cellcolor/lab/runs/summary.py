@@ -49,7 +49,7 @@ def summary_of_timings(timings: Sequence[Timing]) -> Iterator[str]:
             "" if size is None else str(size),
             str(len(own)),
             f"{median(one.seconds for one in own):.3f}",
-            f"{median(one.cpu_seconds for one in own):.3f}",
+            _if_known(median(one.cpu_seconds for one in own)),
             f"{max(one.peak_mb for one in own):.0f}",
         ]
         for (subject, way, size), own in groups.items()
@@ -58,6 +58,11 @@ def summary_of_timings(timings: Sequence[Timing]) -> Iterator[str]:
     failed = [one for one in timings if one.status != "done"]
     for one in failed:
         yield f"\n{one.subject}, {one.way}: {one.status}."
+
+
+def _if_known(seconds: float) -> str:
+    """Of a part of a process the seconds of its processors are not known, and stand there as 0."""
+    return f"{seconds:.3f}" if seconds else ""
 
 
 def markdown_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Iterator[str]:
