@@ -95,8 +95,9 @@ class PreparedScene:
     def measure(self) -> Measure:
         """By what motions along mesh edges are measured."""
         near_singular = self.workplace.conditioning.near_singular_determinant
-        slides = self.robot.slides if self.robot.slides.any() else None
-        policy, own = self.setup.continuity, self.kinematics
+        policy, own, slides = self.setup.continuity, self.kinematics, self.robot.slides
+        if not slides.any():
+            return Measure(policy, near_singular, own.lever)
         return Measure(policy, near_singular, own.lever, slides, own.reach)
 
     @property
