@@ -1,8 +1,4 @@
-"""The library of scenes, robots, surfaces and instances that comes with the package, by name.
-
-In a repository it lies in the folders ``instances`` and ``models``; a wheel has the same two
-folders inside the package, so that the files' references to each other hold there as well.
-"""
+"""The library of scenes, robots, surfaces and instances that comes with the package, by name."""
 
 from __future__ import annotations
 
@@ -14,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from cellcolor.data.wording import count, span
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
+from cellcolor.files.shipped import shipped_folder
 
 if TYPE_CHECKING:
     from cellcolor.data.library_index import LibraryIndex
@@ -58,7 +55,7 @@ def library() -> Library:
 
 def index_file() -> Path:
     """The file of the index of the library's graphs."""
-    return _folder() / "instances" / _INDEX
+    return shipped_folder() / "instances" / _INDEX
 
 
 def find_file(source: str | os.PathLike[str]) -> Path:
@@ -103,19 +100,12 @@ def find_claim(source: str | os.PathLike[str]) -> Path:
     return find_file(source) if is_name else path_of(source)
 
 
-def _folder() -> Path:
-    """The folder that has ``instances`` and ``models``."""
-    package = Path(__file__).parents[1]
-    inside = package / "shipped"
-    return inside if inside.is_dir() else package.parent
-
-
 def _files() -> dict[str, Path]:
     """Every shipped file by its name, and by its name without the ending."""
     found: dict[str, Path] = {}
     index = index_file()
     for place in ("instances", "models/robots"):
-        for path in sorted((_folder() / place).rglob("*")):
+        for path in sorted((shipped_folder() / place).rglob("*")):
             if path.suffix in (".toml", ".json") and path != index:
                 found[path.name] = path
     for ending in _ENDINGS:

@@ -6,13 +6,16 @@ from cellcolor.cli.commands.library import import_, library
 from cellcolor.cli.commands.minimum import build, check, show, solve
 from cellcolor.cli.commands.motion import cover, paint, plan
 from cellcolor.cli.commands.parts import inspect, repair
+from cellcolor.cli.commands.portable import answer, export
 
 __all__ = [
+    "answer",
     "bench",
     "build",
     "cellcolor",
     "check",
     "cover",
+    "export",
     "import_",
     "inspect",
     "library",

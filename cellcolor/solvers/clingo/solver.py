@@ -1,6 +1,6 @@
 """The answer-set solver clingo as a :class:`cellcolor.solvers.interface.Solver`.
 
-The problem is stated in ``coloring.lp`` beside this module. This module writes an instance as facts
+The problem is stated in ``models/constraints/coloring.lp``. This module writes an instance as facts
 for that model, runs clingo, and reads the division off the last answer set.
 """
 
@@ -8,22 +8,26 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from importlib.metadata import version
-from importlib.resources import files
 from importlib.util import find_spec
 from math import comb
 from typing import TYPE_CHECKING
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, number_segments
+from cellcolor.data.solution import Division
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError, SolverMissing, TooLarge
+from cellcolor.files.shipped import shipped_folder
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+from cellcolor.solvers.joined_chains import division_of_chains
 
 if TYPE_CHECKING:
     from clingo import Model, Symbol
 
 __all__ = ["ClingoSolver", "asp_facts"]
+
+MODEL = shipped_folder() / "models" / "constraints" / "coloring.lp"
+"""The answer set program."""
 
 _OPTIONS = ("--opt-strategy=usc,stratify", "--parallel-mode=2")
 """Two threads that search core-guided and stratified: of what was tried, the quickest."""
@@ -77,7 +81,7 @@ class ClingoSolver:
         if deadline.over:
             return Answer(None, (), ())
         control = Control(list(_OPTIONS))
-        control.load(str(files(__package__).joinpath("coloring.lp")))
+        control.load(str(MODEL))
         control.add("base", [], facts)
         control.ground([("base", [])])
         found: list[tuple[int, Sequence[Symbol]]] = []
@@ -140,46 +144,10 @@ def asp_facts(instance: Instance) -> str:
 
 
 def _division(instance: Instance, symbols: Sequence[Symbol]) -> Division:
-    """The division that an answer set describes: its sub-cells are chains of linked darts.
-
-    In the model the sub-cells of a segment form a tree: it does not join an edge that would close a
-    circle of them. In a division such an edge has to be joined, because it has the same color on
-    both sides (docs/semantics.md, section 3, rule 5). So every dart that the model left unjoined is
-    given to the sub-cell before it in cyclic order, and its edge is joined if the dart on the other
-    side then has the same, joinable color. That makes no new segment.
-
-    A sub-cell is named here by its first dart and its color. The first dart is 0 for the one
-    sub-cell of a cell without joined darts.
-    """
+    """The division that an answer set describes."""
     color: dict[int, int] = {}
     after: dict[int, int] = {}
     for symbol in symbols:
         first, second = (argument.number for argument in symbol.arguments)
-        if symbol.name == "joined":
-            color[first] = second
-        else:
-            after[first] = second
-    start = {dart: dart for dart in after}  # the first dart of the chain that a dart is in
-    shown: dict[int, tuple[int, int]] = {}  # the sub-cell that each live dart is given to
-    for cell in instance.cells:
-        live = [dart for loop in instance.live_loops[cell.id] for dart in loop]
-        for dart in live:
-            if dart in after:
-                start[after[dart]] = start[dart]
-        own = (0, cell.colors[0])
-        joined = [dart for dart in live if abs(dart) in color]
-        if joined:
-            own = start.get(joined[-1], joined[-1]), color[abs(joined[-1])]
-        for dart in live:
-            if abs(dart) in color:
-                own = start.get(dart, dart), color[abs(dart)]
-            shown[dart] = own
-    blocks: list[list[tuple[int, list[int]]]] = []
-    for cell in instance.cells:
-        found: dict[tuple[int, int], list[int]] = {}
-        for dart in (dart for loop in cell.loops for dart in loop if dart in shown):
-            own, other = shown[dart], shown[-dart]
-            if own[1] == other[1] and own[1] in instance.joinable(dart):
-                found.setdefault(own, []).append(dart)
-        blocks.append([(own[1], darts) for own, darts in found.items()] or [(cell.colors[0], [])])
-    return number_segments(blocks)
+        (color if symbol.name == "joined" else after)[first] = second
+    return division_of_chains(instance, color, after)
