@@ -48,7 +48,9 @@ class Child:
                 stderr=self._errors,
                 encoding="utf-8",
                 errors="replace",
-                start_new_session=True,  # so that Ctrl-C reaches it by way of us only
+                # Ctrl-C reaches it by way of us only. It stays in the session, by which who watches
+                # this process finds and kills all that belongs to it.
+                process_group=0 if os.name == "posix" else None,
             )
         except OSError as error:
             self._errors.close()

@@ -52,8 +52,10 @@ def others(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
 
 @pytest.fixture(params=OWN_NAMES)
 def name(request: pytest.FixtureRequest) -> str:
-    if request.param in ("clingo", "choco"):
-        pytest.importorskip("clingo" if request.param == "clingo" else "pychoco")
+    try:
+        make_solver(request.param)
+    except SolverMissing as error:
+        pytest.skip(str(error))
     return str(request.param)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
 from itertools import combinations
 
 __all__ = ["Literals", "Model"]
@@ -12,7 +11,6 @@ Literals = tuple[int, ...]
 """Variables, counted from 1; a negative number stands for the variable's negation."""
 
 
-@dataclass(slots=True)
 class Model:
     """Variables that are 0 or 1, and constraints on how many of some literals are true.
 
@@ -27,11 +25,12 @@ class Model:
         costs: variables of which as few as possible are to be true.
     """
 
-    names: list[tuple[str, *tuple[int, ...]]] = field(default_factory=lambda: [("",)])
-    at_least_one: list[Literals] = field(default_factory=list)
-    at_most_one: list[Literals] = field(default_factory=list)
-    exactly_one: list[Literals] = field(default_factory=list)
-    costs: list[int] = field(default_factory=list)
+    def __init__(self) -> None:
+        self.names: list[tuple[str, *tuple[int, ...]]] = [("",)]
+        self.at_least_one: list[Literals] = []
+        self.at_most_one: list[Literals] = []
+        self.exactly_one: list[Literals] = []
+        self.costs: list[int] = []
 
     @property
     def variables(self) -> int:
