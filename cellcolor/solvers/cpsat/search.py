@@ -286,6 +286,10 @@ class PartSearch:
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
         # Too small for a portfolio.
         solver = self._runner.solver(self._plan_effort, workers=1, seed=seed)
+        if self._plan_effort > PLAN_EFFORT:
+            # What takes effort are plans of many segments. As with covers (``bounds/cover``), it is
+            # the linear relaxation that tells that there are none. Small plans are quicker without.
+            solver.parameters.linearization_level = 2
         return solver, self._runner.solve(solver, model)
 
     def _route(

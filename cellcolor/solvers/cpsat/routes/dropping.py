@@ -17,7 +17,7 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Painting, canonical, colored_segments
 from cellcolor.solvers.cpsat.routes.routing import route
-from cellcolor.solvers.cpsat.routes.sectors import refined
+from cellcolor.solvers.cpsat.routes.sectors import RefinedGraph, refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, SegmentPlan
 
 __all__ = ["drop_segments"]
@@ -52,7 +52,7 @@ def drop_segments(
     """
     chance = random.Random(seed)
     region_of = {(region[0], cell): region for region in regions for cell in region[1]}
-    ways = {rings: refined(graph, rings) for rings in set(RINGS)}
+    ways: dict[int, RefinedGraph] = {}
 
     def planned(painting: Painting) -> list[PlannedSegment]:
         return [
@@ -68,8 +68,13 @@ def drop_segments(
         if kept is None:
             continue
         plan = _each_cell_once(kept, len(graph.lists), chance)
-        way = ways[chance.choice(RINGS)]
-        changed = canonical(graph, route(way, plan, ROUNDS, chance.randrange(2**20), deadline))
+        rings = chance.choice(RINGS)
+        if rings not in ways:
+            ways[rings] = refined(graph, rings)
+        painting = route(ways[rings], plan, ROUNDS, chance.randrange(2**20), deadline)
+        if deadline.over:
+            return
+        changed = canonical(graph, painting)
         found = planned(changed)
         if len(found) <= len(segments):
             segments = found
