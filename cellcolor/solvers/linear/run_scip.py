@@ -15,6 +15,7 @@ def main(file: str, seconds: str, seed: str) -> None:
     model = Model()
     model.hideOutput()
     model.setParam("randomization/randomseedshift", int(seed))
+    model.setParam("limits/memory", 3500.0)  # MB
     if seconds != "inf":
         model.setParam("limits/time", float(seconds))
     model.readProblem(file, extension="mps")
