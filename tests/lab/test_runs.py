@@ -176,6 +176,13 @@ class TestSummary:
         assert "In no family does anybody prove more minima than cp-sat." in text
         assert "Open: 1 instance" in text and "| f, seed 3 | 4 | 3 (cp-sat) | 2 (cp-sat) |" in text
 
+    def test_only_what_all_have_tried_is_compared(self) -> None:
+        text = self.text(times("cp-sat", 1.0, 2.0) + times("x", 1.0))
+        assert "1 run left out" in text and "| f | 1/1 | 1/1 |" in text
+        assert "| f | 2/2 | 1/1 |" in self.text(
+            [*times("cp-sat", 1.0, 2.0), *(replace(r, sha256="b" * 64) for r in times("x", 1.0))]
+        )
+
     def test_where_others_win(self) -> None:
         text = self.text(times("cp-sat", None) + times("x", 1.0))
         assert "More minima than cp-sat:\n\n- f: x 1, cp-sat 0" in text

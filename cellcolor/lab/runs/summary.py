@@ -9,7 +9,14 @@ from statistics import median
 from cellcolor.data.wording import count
 from cellcolor.lab.runs.agreement import compared, disagreements
 from cellcolor.lab.runs.row import FINISHED, Row
-from cellcolor.lab.runs.statistics import by, contestants_of, median_seconds, par2, strongest
+from cellcolor.lab.runs.statistics import (
+    by,
+    common,
+    contestants_of,
+    median_seconds,
+    par2,
+    strongest,
+)
 from cellcolor.lab.runs.timings import Timing
 
 __all__ = ["markdown_table", "summary_of_runs", "summary_of_timings"]
@@ -28,6 +35,10 @@ def summary_of_runs(rows: Sequence[Row]) -> Iterator[str]:
     yield from _agreement(rows)
     for (space, limit), own in by(rows, lambda row: (row.search_space, row.limit)).items():
         yield from ("", f"## Search space {space}, {limit:g} s", "")
+        own, left_out = _comparable(own)
+        if left_out:
+            yield f"{count(left_out, 'run')} left out: not every solver has been tried there."
+            yield ""
         yield from _by_family(own, "Minima proved, of runs", _solved)
         yield from ("", *_by_family(own, "Seconds, median", _median))
         yield from ("", *_by_family(own, "PAR2, seconds", lambda runs: _number(par2(runs))))
@@ -105,6 +116,12 @@ def _agreement(rows: Sequence[Row]) -> Iterator[str]:
     yield f"**{count(len(wrong), 'contradiction')}:**"
     yield ""
     yield from (f"- {line}" for line in wrong)
+
+
+def _comparable(rows: list[Row]) -> tuple[list[Row], int]:
+    """The runs on what everybody has tried, and how many others there are; all if nothing is."""
+    same = common(rows)
+    return (same, len(rows) - len(same)) if same else (rows, 0)
 
 
 def _by_family(
