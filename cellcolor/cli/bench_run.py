@@ -27,8 +27,8 @@ from cellcolor.lab.runs.agreement import disagreements
 from cellcolor.lab.runs.contestants import Contestant, contestant
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.statistics import by, contestants_of, median_seconds
-from cellcolor.lab.runs.subjects import Subject, families_like, of_family, taking_turns
-from cellcolor.lab.runs.sweep import Plan, Sweep
+from cellcolor.lab.runs.subjects import Specimen, families_like, of_family, taking_turns
+from cellcolor.lab.runs.sweep import Experiment, Sweep
 from cellcolor.lab.runs.table import TableFile
 
 _LIBRARY = "library"
@@ -63,7 +63,7 @@ def run_solvers(request: Request, output: Path | None) -> Exit:
     contestants = list(_contestants(request.solvers))
     if not contestants:
         return Exit.BAD_INPUT
-    plan = Plan(
+    plan = Experiment(
         subjects,
         contestants,
         request.limits,
@@ -75,9 +75,9 @@ def run_solvers(request: Request, output: Path | None) -> Exit:
     table: AbstractContextManager[TableFile[Row] | None] = (
         nullcontext() if output is None else TableFile(output, Row)
     )
-    bad: list[Subject] = []
+    bad: list[Specimen] = []
 
-    def tell(subject: Subject, error: CellcolorError) -> None:
+    def tell(subject: Specimen, error: CellcolorError) -> None:
         named = isinstance(error, InputError) and error.file
         complain(error if named else f"{subject.name}: {error}")
         bad.append(subject)
@@ -102,7 +102,7 @@ def command_line() -> str:
 
 
 def _make(
-    sweep: Sweep, plan: Plan, request: Request, file: TableFile[Row] | None, made: list[Row]
+    sweep: Sweep, plan: Experiment, request: Request, file: TableFile[Row] | None, made: list[Row]
 ) -> bool:
     """Make the runs; returns whether they were interrupted."""
     total = len(plan.subjects) * plan.runs_of_each
@@ -122,7 +122,7 @@ def _make(
     return False
 
 
-def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Subject]:
+def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Specimen]:
     """What an argument stands for: families, the library, shipped files by a pattern, a file."""
     families = families_like(text)
     if families:
@@ -138,18 +138,18 @@ def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Subject]:
     for name in names:
         file = find_file(name)
         family = file.resolve().parent.name
-        yield Subject(family, None, str(file), partial(read_instance, file))
+        yield Specimen(family, None, str(file), partial(read_instance, file))
 
 
-def _shipped_families(pattern: str) -> list[list[Subject]]:
+def _shipped_families(pattern: str) -> list[list[Specimen]]:
     """The graphs of the library whose family, as ``library/family``, is like a pattern."""
     wanted = f"{_LIBRARY}/*" if pattern == _LIBRARY else pattern
-    families: dict[str, list[Subject]] = {}
+    families: dict[str, list[Specimen]] = {}
     for entry in library().index.entries:
         family = f"{_LIBRARY}/{entry.family}"
         if entry.file is not None and fnmatchcase(family, wanted):
             make = partial(read_instance, find_file(entry.name))
-            families.setdefault(family, []).append(Subject(family, None, entry.name, make))
+            families.setdefault(family, []).append(Specimen(family, None, entry.name, make))
     if not families:
         raise InputError(None, None, f"{pattern}: the library has no family like this")
     return list(families.values())

@@ -26,12 +26,12 @@ _NOISE = 0.01
 """Seconds. What is quicker is not told apart: the clock, not the solver, would be measured."""
 
 Problem = tuple[str, str, float, int]
-K = TypeVar("K")
+_K = TypeVar("_K")
 
 
-def by(rows: Iterable[Row], key: Callable[[Row], K]) -> dict[K, list[Row]]:
+def by(rows: Iterable[Row], key: Callable[[Row], _K]) -> dict[_K, list[Row]]:
     """The rows of each kind, kinds in the order in which they come."""
-    found: dict[K, list[Row]] = defaultdict(list)
+    found: dict[_K, list[Row]] = defaultdict(list)
     for row in rows:
         found[key(row)].append(row)
     return dict(found)

@@ -12,7 +12,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
 
-__all__ = ["SETS", "Subject", "families_like", "family_names", "of_family", "taking_turns"]
+__all__ = ["SETS", "Specimen", "families_like", "family_names", "of_family", "taking_turns"]
 
 SETS: Mapping[str, Mapping[str, Family]] = {
     "small": SMALL,
@@ -24,7 +24,7 @@ SETS: Mapping[str, Mapping[str, Family]] = {
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class Specimen:
     """An instance that is made when its turn comes.
 
     Attributes:
@@ -51,16 +51,16 @@ def families_like(pattern: str) -> list[str]:
     return [name for name in family_names() if fnmatchcase(name, wanted)]
 
 
-def of_family(name: str, seeds: Iterable[int]) -> list[Subject]:
+def of_family(name: str, seeds: Iterable[int]) -> list[Specimen]:
     """Instances of a family, such as ``medium/thin``."""
     group, _, family = name.partition("/")
     recipe = SETS[group][family]
     return [
-        Subject(name, seed, f"{name}, seed {seed}", partial(_made, recipe, seed)) for seed in seeds
+        Specimen(name, seed, f"{name}, seed {seed}", partial(_made, recipe, seed)) for seed in seeds
     ]
 
 
-def taking_turns(groups: Sequence[Sequence[Subject]]) -> Iterator[Subject]:
+def taking_turns(groups: Sequence[Sequence[Specimen]]) -> Iterator[Specimen]:
     """The first of each group, then the second of each, …: a part of the runs is of use as well."""
     for turn in zip_longest(*groups):
         yield from (subject for subject in turn if subject is not None)

@@ -15,16 +15,16 @@ from cellcolor.lab.executors.work import Task, Workers, as_they_end
 from cellcolor.lab.runs.contestants import Contestant
 from cellcolor.lab.runs.once import Answered, Solve, task_of
 from cellcolor.lab.runs.row import Key, Row, Status
-from cellcolor.lab.runs.subjects import Subject
+from cellcolor.lab.runs.subjects import Specimen
 
-__all__ = ["Plan", "Sweep"]
+__all__ = ["Experiment", "Sweep"]
 
 _STATUS: dict[str, Status] = {"timeout": "timeout", "memory": "memory"}
 """Of runs that did not come back; all the others have crashed."""
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class Experiment:
     """Which runs to make.
 
     Attributes:
@@ -37,7 +37,7 @@ class Plan:
         command: that asked for them, for the record.
     """
 
-    subjects: Sequence[Subject]
+    subjects: Sequence[Specimen]
     contestants: Sequence[Contestant]
     limits: Sequence[float]
     repetitions: int
@@ -55,7 +55,7 @@ class Plan:
 class _Run:
     """One run that has been handed to a worker."""
 
-    subject: Subject
+    subject: Specimen
     instance: Instance
     contestant: Contestant
     how: Solve
@@ -75,9 +75,9 @@ class Sweep:
 
     def __init__(
         self,
-        plan: Plan,
+        plan: Experiment,
         done: Collection[Key],
-        complain: Callable[[Subject, CellcolorError], None],
+        complain: Callable[[Specimen, CellcolorError], None],
     ) -> None:
         self.skipped = 0
         self._plan = plan

@@ -20,7 +20,7 @@ from cellcolor.files.documents import validate
 
 __all__ = ["TableFile", "header_of", "read_table"]
 
-R = TypeVar("R")
+_R = TypeVar("_R")
 
 
 def header_of(path: str | PathLike[str], kinds: Sequence[type[Any]]) -> type[Any]:
@@ -40,7 +40,7 @@ def header_of(path: str | PathLike[str], kinds: Sequence[type[Any]]) -> type[Any
     raise InputError(str(path), "line 1", "is not the header of a table of results")
 
 
-def read_table(path: str | PathLike[str], kind: type[R]) -> list[R]:
+def read_table(path: str | PathLike[str], kind: type[_R]) -> list[_R]:
     """The rows of a file.
 
     A last line that does not end was cut off while it was written, and is left out.
@@ -61,7 +61,7 @@ def read_table(path: str | PathLike[str], kind: type[R]) -> list[R]:
     return _rows(text, str(path), kind)
 
 
-class TableFile(Generic[R]):
+class TableFile(Generic[_R]):
     """A table that is being written; a file that is there is continued.
 
     Every row is one line, and is handed to the system whole, so that a process that is killed
@@ -78,7 +78,7 @@ class TableFile(Generic[R]):
         InputError: the file cannot be used, is another table, or is being written to.
     """
 
-    def __init__(self, path: Path, kind: type[R]) -> None:
+    def __init__(self, path: Path, kind: type[_R]) -> None:
         try:
             self._handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
         except OSError as error:
@@ -89,7 +89,7 @@ class TableFile(Generic[R]):
             os.close(self._handle)
             raise
 
-    def _begin(self, path: str, kind: type[R]) -> list[R]:
+    def _begin(self, path: str, kind: type[_R]) -> list[_R]:
         """The rows that are there, in a file that ends with a whole line."""
         try:
             flock(self._handle, LOCK_EX | LOCK_NB)
@@ -110,7 +110,7 @@ class TableFile(Generic[R]):
             os.write(self._handle, header)
         return rows
 
-    def append(self, row: R) -> None:
+    def append(self, row: _R) -> None:
         """Add a row, at once.
 
         Raises:
@@ -124,7 +124,7 @@ class TableFile(Generic[R]):
             raise InputError(None, "output", error.strerror or "cannot be written") from error
         self.rows.append(row)
 
-    def __enter__(self) -> TableFile[R]:
+    def __enter__(self) -> TableFile[_R]:
         return self
 
     def __exit__(
@@ -153,7 +153,7 @@ def _text(value: object) -> str:
     return "" if value is None else " ".join(str(value).split())
 
 
-def _rows(text: str, path: str, kind: type[R]) -> list[R]:
+def _rows(text: str, path: str, kind: type[_R]) -> list[_R]:
     lines = text.split("\n")[:-1]
     columns = _columns(kind)
     if not lines or next(csv.reader(lines[:1])) != columns:
