@@ -202,7 +202,7 @@ class PartSearch:
             # a cell is painted whole, with 1 it has room for cutting paths.
             for rings in (0, 1):
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
-            if self.done or not planner.find_partings(plan):
+            if self.done or not planner.find_conflicts(plan):
                 return plan
 
     def drop_segments(self, deadline: Deadline) -> None:

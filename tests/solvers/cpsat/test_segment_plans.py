@@ -36,14 +36,14 @@ def planner_of(instance: Instance) -> Planner:
 
 
 def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
-    """The fewest segments for which there is a plan without conflicts."""
+    """The fewest segments for which there is a plan without conflicts and tangles."""
     planner = planner_of(instance)
     segments = set_cover(instance).bound
     while True:
         plan = planner.plan(segments, 0)
         if plan is None:
             segments += 1
-        elif not planner.find_partings(plan):
+        elif not planner.find_conflicts(plan):
             return segments, plan
 
 

@@ -8,7 +8,7 @@ with so many either (docs/bounds.md, "Segment plans").
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 
@@ -19,6 +19,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.conflicts import Parting, RegionPair, Side
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.bounds.tangles import Tangle, Tangles
 from cellcolor.solvers.cpsat.model_runs import SolveWithSeed
 
 __all__ = ["PlannedSegment", "Planner", "SegmentPlan", "Undecided"]
@@ -48,6 +49,10 @@ MOST_PARTED, MOST_PARTED_THOROUGHLY = 2_000, 200_000
 gives up: around a cell with many petals, which are cells with a single live dart, nearly every two
 segments are in conflict, and there counting links and the full model have the better bounds."""
 
+MOST_TANGLED = 20_000
+"""The most literals in the clauses that keep segments from tangles; with more the planner gives
+up."""
+
 MOST_PARTINGS = 200
 """How many are looked for in a plan before the next plan is made that heeds them."""
 
@@ -56,6 +61,8 @@ MOST_STARTS = 5
 does not show that the segment crosses another."""
 
 _Touched = dict[tuple[int, int], dict[int, cp_model.IntVar]]
+_Touches = Callable[[int, int, Iterable[int]], cp_model.IntVar]
+"""The literal that a segment, by region and copy, touches one of some merged cells."""
 
 
 class Undecided(Exception):
@@ -63,7 +70,7 @@ class Undecided(Exception):
 
 
 class Planner:
-    """Plans for an instance, with the partings found so far (docs/bounds.md, "Conflicts").
+    """Plans for an instance, with the partings and tangles found so far (docs/bounds.md).
 
     Args:
         instance: the topological graph.
@@ -100,12 +107,14 @@ class Planner:
         self._pairs: dict[tuple[int, int], RegionPair] = {}
         self._partings: dict[tuple[int, int], list[Parting]] = {}
         self._looked_at: set[tuple[tuple[int, int], int, int]] = set()
+        self._surface: Tangles | None = None
+        self._tangles: list[Tangle] = []
         self._last: dict[tuple[int, int], set[int]] = {
             (self._number[region], 0): set() for region in cover
         }
 
     def plan(self, segments: int, seed: int, thoroughly: bool = False) -> SegmentPlan | None:
-        """A plan with exactly so many segments that heeds all partings found so far.
+        """A plan with exactly so many segments that heeds all partings and tangles found so far.
 
         Args:
             segments: how many, the smallest cover or more.
@@ -123,13 +132,17 @@ class Planner:
         parted = [parting for partings in self._partings.values() for parting in partings]
         if copies**2 * sum(2 + len(parting.groups) for parting in parted) > most:
             raise Undecided
+        if sum(t.groups * copies ** len(t.segments) for t in self._tangles) > MOST_TANGLED:
+            raise Undecided
         kinds = self._kinds()
         if copies * sum(len(set(own.values())) for own in kinds) > MOST_LITERALS:
             raise Undecided
         model = cp_model.CpModel()
         in_use, touched = self._add_segments(model, segments, kinds)
+        touches = self._touches(model, touched, kinds)
         for one, other in self._partings:
-            self._add_partings(model, touched, kinds, one, other)
+            self._add_partings(model, touches, copies, one, other)
+        self._add_tangles(model, touches, copies)
         if seed:
             # Left to themselves, other seeds find the same plan again.
             chance = random.Random(seed)
@@ -154,6 +167,14 @@ class Planner:
             for parting in partings:
                 yield self._regions[one], self._regions[other], parting
 
+    def find_conflicts(self, plan: SegmentPlan) -> bool:
+        """Look for segments of a plan that cannot all be drawn; whether there are any.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        return self.find_partings(plan) or self._find_tangles(plan)
+
     def find_partings(self, plan: SegmentPlan) -> bool:
         """Look for segments of a plan that would cross; whether there are any.
 
@@ -161,6 +182,15 @@ class Planner:
             OutOfTime: the deadline came first.
         """
         return any(self._find(plan, every) for every in (False, True))
+
+    def _find_tangles(self, plan: SegmentPlan) -> bool:
+        """Look for segments that fit two at a time only."""
+        if self._surface is None:
+            self._surface = Tangles(self._merged, self._regions)
+        touching = [(self._number[s.region], tuple(sorted(self._held(s.cells)))) for s in plan]
+        found = self._surface.find(touching, self._deadline)
+        self._tangles += found
+        return bool(found)
 
     def _find(self, plan: SegmentPlan, every: bool) -> bool:
         """Look at curves from one merged cell of each segment, or from every one of a few."""
@@ -212,14 +242,19 @@ class Planner:
                     yield parting
 
     def _kinds(self) -> list[dict[int, int]]:
-        """Of each region the merged cells that its partings name, and the first of their kind.
+        """Of each region the merged cells that partings or tangles name, the first of their kind.
 
         Merged cells that are ends of the same partings, and in the same groups, are of one kind: a
-        segment that touches one of them may touch all. Those that no parting names any segment of
+        segment that touches one of them may touch all. Those that none names any segment of
         the region can touch, so that nothing has to be decided about them.
         """
         places: list[dict[int, list[int]]] = [{} for _ in self._regions]
         number = 0
+        for region, groups in (own for tangle in self._tangles for own in tangle.segments):
+            for merged_cells in groups:
+                number += 1
+                for merged_cell in merged_cells:
+                    places[region].setdefault(merged_cell, []).append(number)
         for (one, other), partings in self._partings.items():
             for parting in partings:
                 ends = ((one, (end,)) for end in parting.ends)
@@ -271,32 +306,45 @@ class Planner:
         model.add(sum(in_use.values()) == segments)
         return in_use, touched
 
-    def _add_partings(
-        self,
-        model: cp_model.CpModel,
-        touched: _Touched,
-        kinds: Sequence[dict[int, int]],
-        one: int,
-        other: int,
-    ) -> None:
-        """No segment of a region touches two groups that a segment of another one parts."""
+    def _touches(
+        self, model: cp_model.CpModel, touched: _Touched, kinds: Sequence[dict[int, int]]
+    ) -> _Touches:
         touching: dict[tuple[int, int, frozenset[int]], cp_model.IntVar] = {}
 
-        def touches(region: int, copy: int, cells: frozenset[int]) -> cp_model.IntVar:
-            key = region, copy, cells
+        def touches(region: int, copy: int, merged_cells: Iterable[int]) -> cp_model.IntVar:
+            key = region, copy, frozenset(kinds[region][m] for m in merged_cells)
             if key not in touching:
                 touching[key] = model.new_bool_var("")
-                for kind in sorted({kinds[region][m] for m in self._held(cells)}):
+                for kind in sorted(key[2]):
                     model.add_implication(touched[region, copy][kind], touching[key])
             return touching[key]
 
-        copies = {copy for _, copy in touched}
+        return touches
+
+    def _add_partings(
+        self, model: cp_model.CpModel, touches: _Touches, copies: int, one: int, other: int
+    ) -> None:
+        """No segment of a region touches two groups that a segment of another one parts."""
         for parting in self._partings[one, other]:
-            groups = [frozenset[int]().union(*group) for group in parting.groups]
-            for near, far in product(copies, repeat=2):
-                ends = [touches(one, near, merged_cell) for merged_cell in parting.ends]
+            own = [self._held(merged_cell) for merged_cell in parting.ends]
+            groups = [self._held(frozenset[int]().union(*group)) for group in parting.groups]
+            for near, far in product(range(copies), repeat=2):
+                ends = [touches(one, near, merged_cells) for merged_cells in own]
                 parted = [touches(other, far, group) for group in groups]
                 model.add(sum(parted) <= 1).only_enforce_if(ends)
+
+    def _add_tangles(self, model: cp_model.CpModel, touches: _Touches, copies: int) -> None:
+        """Some group of each tangle is not touched, whichever segments its regions get."""
+        for tangle in self._tangles:
+            regions = [region for region, _ in tangle.segments]
+            for chosen in product(range(copies), repeat=len(regions)):
+                segments = list(zip(regions, chosen, strict=True))
+                if len(set(segments)) == len(segments):  # none is beside itself
+                    model.add_bool_or(
+                        ~touches(*segment, group)
+                        for segment, (_, groups) in zip(segments, tangle.segments, strict=True)
+                        for group in groups
+                    )
 
     def _read(self, kinds: Sequence[dict[int, int]], seed: int) -> SegmentPlan:
         """The last plan, in which every cell is touched by one segment only."""

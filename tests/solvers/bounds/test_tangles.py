@@ -1,0 +1,206 @@
+"""Tangles: segments that fit two at a time only, against colorings of mesh vertices."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations, product
+
+import networkx as nx
+import pytest
+from exhaustive_minima import vertex_minimum
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from meshes import grid_faces, grid_points, surface
+
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
+from cellcolor.decomposition import decompose
+from cellcolor.solvers.bounds.cover import color_regions, set_cover
+from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.bounds.tangles import Tangles, Touching
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+
+RED, BLUE, GREEN = 0, 1, 2
+
+
+def room(*loops: Sequence[int]) -> Instance:
+    """A cell of all colors with petals round its loops, numbered from 1 as they come."""
+    petals = [color for loop in loops for color in loop]
+    numbers = iter(range(1, len(petals) + 1))
+    return Instance(
+        "room",
+        ("red", "blue", "green"),
+        (
+            Cell(0, (RED, BLUE, GREEN), tuple(tuple(next(numbers) for _ in lp) for lp in loops)),
+            *(Cell(n, (color,), ((-n,),)) for n, color in enumerate(petals, start=1)),
+        ),
+        tuple(Edge(n, 0, n) for n in range(1, len(petals) + 1)),
+    )
+
+
+def tangles_of(instance: Instance) -> Tangles:
+    own = {cell.id: frozenset(cell.colors) for cell in instance.cells}
+    return Tangles(merge_cells(instance, own), color_regions(instance))
+
+
+def all_petals(instance: Instance) -> list[Touching]:
+    """One segment for each color, that touches all of its petals."""
+    return [
+        (number, tuple(sorted(cells - {0})))
+        for number, (_, cells) in enumerate(color_regions(instance))
+    ]
+
+
+ISLAND_BETWEEN = room((RED, BLUE, RED, GREEN), (BLUE, GREEN))
+"""Red, from left to right, passes the island above, where blue comes from, or below, as green."""
+
+
+def test_three_segments_that_fit_two_at_a_time() -> None:
+    tangles = tangles_of(ISLAND_BETWEEN)
+    plan = all_petals(ISLAND_BETWEEN)
+    (found,) = tangles.find(plan, NEVER)
+    groups = {color: {frozenset(group) for group in own} for color, own in found.segments}
+    assert groups == {
+        RED: {frozenset({1}), frozenset({3})},
+        BLUE: {frozenset({2}), frozenset({5})},
+        GREEN: {frozenset({4}), frozenset({6})},
+    }
+    for two in combinations(plan, 2):
+        assert tangles.find(two, NEVER) == []
+
+
+def test_their_minimum_is_proved() -> None:
+    assert set_cover(ISLAND_BETWEEN).bound == 3
+    found = solve(ISLAND_BETWEEN, Options())
+    assert (found.segments, found.surface_lower_bound) == (4, 4)
+
+
+@pytest.mark.parametrize(
+    "instance",
+    [
+        # Red passes between the islands, or blue and green reach the one from the same side.
+        room((RED, BLUE, RED, GREEN), (BLUE,), (GREEN,)),
+        room((RED, RED, BLUE, GREEN), (BLUE, GREEN)),
+    ],
+)
+def test_no_tangle_where_all_can_be_drawn(instance: Instance) -> None:
+    assert tangles_of(instance).find(all_petals(instance), NEVER) == []
+    assert solve(instance, Options()).segments == 3
+
+
+def test_a_handle_leads_past() -> None:
+    """The same room with a handle: nothing is concluded where ways may cross oddly."""
+    island = ISLAND_BETWEEN
+    (outer, inner), *_ = [cell.loops for cell in island.cells]
+    with_handle = Instance(
+        "handle",
+        island.colors,
+        (Cell(0, (RED, BLUE, GREEN), ((*outer, 7), inner, (-7,))), *island.cells[1:]),
+        (*island.edges, Edge(7, 0, 0)),
+    )
+    assert tangles_of(with_handle).find(all_petals(with_handle), NEVER) == []
+
+
+def test_looking_for_tangles_ends_at_the_deadline() -> None:
+    with pytest.raises(OutOfTime):
+        tangles_of(ISLAND_BETWEEN).find(all_petals(ISLAND_BETWEEN), Deadline.after(0))
+
+
+@st.composite
+def rooms(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
+    """A frame in pieces of one color, and an island of two around which segments may pass."""
+    several = st.sampled_from([(RED, BLUE, GREEN)] * 8 + [(RED, BLUE), (RED, GREEN)])
+    rim = [(0, column) for column in range(width)]
+    rim += [(row, width - 1) for row in range(1, height)]
+    rim += [(height - 1, column) for column in reversed(range(width - 1))]
+    rim += [(row, 0) for row in reversed(range(1, height - 1))]
+    pieces = draw(st.permutations([RED, RED, BLUE, GREEN]))
+    pieces += draw(st.lists(st.sampled_from([RED, BLUE, GREEN]), max_size=2))
+    labels: dict[tuple[int, int], Sequence[int]] = {
+        place: (pieces[number * len(pieces) // len(rim)],) for number, place in enumerate(rim)
+    }
+    halves = draw(several), draw(several)
+    for row in range(1, height - 1):
+        for column in range(1, width - 1):
+            labels[row, column] = halves[2 * row > height]
+    row, column = draw(st.integers(2, height - 4)), draw(st.integers(2, width - 3))
+    upper, lower = draw(st.sampled_from([(BLUE, GREEN), (GREEN, BLUE), (RED, BLUE)]))
+    labels[row, column], labels[row + 1, column] = (upper,), (lower,)
+    return surface(
+        grid_points(width, height),
+        grid_faces(width, height),
+        [labels[row, column] for row in range(height) for column in range(width)],
+    )
+
+
+def can_be_drawn(mesh: LabelledSurface, segments: Sequence[tuple[int, list[set[int]]]]) -> bool:
+    """Whether disjoint sets of mesh vertices exist, each connected in its color from a first set of
+    vertices to a second: every path without shortcuts is tried for all but the last."""
+    mesh_graph: nx.Graph[int] = nx.Graph(mesh.left_of.keys())
+    graphs = [
+        mesh_graph.subgraph(v for v, own in enumerate(mesh.vertex_colors) if color in own)
+        for color, _ in segments
+    ]
+
+    def fits(number: int, used: set[int]) -> bool:
+        if any(
+            not any(
+                not part.isdisjoint(ends[0]) and not part.isdisjoint(ends[1])
+                for part in nx.connected_components(graph.subgraph(graph.nodes - used))
+            )
+            for graph, (_, ends) in list(zip(graphs, segments, strict=True))[number:]
+        ):
+            return False
+        if number == len(segments) - 1:
+            return True
+        graph, (start, end) = graphs[number], segments[number][1]
+
+        def extend(path: list[int]) -> bool:
+            if path[-1] in end:
+                return fits(number + 1, used | set(path))
+            near = set().union(*(graph[v] for v in path[:-1])) | set(path) | used
+            return any(extend([*path, v]) for v in sorted(graph[path[-1]]) if v not in near)
+
+        return any(extend([v]) for v in sorted(start - used))
+
+    return fits(0, set())
+
+
+@settings(max_examples=12, deadline=None)
+@given(mesh=rooms(6, 7), data=st.data())
+def test_what_is_tangled_cannot_be_drawn_on_the_mesh(
+    mesh: LabelledSurface, data: st.DataObject
+) -> None:
+    """Against trying all paths over mesh vertices, without cells, edges or parities."""
+    instance = decompose(mesh, "mesh")
+    assert instance.surface is not None
+    cell_of = instance.surface.vertex_cell
+    regions = color_regions(instance)
+    plan: list[Touching] = []
+    for number, (_, cells) in enumerate(regions):
+        alone = sorted(cell for cell in cells if len(instance.cells[cell].colors) == 1)
+        if len(alone) > 1:
+            two = st.lists(st.sampled_from(alone), min_size=2, max_size=2, unique=True)
+            plan.append((number, tuple(data.draw(two))))
+    for tangle in tangles_of(instance).find(plan, NEVER):
+        groups = [[sorted(group) for group in own] for _, own in tangle.segments]
+        for chosen in product(*(product(*own) for own in groups)):
+            segments = [
+                (
+                    regions[region][0],
+                    [{v for v, c in enumerate(cell_of) if c == end} for end in ends],
+                )
+                for (region, _), ends in zip(tangle.segments, chosen, strict=True)
+            ]
+            assert all(len(ends) == 2 for _, ends in segments)
+            assert not can_be_drawn(mesh, segments)
+
+
+@settings(max_examples=25, deadline=None)
+@given(mesh=rooms(6, 7))
+def test_the_bound_holds_on_the_mesh(mesh: LabelledSurface) -> None:
+    """Against a sweep over vertex colorings, which knows no cells."""
+    found = solve(decompose(mesh), Options())
+    assert found.surface_lower_bound <= vertex_minimum(mesh)
