@@ -238,7 +238,7 @@ def scheme(fig: Figure) -> None:
         fig, "one of the best divisions", "its scheme: states, and blocks of the middle cell"
     )
     example = flower()
-    division = example.best()
+    division = example.cut_beside(RED)
     hub_cell = max(division.cells or (), key=lambda c: len(example.graph.cells[c.id].colors))
     painting(left, example, division)
     joined = {abs(d): s for s in hub_cell.subcells for d in s.darts if isinstance(d, int)}
@@ -335,7 +335,7 @@ def hub(fig: Figure) -> None:
     )
     hub_and_petals(left, petals=False)
     example = flower()
-    painting(right, example, example.best())
+    painting(right, example, example.cut_beside(RED))
 
 
 @figure

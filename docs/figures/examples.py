@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -14,7 +15,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
 from cellcolor.decomposition.borders import ClosedMesh
 from cellcolor.pictures.by_segment import by_solution
-from cellcolor.solvers.checked import solve
+from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
 
 Array = NDArray[np.float64]
@@ -70,6 +71,15 @@ class Example:
         found = solve(self.graph, Options(space, strands, Deadline.after(10.0), workers=1))
         assert found.status == "optimal", found.status
         return found
+
+    def cut_beside(self, color: int) -> Solution:
+        """One of the best divisions in which a divided cell shows that color, the first listed."""
+        found = self.best()
+        for division in enumerate_schemes(self.graph, Options(), "dfs", found.segments):
+            cut = [sub for cell in division for sub in cell.subcells if len(cell.subcells) > 1]
+            if color in {sub.color for sub in cut}:
+                return replace(found, cells=division)
+        raise AssertionError(f"no best division cuts a cell beside {NAMES[color]}")
 
     def segments(self, division: Solution) -> NDArray[np.int64]:
         """The segment of each point in a division, as ``cellcolor show`` paints it."""

@@ -10,7 +10,7 @@ from typing import Any
 import networkx as nx
 import pytest
 from exhaustive_minima import minimum
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import INSTANCES
 from meshes import drawn
@@ -187,6 +187,7 @@ def test_whatever_is_changed_nothing_false_is_verified(name: str) -> None:
 def test_nothing_false_is_verified_on_random_graphs(seed: int, change: int) -> None:
     """Made-up conflicts and regions left out, against the minimum by trying all divisions."""
     instance = planar_graph(seed, 4, 8, 3)
+    assume(instance.most_live_darts <= 8)  # more take minutes to try all divisions of
     chance = random.Random(change)
     crossings = [
         {

@@ -229,6 +229,8 @@ class TestRun:
 
     def test_no_cluster_there(self, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(sys.modules, "distributed", None)
+        # Another test may have imported it before.
+        monkeypatch.delitem(sys.modules, "cellcolor.lab.executors.cluster", raising=False)
         assert run("bench", "run", RING, "--cluster", "tcp://127.0.0.1:9") == 2
         assert "--cluster: needs distributed: pip install 'fewest-lift-offs[cluster]'" in (
             capsys.readouterr().err

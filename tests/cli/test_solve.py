@@ -183,7 +183,7 @@ class TestSolve:
         ("instance", "options"),
         [
             # What is found first has more segments than the proof will leave.
-            (INSTANCES / "random" / "hub_44.json", []),
+            (INSTANCES / "hard" / "hub_grid_5x5x3.json", []),
             (INSTANCES / "random" / "hub_24.json", ["--solver", "dfs"]),
         ],
         ids=["cp-sat", "dfs"],

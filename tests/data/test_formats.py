@@ -65,7 +65,14 @@ def test_written_is_what_was_read(kind: type[Kind]) -> None:
     assert json.loads(kind.from_document(KINDS[kind]).to_json()) == KINDS[kind]
 
 
-@pytest.mark.parametrize("path", sorted(INSTANCES.rglob("*.json")), ids=lambda path: path.name)
+GRAPHS = [
+    path
+    for path in sorted(INSTANCES.rglob("*.json"))
+    if path.name != "index.json" and not path.name.endswith(".solution.json")
+]
+
+
+@pytest.mark.parametrize("path", GRAPHS, ids=lambda path: path.name)
 def test_library_files_are_as_written(path: Path) -> None:
     """The library holds the text that the package itself writes, so that fingerprints agree."""
     text = path.read_text(encoding="utf-8")

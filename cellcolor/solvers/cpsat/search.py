@@ -61,6 +61,9 @@ FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
 be routed takes a few."""
 
+FEW_DARTS = 10
+"""The live darts of a cell up to which planning comes before counting links."""
+
 ATTEMPTS = 3
 """Plans to route before the full model has to decide."""
 
@@ -139,8 +142,17 @@ class PartSearch:
         whole: Painting = [[Block(color_of[c.id], set())] for c in self.instance.cells]
         self._offer(self.best[0], whole)
 
-    def count_links(self, deadline: Deadline) -> None:
-        """A bound by what fits side by side in cells with many edges, and a division like it."""
+    def count_links(self, deadline: Deadline, *, before_plans: bool) -> None:
+        """A bound by what fits side by side in cells with many edges, and a division like it.
+
+        Args:
+            deadline: when to end.
+            before_plans: whether nothing has been planned yet. That is the time for cells with more
+                than ``FEW_DARTS`` live darts. For others it comes after plans, which are quick
+                there, and whose conflicts have four areas that can be drawn.
+        """
+        if before_plans != (self.instance.most_live_darts > FEW_DARTS):
+            return
         found = hub_bound(self.instance, deadline)
         if found.value > self.surface_bound:
             self._raise(found.value)

@@ -175,8 +175,9 @@ class _Search:
             return [PartSearch.cover, PartSearch.solve_model]
         return [
             PartSearch.cover,
-            lambda part, deadline: part.count_links(deadline.share(1 / 4)),
+            lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=True),
             lambda part, deadline: part.route_plans(deadline.share(1 / 2)),
+            lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=False),
             lambda part, deadline: part.drop_segments(deadline.share(1 / 4)),
             lambda part, deadline: part.improve_large(deadline.share(1 / 2)),
             lambda part, deadline: part.plan_on(deadline.share(1 / 2)),

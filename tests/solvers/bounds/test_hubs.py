@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from exhaustive_minima import minimum
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import INSTANCES
 
@@ -85,6 +85,7 @@ def part(value: int, cells: list[int], hubs: list[int]) -> Bound:
 def test_nothing_false_is_verified(seed: int, data: st.DataObject) -> None:
     """Any cells and hubs, for one segment more than some division has."""
     instance = planar_graph(seed, 4, 8, 3)
+    assume(instance.most_live_darts <= 8)  # more take minutes to try all divisions of
     numbers = range(len(instance.cells))
     hubs = data.draw(st.lists(st.sampled_from(numbers), unique=True, max_size=2))
     chosen = [cell for cell in numbers if cell not in hubs]

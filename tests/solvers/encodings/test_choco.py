@@ -108,7 +108,7 @@ def test_at_the_deadline_the_best_and_a_bound() -> None:
 
     On a machine so busy that it finds none, there is none.
     """
-    solution = solve(hub_grid(0, 5, 5, 4), Options(deadline=Deadline.after(6.0)), "choco")
+    solution = solve(hub_grid(0, 10, 10, 4, 3), Options(deadline=Deadline.after(6.0)), "choco")
     assert solution.status in ("feasible", "unknown")
     assert solution.lower_bound >= 4  # of four colors there is a petal each
 
