@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from functools import partial
 
 import dh_arms
 import numpy as np
@@ -13,6 +14,7 @@ from exhaustive_minima import vertex_minimum
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from independent import wrapped
+from refused_setups import refused_setup
 from shipped import ROBOTS, TOP
 
 import cellcolor
@@ -227,13 +229,7 @@ def test_two_joints_do_where_the_turn_is_free() -> None:
 
 # --- refusals -----------------------------------------------------------------------------------
 
-
-def refused(**changes: dict[str, object]) -> InputError:
-    scene = Scene.read(SCENE).varied(object={"target_vertices": 20})
-    with pytest.raises(InputError) as caught:
-        build_surface(scene.with_setup(scene.setup.varied(**changes)))
-    assert "\n" not in str(caught.value)
-    return caught.value
+refused = partial(refused_setup, SCENE)
 
 
 def test_three_joints_and_a_free_turn_are_redundant() -> None:

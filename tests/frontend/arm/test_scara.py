@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import partial
 
 import numpy as np
 import pinocchio as pin
@@ -10,6 +11,7 @@ import pytest
 from bent_tools import tip_frame, tip_frames
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from refused_setups import refused_setup
 from scaras import (
     ORDERS,
     WITHOUT_TURN,
@@ -311,13 +313,7 @@ def test_it_is_painted_and_drawn_with_its_units(built: BuildResult) -> None:
 
 # --- refusals -----------------------------------------------------------------------------------
 
-
-def refused(**changes: dict[str, object]) -> InputError:
-    scene = Scene.read(SCENE).varied(object={"target_vertices": 20})
-    with pytest.raises(InputError) as caught:
-        build_surface(scene.with_setup(scene.setup.varied(**changes)))
-    assert "\n" not in str(caught.value)
-    return caught.value
+refused = partial(refused_setup, SCENE)
 
 
 def test_four_joints_and_a_free_turn_are_redundant() -> None:
