@@ -64,7 +64,7 @@ def test_a_second_run_of_a_suite_proves_nothing(
 def test_the_readme_has_what_greedy_pays() -> None:
     """And what the other columns are in one row."""
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    benchmarks = (ROOT / "docs" / "benchmarks.md").read_text(encoding="utf-8")
+    planners = (ROOT / "docs" / "other-planners.md").read_text(encoding="utf-8")
     for title, name in SCENES.items():
         row = re.search(rf"^\| {title} \|(.*)\|$", readme, re.MULTILINE)
         assert row is not None
@@ -74,6 +74,6 @@ def test_the_readme_has_what_greedy_pays() -> None:
         judge = cellcolor.Oracle(surface, workers=1)
         assert int(proved) == max(0, judge.bounds.lower - 1) == max(0, judge.bounds.upper - 1)
         assert int(greedy) == judge.judge(largest_set_first(surface)).lift_offs
-        assert f"| {name} | {proved} | {greedy} | {nearest} |" in benchmarks
+        assert f"| {name} | {proved} | {greedy} | {nearest} |" in planners
     found = oracle.row_of_planners(INSTANCES / "scenes" / "hemisphere_flat.surface.json")
-    assert f"| {' | '.join(found)} |" in benchmarks
+    assert f"| {' | '.join(found)} |" in planners
