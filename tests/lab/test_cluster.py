@@ -8,10 +8,14 @@ from typing import Any
 
 import odd_jobs
 import pytest
+from commands import run
+from library import PAPER
 
 from cellcolor.errors import InputError
 from cellcolor.lab.executors.alone import Limits
 from cellcolor.lab.executors.work import Task, as_they_end
+from cellcolor.lab.runs.row import Row
+from cellcolor.lab.runs.table import read_table
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
 
@@ -35,6 +39,16 @@ def test_work_comes_back(address: str) -> None:
         assert workers.slots == 2
         found = {name: (ended.end, ended.value) for name, ended in as_they_end(workers, tasks)}
     assert found == {**{n: ("done", 2 * n) for n in range(4)}, 4: ("crashed", None)}
+
+
+def test_a_command_gives_its_runs_to_the_cluster(address: str, tmp_path: Path) -> None:
+    """The paper's search and CP-SAT prove the ring's two segments there: two cells share no color."""
+    table = tmp_path / "runs.csv"
+    solvers = ("--solver", "dfs", "--solver", "cp-sat@1")
+    command = ("bench", "run", PAPER / "ring.json", *solvers, "--cluster", address, "-o", table)
+    assert run(*command) == 0
+    rows = {row.contestant: (row.status, row.segments) for row in read_table(table, Row)}
+    assert rows == {"dfs": ("optimal", 2), "cp-sat@1": ("optimal", 2)}
 
 
 def test_a_lost_worker_loses_nothing(address: str, tmp_path: Path) -> None:
