@@ -42,7 +42,7 @@ def test_work_comes_back(address: str) -> None:
 
 
 def test_a_command_gives_its_runs_to_the_cluster(address: str, tmp_path: Path) -> None:
-    """The paper's search and CP-SAT prove the ring's two segments there: two cells share no color."""
+    """The ring has two cells that share no color, and is covered by two segments."""
     table = tmp_path / "runs.csv"
     solvers = ("--solver", "dfs", "--solver", "cp-sat@1")
     command = ("bench", "run", PAPER / "ring.json", *solvers, "--cluster", address, "-o", table)
