@@ -28,9 +28,9 @@ from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.solution import SearchSpace, Solution, Status
 from cellcolor.deadline import Deadline
 from cellcolor.lab.library import INDEX, SOLUTIONS, Origin, entry_of, graph_files, graph_of
+from cellcolor.lab.machine import this_version
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options, Start
-from cellcolor.version import __version__
 
 LIBRARY = Path(__file__).parents[1] / "instances"
 
@@ -91,9 +91,8 @@ def make_index() -> None:
 
 def version_of(solver: str) -> str:
     """The version that a solver of this package has now."""
-    return (
-        f"{__version__}, OR-Tools {version('ortools')}" if solver.startswith("cp") else __version__
-    )
+    own = this_version()
+    return f"{own}, OR-Tools {version('ortools')}" if solver.startswith("cp") else own
 
 
 def improve(name: str, graph: Instance, solver: str, time_limit: float) -> None:

@@ -1,9 +1,10 @@
-"""The machine that something was measured on."""
+"""The machine and the version that something was measured with."""
 
 from __future__ import annotations
 
 import os
 import platform
+import subprocess
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
@@ -11,7 +12,7 @@ from pathlib import Path
 
 from cellcolor.version import __version__
 
-__all__ = ["Machine", "this_machine"]
+__all__ = ["Machine", "this_machine", "this_version"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +24,7 @@ class Machine:
         memory_mb: of the whole machine, 2**20 bytes; 0 if that is not known.
         cpu: what the processor calls itself.
         python: its version.
-        cellcolor: its version.
+        cellcolor: its version, as :func:`this_version` tells it.
     """
 
     cores: int
@@ -41,7 +42,33 @@ def this_machine() -> Machine:
     memory = 0
     with suppress(OSError, ValueError):
         memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20
-    return Machine(cores, memory, _cpu(), platform.python_version(), __version__)
+    return Machine(cores, memory, _cpu(), platform.python_version(), this_version())
+
+
+@cache
+def this_version() -> str:
+    """The package's version, and the commit if it is run from a clone: ``0.1.0+g382b955``.
+
+    ``.dirty`` at its end says that a file was changed after the commit. As a local version of
+    Python's version specifiers (PEP 440).
+    """
+    package = Path(__file__).parents[1]
+    tracked = _git(package, "ls-files", "version.py")
+    if not tracked:
+        return __version__
+    commit = _git(package, "rev-parse", "--short=7", "HEAD")
+    changed = _git(package, "status", "--porcelain", "--untracked-files=no", ".")
+    return f"{__version__}+g{commit}{'.dirty' if changed else ''}"
+
+
+def _git(folder: Path, *arguments: str) -> str:
+    """What git prints there; nothing without git, or where no repository is."""
+    command = ["git", "-C", str(folder), *arguments]
+    try:
+        ended = subprocess.run(command, capture_output=True, check=True, timeout=10)
+    except (OSError, subprocess.SubprocessError):
+        return ""
+    return ended.stdout.decode().strip()
 
 
 def _cpu() -> str:
