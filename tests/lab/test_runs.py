@@ -15,7 +15,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
 from cellcolor.lab.runs.agreement import compared, disagreements
 from cellcolor.lab.runs.row import Row
-from cellcolor.lab.runs.series import cactus, growth, plots_of, scatter
+from cellcolor.lab.runs.series import cactus, growth, plots_of, profile, scatter
 from cellcolor.lab.runs.statistics import (
     common,
     contestants_of,
@@ -129,6 +129,13 @@ class TestPlots:
         rows = times("a", 1.0, 2.0, 4.0, None, cells=(3, 4, 7, 8))
         (curve,) = growth(rows, lambda row: row.cells, "cells").curves
         assert curve.points == ((3.5, 1.5),)
+
+    def test_profile(self) -> None:
+        """The curves start at 0 and go on to the largest ratio of all, here 3."""
+        rows = times("a", 1.0, 6.0, 5.0, None) + times("b", 2.0, 2.0, None, None)
+        a, b = profile(rows).curves
+        assert a.points == ((1.0, 0.0), (1.0, 0.25), (1.0, 0.5), (3.0, 0.75), (3.0, 0.75))
+        assert b.points == ((1.0, 0.0), (1.0, 0.25), (2.0, 0.5), (3.0, 0.5))
 
     def test_scatter(self) -> None:
         plot = scatter(times("a", 3.0, None) + times("b", 1.0, 2.0), "a", "b")

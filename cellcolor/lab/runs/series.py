@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from itertools import chain
 from statistics import median
 
 from cellcolor.data.plot import Curve, Plot
@@ -85,13 +86,16 @@ def growth(rows: Sequence[Row], size: Callable[[Row], int], name: str) -> Plot:
 
 def profile(rows: Sequence[Row]) -> Plot:
     """Performance profile: the share of runs that take at most so many times the best time."""
+    all_ratios = ratios(rows)
+    end = max(filter(math.isfinite, chain(*all_ratios.values())), default=1.0)
     curves = []
-    for name, own in ratios(rows).items():
+    for name, own in all_ratios.items():
         total = len(own)
         points = [
             (ratio, rank / total) for rank, ratio in enumerate(own, 1) if math.isfinite(ratio)
         ]
-        curves.append(Curve(name, tuple(points)))
+        share = points[-1][1] if points else 0.0
+        curves.append(Curve(name, ((1.0, 0.0), *points, (end, share))))
     note = "Times below 10 ms are not told apart."
     x, y = "times the time of the quickest", "share of the runs"
     return Plot("Performance profile", x, y, tuple(curves), log_x=True, joined="steps", note=note)
