@@ -6,7 +6,8 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from exhaustive_minima import minimum, noncrossing
+from exhaustive_minima import minimum
+from noncrossing import noncrossing
 
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.decomposition import decompose

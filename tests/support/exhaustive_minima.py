@@ -1,43 +1,23 @@
 """Minima and optimal schemes straight from their definitions, sharing nothing with any solver.
 
-Everything here is a sweep: cells (or mesh vertices) are painted one after the other, and of all
-paintings of the swept part that look the same from the rest only the cheapest are kept. That is
-exact without bounds, without a search order that matters and without canonical forms.
+Everything here is a sweep: cells are painted one after the other, and of all paintings of the
+swept part that look the same from the rest only the cheapest are kept. That is exact without
+bounds, without a search order that matters and without canonical forms.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections import defaultdict
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import cache
+
+from noncrossing import Partitions, coarsest_in, noncrossing, noncrossing_in
 
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import SchemeKey
-from cellcolor.data.surface import LabelledSurface
 
 Blocks = tuple[tuple[int, tuple[int, ...]], ...]
 """Sub-cells of one cell: color and the places of the darts in state 1."""
-
-
-@cache
-def noncrossing(size: int) -> tuple[tuple[tuple[int, ...], ...], ...]:
-    """All non-crossing partitions of points on a circle: set partitions, crossing ones left out."""
-    partitions: list[list[list[int]]] = [[]]
-    for point in range(size):
-        grown = []
-        for blocks in partitions:
-            grown.append([*blocks, [point]])
-            for i, block in enumerate(blocks):
-                if not any(
-                    block[-1] < other[-1] and any(p < block[-1] for p in other)
-                    for other in blocks
-                    if other is not block
-                ):
-                    grown.append([*blocks[:i], [*block, point], *blocks[i + 1 :]])
-        partitions = grown
-    return tuple(tuple(map(tuple, blocks)) for blocks in partitions)
 
 
 def live_darts(instance: Instance, cell: Cell) -> list[int]:
@@ -108,7 +88,9 @@ class Local:
     shown: tuple[frozenset[int], ...]
 
 
-def any_division(cell: Cell, painted: tuple[int | None, ...]) -> Iterator[Local]:
+def any_division(
+    cell: Cell, painted: tuple[int | None, ...], partitions: Partitions = coarsest_in
+) -> Iterator[Local]:
     """All divisions that join exactly the given darts in the given colors, or more cheaply.
 
     Darts in state 0 may lie in any sub-cell, so only the non-crossing partition of the others
@@ -119,16 +101,13 @@ def any_division(cell: Cell, painted: tuple[int | None, ...]) -> Iterator[Local]
     if not ones:
         yield Local(((cell.colors[0], ()),), nothing)
         return
-    for blocks in noncrossing(len(ones)):
-        colors = [{painted[ones[i]] for i in block} for block in blocks]
-        if all(len(c) == 1 for c in colors):
-            yield Local(
-                tuple(
-                    (painted[ones[block[0]]] or 0, tuple(ones[i] for i in block))
-                    for block in blocks
-                ),
-                nothing,
-            )
+    for blocks in partitions(tuple(painted[i] for i in ones)):
+        yield Local(
+            tuple(
+                (painted[ones[block[0]]] or 0, tuple(ones[i] for i in block)) for block in blocks
+            ),
+            nothing,
+        )
 
 
 def any_scheme(cell: Cell, painted: tuple[int | None, ...]) -> Iterator[Local]:
@@ -138,7 +117,7 @@ def any_scheme(cell: Cell, painted: tuple[int | None, ...]) -> Iterator[Local]:
         for color in cell.colors:
             yield Local(((color, ()),), (frozenset({color}),) * len(painted))
         return
-    for local in any_division(cell, painted):
+    for local in any_division(cell, painted, noncrossing_in):
         if len(local.blocks) > 1 and any(len(darts) < 2 for _, darts in local.blocks):
             continue
         block_of = {i: number for number, (_, darts) in enumerate(local.blocks) for i in darts}
@@ -160,10 +139,28 @@ def _may_show(painted: tuple[int | None, ...], i: int) -> frozenset[int]:
     return frozenset({before, after})
 
 
-Entry = tuple[str, object, object]
-"""What the rest sees of a dart: ``("joined", color, segment)`` or ``("zero", colors, None)``."""
+ZERO = -1
+"""Stands for the color of a dart in state 0."""
+Entry = tuple[int, object]
+"""What the rest sees of a dart: ``(color, segment)``, or ``(ZERO, the colors it may show)``."""
 State = tuple[Entry, ...]
-Painting = tuple[Local, ...]
+
+
+@dataclass(frozen=True)
+class Way:
+    """A local painting of the next cell, and how it meets the frontier, by places in it.
+
+    ``met`` are places and the sub-cells joined there, ``looped`` pairs of sub-cells joined along
+    an edge from the cell to itself. ``sure`` are darts in state 0 across from such darts, with
+    the color in which they would be joined if the others showed no other. ``after`` is the next
+    frontier: a place of this one, or the color and sub-cell (or colors to show) of a new dart.
+    """
+
+    local: Local
+    met: tuple[tuple[int, int], ...]
+    looped: tuple[tuple[int, int], ...]
+    sure: tuple[tuple[int, frozenset[int]], ...]
+    after: tuple[int | tuple[int, object], ...]
 
 
 class CellSweep:
@@ -175,7 +172,7 @@ class CellSweep:
         options: Callable[[Cell, tuple[int | None, ...]], Iterator[Local]],
     ) -> None:
         self._instance = instance
-        self._options = cache(lambda cell, painted: tuple(options(cell, painted)))
+        self._options = options
         self._darts = [live_darts(instance, cell) for cell in instance.cells]
         self.order: list[int] = []
         self._sweep()
@@ -197,74 +194,97 @@ class CellSweep:
             self.order.append(here)
             after = [d for d in frontier if -d not in self._darts[here]]
             after += [d for d in self._darts[here] if self._instance.across(d) in remaining]
+            touched = [place for place, d in enumerate(frontier) if -d in self._darts[here]]
+            ways: dict[tuple[int, ...], list[Way]] = {}
             layer: dict[State, tuple[int, list[tuple[State, Local]]]] = {}
             for state, (cost, _) in self._layers[-1].items():
-                seen = dict(zip(frontier, state, strict=True))
-                for local in self._agreeing(here, seen):
-                    found, closed = self._paint(here, local, seen, after)
+                asked = tuple(state[place][0] for place in touched)
+                if asked not in ways:
+                    across = {-frontier[p]: c for p, c in zip(touched, asked, strict=True)}
+                    ways[asked] = list(self._ways(here, across, frontier, after))
+                for way in ways[asked]:
+                    if any(state[place][1] == shown for place, shown in way.sure):
+                        continue
+                    found, closed = self._paint(way, state)
                     previous = layer.get(found)
                     if previous is None or previous[0] > cost + closed:
-                        layer[found] = (cost + closed, [(state, local)])
+                        layer[found] = (cost + closed, [(state, way.local)])
                     elif previous[0] == cost + closed:
-                        previous[1].append((state, local))
+                        previous[1].append((state, way.local))
             self._layers.append(layer)
             frontier = after
         ((self.minimum, _),) = self._layers[-1].values()
 
-    def _agreeing(self, here: int, seen: dict[int, Entry]) -> Iterator[Local]:
-        """The local paintings that agree with what the painted neighbors show."""
+    def _ways(
+        self, here: int, across: dict[int, int], frontier: list[int], after: list[int]
+    ) -> Iterator[Way]:
+        """The local paintings that agree with the colors of the painted neighbors' darts."""
         darts = self._darts[here]
+        place = {dart: i for i, dart in enumerate(darts)}
+        at = {-dart: number for number, dart in enumerate(frontier)}
         choices: list[list[int | None]] = []
         for dart in darts:
-            entry = seen.get(-dart)
-            if entry is None:
-                choices.append([None, *self._instance.joinable(dart)])
+            if dart in across:
+                choices.append([None if across[dart] == ZERO else across[dart]])
             else:
-                choices.append([entry[1] if entry[0] == "joined" else None])  # type: ignore[list-item]
-        place = {dart: i for i, dart in enumerate(darts)}
+                choices.append([None, *self._instance.joinable(dart)])
         for painted in itertools.product(*choices):
             if any(painted[i] != painted[place[-d]] for i, d in enumerate(darts) if -d in place):
                 continue
             for local in self._options(self._instance.cells[here], painted):
-                if not any(
-                    self._surely_joined(dart, local.shown[i], seen[-dart])
+                block_of = {
+                    darts[i]: number
+                    for number, (_, block) in enumerate(local.blocks)
+                    for i in block
+                }
+                new: dict[int, tuple[int, object]] = {
+                    dart: (local.blocks[block_of[dart]][0], block_of[dart])
+                    if dart in block_of
+                    else (ZERO, local.shown[i])
                     for i, dart in enumerate(darts)
-                    if -dart in seen and painted[i] is None
-                ):
-                    yield local
+                }
+                yield Way(
+                    local,
+                    tuple((at[d], block) for d, block in block_of.items() if d in across),
+                    tuple((b, block_of[-d]) for d, b in block_of.items() if d > 0 and -d in place),
+                    tuple(
+                        (at[dart], local.shown[i])
+                        for i, dart in enumerate(darts)
+                        if dart in across
+                        and painted[i] is None
+                        and self._sure(dart, local.shown[i])
+                    ),
+                    tuple(new[d] if d in new else at[-d] for d in after),
+                )
 
-    def _surely_joined(self, dart: int, shown: frozenset[int], other: Entry) -> bool:
-        return (
-            len(shown) == 1
-            and shown == other[1]
-            and next(iter(shown)) in self._instance.joinable(dart)
-        )
+    def _sure(self, dart: int, shown: frozenset[int]) -> bool:
+        """Whether an edge is joined for sure if both its darts show just this."""
+        return len(shown) == 1 and next(iter(shown)) in self._instance.joinable(dart)
 
-    def _paint(
-        self, here: int, local: Local, seen: dict[int, Entry], after: list[int]
-    ) -> tuple[State, int]:
+    @staticmethod
+    def _paint(way: Way, state: State) -> tuple[State, int]:
         """The frontier after painting a cell, and how many segments that completes."""
-        darts = self._darts[here]
-        group: dict[object, object] = {e[2]: e[2] for e in seen.values() if e[0] == "joined"}
-        entry = dict(seen)
-        for number, (color, block) in enumerate(local.blocks):
-            group["new", number] = ("new", number)
-            for i in block:
-                entry[darts[i]] = ("joined", color, ("new", number))
-        for i, dart in enumerate(darts):
-            if dart not in entry:
-                entry[dart] = ("zero", local.shown[i], None)
-            elif -dart in entry:
-                one, other = group[entry[dart][2]], group[entry[-dart][2]]
-                group = {k: one if g == other else g for k, g in group.items()}
-        names: dict[object, int] = {}
-        state: list[Entry] = []
-        for dart in after:
-            kind, color, segment = entry[dart]
-            if kind == "joined":
+        known = 1 + max((s for c, s in state if c != ZERO), default=-1)  # type: ignore[type-var]
+        group = list(range(known + len(way.local.blocks)))
+        pairs = [(state[place][1], known + block) for place, block in way.met]
+        pairs += [(known + one, known + other) for one, other in way.looped]
+        for a, b in pairs:
+            one, other = group[a], group[b]
+            if one != other:
+                group = [one if g == other else g for g in group]
+        names: dict[int, int] = {}
+        found: list[Entry] = []
+        for entry in way.after:
+            if isinstance(entry, int):
+                color, segment = state[entry]
+            else:
+                color, segment = entry
+                if color != ZERO:
+                    segment = known + segment
+            if color != ZERO:
                 segment = names.setdefault(group[segment], len(names))
-            state.append((kind, color, segment))
-        return tuple(state), len(set(group.values())) - len(names)
+            found.append((color, segment))
+        return tuple(found), len(set(group)) - len(names)
 
     def optimal(self) -> Iterator[dict[int, Local]]:
         """Every painting with the fewest segments: its cells' local paintings."""
@@ -332,46 +352,3 @@ def _zeros_fit(instance: Instance, darts: list[list[int]], painting: dict[int, L
         return False
 
     return split(0, {})
-
-
-# --- a sweep over mesh vertices -----------------------------------------------------------------
-
-
-def vertex_minimum(surface: LabelledSurface) -> int:
-    """The fewest connected components of equal color over all colorings of a mesh's vertices.
-
-    Without the topological graph: vertices one by one in their order, which should be one with a
-    short frontier.
-    """
-    cracks = {(c.i, c.j): c.colors for c in surface.cracks}
-    neighbors: dict[int, set[int]] = defaultdict(set)
-    for i, j in surface.left_of:
-        if surface.vertex_colors[i] and surface.vertex_colors[j]:
-            neighbors[i].add(j)
-            neighbors[j].add(i)
-    reached = [v for v, colors in enumerate(surface.vertex_colors) if colors]
-    frontier: list[int] = []
-    layer: dict[tuple[tuple[int, int], ...], int] = {(): 0}
-    for vertex in reached:
-        after = [v for v in [*frontier, vertex] if any(n > vertex for n in neighbors[v])]
-        grown: dict[tuple[tuple[int, int], ...], int] = {}
-        for state, cost in layer.items():
-            seen = dict(zip(frontier, state, strict=True))
-            for color in surface.vertex_colors[vertex]:
-                same = {
-                    seen[v][1]
-                    for v in neighbors[vertex]
-                    if v in seen
-                    and seen[v][0] == color
-                    and color not in cracks.get((min(v, vertex), max(v, vertex)), ())
-                }
-                painted = {v: (c, -1 if s in same else s) for v, (c, s) in seen.items()}
-                painted[vertex] = (color, -1)
-                names: dict[int, int] = {}
-                found = tuple(
-                    (painted[v][0], names.setdefault(painted[v][1], len(names))) for v in after
-                )
-                closed = len({s for _, s in painted.values()}) - len(names)
-                grown[found] = min(grown.get(found, cost + closed), cost + closed)
-        layer, frontier = grown, after
-    return min(layer.values())

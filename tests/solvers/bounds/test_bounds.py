@@ -6,10 +6,11 @@ import itertools
 import math
 from dataclasses import replace
 
-from exhaustive_minima import minimum, vertex_minimum
+from exhaustive_minima import minimum
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from library import PAPER
+from vertex_minima import vertex_minimum
 
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.decomposition import decompose

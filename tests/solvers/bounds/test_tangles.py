@@ -7,10 +7,10 @@ from itertools import combinations, product
 
 import networkx as nx
 import pytest
-from exhaustive_minima import vertex_minimum
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from meshes import grid_faces, grid_points, surface
+from vertex_minima import vertex_minimum
 
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.surface import LabelledSurface
