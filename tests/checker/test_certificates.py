@@ -10,7 +10,8 @@ from dataclasses import replace
 
 import networkx as nx
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
 from meshes import drawn, surfaces
@@ -56,7 +57,7 @@ def enough(instance: Instance, cells: Sequence[int], regions: int) -> bool:
     )
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(seed=SEEDS, cells=st.integers(1, 8), colors=st.integers(1, 4))
 def test_a_certificate_proves_its_bound(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
@@ -67,7 +68,7 @@ def test_a_certificate_proves_its_bound(seed: int, cells: int, colors: int) -> N
     assert verify_bound(instance, bound, regions_of_cells(instance)).outcome == "verified"
 
 
-@settings(max_examples=100, deadline=None)
+@examples(40)
 @given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4), data=st.data())
 def test_what_some_cells_prove_and_what_not(
     seed: int, cells: int, colors: int, data: st.DataObject
@@ -84,7 +85,7 @@ def test_what_some_cells_prove_and_what_not(
     assert bool(verdict.reason) == (expected == "refused")
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(surfaces())
 def test_the_mesh_says_what_the_graph_says(surface: LabelledSurface) -> None:
     """Two cells share a color region on the mesh exactly where they do on the graph."""

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 from divisions import SPLIT, split_solution
 from exhaustive_minima import minimum
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import surfaces
@@ -32,9 +32,6 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
-
-UNHURRIED = settings(deadline=None)
-"""The first example solves; how long that takes is no matter here."""
 
 NUMBERS = ("segments", "lift_offs", "lower_bound", "surface_lower_bound", "cutting_paths")
 
@@ -57,7 +54,6 @@ SOLVED = st.builds(solved, st.integers(0, 5) | st.sampled_from(FIGURES), st.bool
 OTHER = st.integers(-3, 3).filter(bool)
 
 
-@UNHURRIED
 @given(SOLVED, st.sampled_from(NUMBERS), OTHER)
 def test_a_changed_number_is_refused(case: tuple[Instance, Solution], name: str, step: int) -> None:
     """Every number stands in two places or can be counted, so none can be changed alone."""
@@ -68,7 +64,6 @@ def test_a_changed_number_is_refused(case: tuple[Instance, Solution], name: str,
     assert not check_solution(instance, replace(solution, **{name: value})).valid
 
 
-@UNHURRIED
 @given(SOLVED, st.integers(0, 9), st.booleans())
 def test_bounds_and_proofs_are_no_better_than_the_division(
     case: tuple[Instance, Solution], bound: int, general: bool
@@ -91,7 +86,6 @@ def test_bounds_and_proofs_are_no_better_than_the_division(
     assert optimal.valid == (proved and bound == solution.segments)
 
 
-@UNHURRIED
 @given(SOLVED, st.integers(0, 12), st.booleans())
 def test_nothing_found_claims_little(
     case: tuple[Instance, Solution], bound: int, proved: bool
@@ -117,7 +111,6 @@ def test_nothing_found_claims_little(
     assert solution.segments is not None and segments_of_whole_cells(instance) >= solution.segments
 
 
-@UNHURRIED
 @given(surfaces())
 def test_whole_cells_are_a_division(mesh: Any) -> None:
     """What refutes a bound has to exist: it is never below the minimum, nor above the cells."""
@@ -132,7 +125,6 @@ def test_whole_cells_are_a_division(mesh: Any) -> None:
     assert minimum(instance) <= whole if instance.cells else whole == 0
 
 
-@UNHURRIED
 @given(SOLVED, st.randoms(use_true_random=False))
 def test_the_order_of_sub_cells_means_nothing(case: tuple[Instance, Solution], random: Any) -> None:
     """Nor that of darts; whether the division is right or has a color exchanged."""

@@ -9,8 +9,9 @@ from typing import Any
 
 import networkx as nx
 import pytest
+from examples import examples
 from exhaustive_minima import minimum
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES
 from meshes import drawn
@@ -62,7 +63,7 @@ def together(
     return list(nx.connected_components(graph))
 
 
-@settings(max_examples=120, deadline=None)
+@examples(40)
 @given(st.data())
 def test_what_must_cross_is_connected_by_no_coloring(data: st.DataObject) -> None:
     """All colorings of the vertices that have both colors, at most eight of them."""
@@ -100,7 +101,7 @@ def test_four_areas_around_a_hub() -> None:
     assert not two.must_cross((left, right), (above, below))
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=st.integers(0, 10**6), cells=st.integers(3, 8), colors=st.integers(2, 4))
 def test_every_bound_by_conflicts_is_verified(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 4, colors)
@@ -182,7 +183,7 @@ def test_whatever_is_changed_nothing_false_is_verified(name: str) -> None:
     assert outcomes.count("refused") > 150
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(seed=st.integers(0, 10**6), change=st.integers(0, 10**6))
 def test_nothing_false_is_verified_on_random_graphs(seed: int, change: int) -> None:
     """Made-up conflicts and regions left out, against the minimum by trying all divisions."""

@@ -8,8 +8,9 @@ from collections.abc import Iterable, Sequence
 
 import networkx as nx
 import pytest
+from examples import examples
 from holes import fewest, holed
-from hypothesis import assume, example, given, settings
+from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from relabelled import mirrored, renamed, turned
 
@@ -216,7 +217,7 @@ def proved_cuts(instance: Instance, strands: int = 1) -> int | None:
     return paths if paths == found.cutting_paths_lower_bound else None
 
 
-@settings(max_examples=20, deadline=None)
+@examples(10)
 @given(seed=SEEDS, darts=st.integers(4, 6), loops=st.integers(2, 3), colors=st.integers(2, 3))
 def test_fewest_in_a_cell_with_holes(seed: int, darts: int, loops: int, colors: int) -> None:
     """Against every division that can be drawn."""
@@ -224,7 +225,7 @@ def test_fewest_in_a_cell_with_holes(seed: int, darts: int, loops: int, colors: 
     assert proved_cuts(instance) == fewest(instance)[1]
 
 
-@settings(max_examples=12, deadline=None)
+@examples(6)
 @given(seed=SEEDS, darts=st.integers(6, 8), loops=st.integers(2, 3), colors=st.integers(2, 3))
 def test_fewest_however_loops_are_turned(seed: int, darts: int, loops: int, colors: int) -> None:
     instance = holed(seed, darts, loops, colors)
@@ -235,7 +236,7 @@ def test_fewest_however_loops_are_turned(seed: int, darts: int, loops: int, colo
         assert proved_cuts(other) in (expected, None)
 
 
-@settings(max_examples=10, deadline=None)
+@examples(6)
 @given(seed=SEEDS, islands=st.integers(1, 2), cracks=st.integers(0, 1), strands=st.integers(1, 2))
 @example(seed=511, islands=2, cracks=1, strands=2)  # a seam after two joined strands of an edge
 def test_fewest_on_random_surfaces(seed: int, islands: int, cracks: int, strands: int) -> None:

@@ -12,7 +12,8 @@ from tempfile import TemporaryDirectory
 import pytest
 from commands import run
 from documents import Document
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
@@ -89,7 +90,7 @@ def test_a_plan_from_standard_input(row: Path, pipe: Pipe, capsys: Capture) -> N
     assert (again.segments, again.optimal, again.improvement) == (1, True, None)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(surfaces(), st.data())
 def test_the_object_says_what_the_verdict_says(
     surface: LabelledSurface, data: st.DataObject

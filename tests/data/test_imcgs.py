@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from isomorphism import isomorphic
 from library import PAPER
@@ -56,7 +57,7 @@ def test_read(tmp_path: Path) -> None:
     assert graph.meta == {"made_by": "cellcolor import graph.txt"}
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(st.integers(0, 10**6), st.integers(2, 9), st.integers(0, 8), st.booleans())
 def test_a_graph_comes_back(
     tmp_path_factory: pytest.TempPathFactory, seed: int, cells: int, more: int, self_edges: bool

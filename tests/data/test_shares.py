@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import json_lines, run
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import drawn, surfaces
@@ -47,7 +48,7 @@ def dual_area(surface: LabelledSurface, vertices: set[int]) -> float:
 
 
 @given(surfaces(), st.randoms(use_true_random=False))
-@settings(deadline=None, max_examples=50)
+@examples(25)
 def test_cells_and_what_is_uncovered_are_the_whole(mesh: LabelledSurface, random: Any) -> None:
     bare = [v for v, colors in enumerate(mesh.vertex_colors) if not colors]
     given_up = set(bare[:: random.randint(1, 3)]) if bare else set()

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.trajectory_csv import read_trajectory_csv
@@ -16,7 +17,7 @@ from cellcolor.errors import InputError
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
 
 
-@settings(max_examples=50)
+@examples(25)
 @given(data=st.data())
 def test_what_is_written_is_read(
     data: st.DataObject, tmp_path_factory: pytest.TempPathFactory

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 from documents import INSTANCE, PLAN, SOLUTION, SURFACE
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from library import INSTANCES, PAPER
 from meshes import surfaces
 
@@ -51,7 +52,7 @@ def test_a_copy_is_equal_and_hashes_alike(value: Any) -> None:
 
 
 @given(surfaces())
-@settings(max_examples=40, deadline=None)
+@examples(20)
 def test_surfaces_are_equal_where_all_members_are(surface: LabelledSurface) -> None:
     """Surfaces that differ anywhere are not equal, and no comparison raises."""
     _ = surface.sha256  # a cached property is no member

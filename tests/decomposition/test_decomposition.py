@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from isomorphism import isomorphic
 from library import INSTANCES, PAPER
@@ -132,7 +133,7 @@ class TestIsomorphism:
         assert not isomorphic(case, with_loops(case, 2, (*moved[:place], -7, *moved[place:])))
 
 
-@settings(max_examples=150)
+@examples(40)
 @given(surfaces(), st.randoms(use_true_random=False))
 def test_names_and_order_mean_nothing(labelled: LabelledSurface, random: object) -> None:
     shuffle = random.shuffle  # type: ignore[attr-defined]
@@ -155,14 +156,14 @@ def test_names_and_order_mean_nothing(labelled: LabelledSurface, random: object)
     assert isomorphic(decompose(labelled), decompose(renamed))
 
 
-@settings(max_examples=150)
+@examples(40)
 @given(surfaces())
 def test_mirrored_mesh_gives_mirrored_graph(labelled: LabelledSurface) -> None:
     image = replace(labelled, faces=labelled.faces[:, ::-1].copy())
     assert isomorphic(decompose(image), mirrored(decompose(labelled)))
 
 
-@settings(max_examples=100)
+@examples(40)
 @given(surfaces())
 def test_areas_add_up(labelled: LabelledSurface) -> None:
     """A reachable vertex owns a third of each of its triangles, and a cell its vertices."""
@@ -175,7 +176,7 @@ def test_areas_add_up(labelled: LabelledSurface) -> None:
     assert total == pytest.approx(reachable, abs=1e-9)
 
 
-@settings(max_examples=100)
+@examples(40)
 @given(surfaces())
 def test_cells_of_vertices(labelled: LabelledSurface) -> None:
     """Each vertex's cell has its colors, and every mesh edge between cells is an edge of both."""
@@ -194,7 +195,7 @@ def test_cells_of_vertices(labelled: LabelledSurface) -> None:
             assert not same or (min(a, b), max(a, b)) in cracked
 
 
-@settings(max_examples=100)
+@examples(40)
 @given(surfaces(), surfaces())
 def test_parts_side_by_side(one: LabelledSurface, other: LabelledSurface) -> None:
     """Two surfaces in one file: the cells, edges and loops of both, and nothing between them."""

@@ -22,7 +22,8 @@ from documents import (
     TRAJECTORY,
     VERDICT,
 )
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 
@@ -186,7 +187,7 @@ def changed(draw: st.DrawFn) -> Document:
     return document
 
 
-@settings(max_examples=400, deadline=None)
+@examples(40)
 @given(changed())
 def test_never_stricter_than_the_reader(document: Document) -> None:
     try:

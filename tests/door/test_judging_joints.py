@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
@@ -42,7 +43,7 @@ def best() -> Plan:
     return found.on_mesh
 
 
-@settings(max_examples=30, deadline=None)
+@examples(15)
 @given(st.data())
 def test_joints_are_judged_as_the_colors_they_come_to(data: st.DataObject) -> None:
     choices = [st.sampled_from(own) if own else st.none() for own in scene().surface.vertex_colors]

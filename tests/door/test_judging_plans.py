@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 from documents import Document
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
@@ -226,7 +227,7 @@ def test_contradiction_is_an_error() -> None:
     assert (found.value.segments, found.value.lower) == (1, 2)
 
 
-@settings(max_examples=30, deadline=None)
+@examples(15)
 @given(surfaces(), st.data())
 def test_no_plan_beats_the_lower_bound(surface: LabelledSurface, data: st.DataObject) -> None:
     choices = [st.sampled_from(colors) if colors else st.none() for colors in surface.vertex_colors]

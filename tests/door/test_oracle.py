@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
 from meshes import drawn, surfaces
@@ -39,7 +40,7 @@ def test_where_a_plan_can_be_beaten() -> None:
     assert "can be joined" in str(verdict)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(surfaces(), st.data())
 def test_the_better_painting_is_one(surface: LabelledSurface, data: st.DataObject) -> None:
     """Judged by the checker of plans alone; and the two segments do lie in one of it."""
@@ -62,7 +63,7 @@ def test_the_better_painting_is_one(surface: LabelledSurface, data: st.DataObjec
     assert painted.segment_of[one] == painted.segment_of[other]
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(surfaces(), st.data())
 def test_segments_are_numbered_in_the_order_of_their_first_vertices(
     surface: LabelledSurface, data: st.DataObject

@@ -12,7 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 from documents import PLAN, SOLUTION
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
 from shipped import ROBOTS, SCENES
@@ -267,7 +268,7 @@ def test_check_heeds_what_is_known() -> None:
 
 
 @given(surfaces())
-@settings(max_examples=25, deadline=None)
+@examples(12)
 def test_a_plan_is_any_sequence_of_colors(surface: LabelledSurface) -> None:
     """Plan, list, tuple, arrays: one verdict; -1 stands for None in an array of integers only."""
     colors = [next(iter(own), None) for own in surface.vertex_colors]

@@ -13,7 +13,8 @@ from typing import Any
 import numpy as np
 import pytest
 from documents import INSTANCE, SOLUTION
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
 
@@ -78,7 +79,7 @@ def as_found_elsewhere(mesh: LabelledSurface, random: Any) -> LabelledSurface:
     )
 
 
-@settings(max_examples=50)
+@examples(25)
 @given(surfaces(), st.randoms(use_true_random=False))
 def test_surfaces_and_their_graphs_are_those_of_the_file(
     mesh: LabelledSurface, random: Any

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.deadline import Deadline, OutOfTime
@@ -32,7 +32,6 @@ def four_cores(monkeypatch):
     monkeypatch.setattr(os, "sched_getaffinity", lambda _process: {0, 1, 2, 3})
 
 
-@settings(deadline=None)  # processes are begun
 @given(st.integers(0, 40), st.integers(1, 9))
 def test_every_part_is_done_once_in_as_many_processes_as_pay(parts, at_least):
     done = shared((parts, 2), np.int64)

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 import trimesh
 from box import obj
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
 from shipped import ROBOTS, WOK, edited
@@ -36,7 +37,7 @@ def from_text(folder: Path, **keys: object) -> Scene:
     return Scene.read(file)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(vectors, vectors, st.integers(7, 10_000), st.floats(0.01, 1))
 def test_a_varied_scene_is_the_one_of_an_edited_file(
     tmp_path_factory: pytest.TempPathFactory,

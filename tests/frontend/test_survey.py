@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from shipped import SCENES, edited
 
@@ -55,7 +56,7 @@ def test_a_wrong_unit_is_seen(scale: float, text: str, geometry: UrGeometry) -> 
     st.floats(-np.pi, np.pi),
     st.integers(20, 400),
 )
-@settings(deadline=None, max_examples=12)
+@examples(6)
 def test_domes_before_the_robot(
     geometry: UrGeometry,
     radius: float,

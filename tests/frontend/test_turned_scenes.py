@@ -7,7 +7,7 @@ import dh_arms
 import numpy as np
 import pytest
 from bent_tools import tip_frame
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from turned_scenes import SHIPPED, plate, setup
 from vertex_minima import vertex_minimum
@@ -161,7 +161,6 @@ def test_equally_spaced_turns_are_those_of_the_list() -> None:
         ),
     ),
 )
-@settings(deadline=None)
 def test_a_turn_is_written_as_it_was_given(
     rule: dict[str, object], some: dict[str, object]
 ) -> None:

@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.tool_paths import ToolPath
@@ -88,7 +89,6 @@ def test_a_bad_sample_and_a_jump_cut_a_path_and_are_named() -> None:
     assert {part.parting.reason for part in parts if part.parting} == {"trimmed"}
 
 
-@settings(deadline=None)
 @given(st.floats(0.5, 30.0), st.floats(1.0, 6.0))
 def test_a_stroke_that_winds_is_cut_as_seldom_as_can_be(turned: float, room: float) -> None:
     joints = np.linspace(0.3, 0.3 + turned, 400)[:, None]
@@ -108,7 +108,7 @@ def test_a_stroke_that_winds_is_cut_as_seldom_as_can_be(turned: float, room: flo
     assert parts[-1].joints[-1] == joints[-1]
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(st.integers(0, 10**6), st.integers(2, 60))
 def test_times_keep_velocities_and_accelerations(seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)

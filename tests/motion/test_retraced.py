@@ -6,7 +6,8 @@ from collections import Counter
 from itertools import pairwise
 
 import numpy as np
-from hypothesis import example, given, settings
+from examples import examples
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from cellcolor.motion.retraced import beside_itself, stretches
@@ -17,7 +18,7 @@ SPACING = 0.01  # m, the grid's lines are ten spacings apart
 
 @given(st.lists(WAYS, min_size=1, max_size=9), st.floats(0.0, 0.0004))
 @example([(1, 0), (0, 1), (0, -1), (1, 0)], 0.0)  # a way in and back
-@settings(max_examples=80, deadline=None)
+@examples(30)
 def test_what_is_walked_twice_is_marked(ways: list[tuple[int, int]], aside: float) -> None:
     """Against counting how often each line of the grid is walked; its ends are left out.
 

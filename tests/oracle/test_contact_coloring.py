@@ -6,7 +6,8 @@ from itertools import pairwise
 
 import networkx
 import numpy as np
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
 
@@ -40,7 +41,7 @@ def continuous(surface: LabelledSurface, color: int) -> networkx.Graph:
     return graph
 
 
-@settings(max_examples=150, deadline=None)
+@examples(40)
 @given(surfaces(), st.data())
 def test_no_fewer_runs_than_segments(surface: LabelledSurface, data: st.DataObject) -> None:
     """For any contacts in any order, as long as each vertex has one in a color of its own."""
@@ -63,7 +64,7 @@ def test_no_fewer_runs_than_segments(surface: LabelledSurface, data: st.DataObje
     assert found.color_changes == sum(changes)
 
 
-@settings(max_examples=150, deadline=None)
+@examples(40)
 @given(surfaces(), st.data())
 def test_a_path_that_follows_the_mesh(surface: LabelledSurface, data: st.DataObject) -> None:
     """Strokes that walk along uncracked edges, no vertex in two colors: as many runs as strokes.

@@ -5,7 +5,8 @@ from __future__ import annotations
 import networkx as nx
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.surface import LabelledSurface
@@ -44,7 +45,7 @@ def two_steps(surface: LabelledSurface) -> nx.Graph:
 
 
 @given(st.integers(0, 10**6), st.sampled_from(["disc", "annulus", "sphere", "torus"]))
-@settings(max_examples=25, deadline=None)
+@examples(12)
 def test_clearance_is_the_shortest_way_to_another_segment(seed: int, shape: str) -> None:
     """Borders lie in the middle of mesh edges; ways lead over vertices two mesh edges apart.
 
@@ -70,7 +71,7 @@ def test_clearance_is_the_shortest_way_to_another_segment(seed: int, shape: str)
 
 
 @given(st.integers(0, 10**6), st.sampled_from(["disc", "annulus", "torus"]), st.floats(0.05, 0.3))
-@settings(max_examples=40, deadline=None)
+@examples(20)
 def test_narrow_corridors_part_the_places_where_the_tool_fits(
     seed: int, shape: str, radius: float
 ) -> None:

@@ -8,7 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import example, given, settings
+from examples import examples
+from hypothesis import example, given
 from hypothesis import strategies as st
 from painted import assert_whole, random_solution
 
@@ -49,7 +50,7 @@ def grid(
 @example(1, "annulus")  # a segment falls apart unless both are looked at, cracks respected
 @example(4, "disc")  # a segment closes in on itself unless that is looked at
 @example(2, "sphere")  # segments of one color become one unless that is looked at
-@settings(max_examples=40, deadline=None)
+@examples(20)
 def test_segments_stay_what_they_are(seed: int, shape: str) -> None:
     """Random divisions, random costs: held to a flooding of the mesh, and to the report."""
     rng = random.Random(seed)

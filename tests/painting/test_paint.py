@@ -8,7 +8,8 @@ import random
 from dataclasses import replace
 
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from painted import assert_whole, random_solution
@@ -45,7 +46,7 @@ def test_the_library_is_painted_as_proved(path: object, space: str) -> None:
     st.sampled_from(["disc", "annulus", "sphere", "torus", "double torus"]),
     st.integers(1, 3),
 )
-@settings(max_examples=60, deadline=None)
+@examples(30)
 def test_any_division_is_painted(seed: int, shape: str, strands: int) -> None:
     """Divisions drawn at random: cells of one vertex, cracks, holes, seams, several strands."""
     rng = random.Random(seed)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import random
 
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from relabelled import mirrored, renamed, turned
@@ -38,13 +39,13 @@ def same_minimum(instance: Instance, seed: int, strands: int = 1) -> None:
     assert minimum_of(mirrored(instance), strands) == expected
 
 
-@settings(max_examples=6, deadline=None)  # each takes a second and a half
+@examples(6)  # each takes a second and a half
 @given(seed=SEEDS, instance=st.sampled_from(HOLED))
 def test_cells_with_several_loops(seed: int, instance: Instance) -> None:
     same_minimum(instance, seed)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(seed=SEEDS, islands=st.integers(0, 2), cracks=st.integers(0, 2), strands=st.integers(1, 2))
 def test_random_surfaces(seed: int, islands: int, cracks: int, strands: int) -> None:
     """Islands make cells with several loops, cracks cells that touch themselves."""
@@ -56,7 +57,7 @@ def test_random_surfaces(seed: int, islands: int, cracks: int, strands: int) -> 
     same_minimum(instance, seed, strands)
 
 
-@settings(max_examples=20, deadline=None)
+@examples(10)
 @given(seed=SEEDS)
 def test_a_closed_surface_with_several_loops(seed: int) -> None:
     """A sphere: one cell of two colors around patches, each patch a loop of its own."""

@@ -6,7 +6,8 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.instance import OUTSIDE, Instance
@@ -59,7 +60,7 @@ def test_meshes_face_outward(shape: Topology) -> None:
         assert (a * normals).sum() > 0
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(
     seed=st.integers(0, 10**6),
     shape=st.sampled_from(SHAPES),

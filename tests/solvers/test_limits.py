@@ -5,7 +5,8 @@ from __future__ import annotations
 from itertools import combinations
 
 import pytest
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES
 from ortools.sat.python import cp_model
@@ -84,7 +85,7 @@ def test_loops_beside_do_not_hide_a_conflict(islands: int) -> None:
 # --- bounds ---------------------------------------------------------------------------------------
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(seed=SEEDS, cells=st.integers(1, 12), colors=st.integers(1, 5))
 def test_strangers_found_at_once_share_no_region(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
@@ -94,7 +95,7 @@ def test_strangers_found_at_once_share_no_region(seed: int, cells: int, colors: 
     assert 1 <= len(found) <= set_cover(instance).bound
 
 
-@settings(max_examples=30, deadline=None)
+@examples(15)
 @given(seed=SEEDS, cells=st.integers(1, 12), colors=st.integers(1, 5))
 def test_a_cover_without_time_is_a_cover_all_the_same(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
@@ -160,7 +161,7 @@ def test_an_interrupt_at_any_moment_leaves_a_division(
 # --- memory ---------------------------------------------------------------------------------------
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(2, 9), colors=st.integers(1, 4))
 def test_the_estimate_of_a_model_is_near_its_size(seed: int, cells: int, colors: int) -> None:
     """Counted in the model itself: variables in all of its constraints."""
@@ -250,7 +251,7 @@ def side_by_side(instances: list[Instance]) -> Instance:
     return Instance("side by side", names, tuple(cells), tuple(edges))
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(seeds=st.lists(SEEDS, min_size=2, max_size=3), cells=st.integers(2, 6))
 def test_minima_of_parts_add_up(seeds: list[int], cells: int) -> None:
     instances = [planar_graph(seed, cells, cells + 3, 3) for seed in seeds]
@@ -260,7 +261,7 @@ def test_minima_of_parts_add_up(seeds: list[int], cells: int) -> None:
     assert together.segments == sum(found.segments or 0 for found in apart)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(2, 10), colors=st.integers(2, 4))
 def test_parts_are_what_live_edges_connect(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
@@ -280,7 +281,7 @@ def test_parts_are_what_live_edges_connect(seed: int, cells: int, colors: int) -
 # --- windows --------------------------------------------------------------------------------------
 
 
-@settings(max_examples=8, deadline=None)
+@examples(6)
 @given(seed=SEEDS, shape=st.sampled_from([(0, 0), (2, 2), (3, 0)]))
 def test_windows_only_improve(seed: int, shape: tuple[int, int]) -> None:
     """From the division that paints every cell whole; the checker sees each step."""

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 from commands import run
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
@@ -84,7 +85,7 @@ def test_model_of_figures(path: Path) -> None:
 
 
 @given(st.integers(0, 2**20), st.integers(2, 7), st.integers(0, 5), st.booleans())
-@settings(max_examples=40, deadline=None)
+@examples(20)
 def test_model_of_random_graphs(seed: int, cells: int, more: int, self_edges: bool) -> None:
     instance = planar_graph(seed, cells, cells + more, 3, self_edges=self_edges)
     assert minimum_of_model(instance) == known_minimum(instance)

@@ -9,7 +9,8 @@ from pathlib import Path
 import holes
 import pytest
 from commands import run
-from hypothesis import assume, given, settings
+from examples import examples
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from relabelled import turned
@@ -37,7 +38,7 @@ def schemes_of(instance: Instance) -> set[SchemeKey]:
     return set(found)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(seed=SEEDS, darts=st.integers(3, 6), loops=st.integers(2, 3), colors=st.integers(2, 3))
 def test_against_every_division(seed: int, darts: int, loops: int, colors: int) -> None:
     instance = holes.holed(seed, darts, loops, colors)
@@ -53,7 +54,7 @@ def test_the_annulus() -> None:
     assert schemes_of(instance) == expected
 
 
-@settings(max_examples=10, deadline=None)
+@examples(6)
 @given(seed=SEEDS, islands=st.integers(1, 2))
 def test_however_loops_are_turned(seed: int, islands: int) -> None:
     """The very same schemes, not only as many: there are no seams in them."""
@@ -71,7 +72,7 @@ def test_from_the_command_line(tmp_path: Path) -> None:
     assert run("check", PAPER / "annulus.json", target) == 0
 
 
-@settings(max_examples=200, deadline=None)
+@examples(40)
 @given(
     labels=st.lists(st.integers(0, 3), min_size=2, max_size=7),
     places=st.lists(st.integers(0, 2), min_size=7, max_size=7),

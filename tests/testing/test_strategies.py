@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
+from examples import examples
 from hypothesis import find, given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +18,7 @@ from cellcolor.testing.sheets import sheet
 from cellcolor.testing.strategies import broken_plans, instances, labelled_surfaces, valid_plans
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(labelled_surfaces(largest=8), st.data())
 def test_valid_plans_are_valid_and_broken_ones_are_not(
     surface: LabelledSurface, data: st.DataObject
@@ -26,7 +27,7 @@ def test_valid_plans_are_valid_and_broken_ones_are_not(
     assert not check_plan(surface, data.draw(broken_plans(surface))).valid
 
 
-@settings(max_examples=20, deadline=None)
+@examples(10)
 @given(labelled_surfaces(largest=8), st.data())
 def test_no_valid_plan_beats_the_minimum(surface: LabelledSurface, data: st.DataObject) -> None:
     oracle = cellcolor.Oracle(surface, workers=1)
@@ -34,7 +35,7 @@ def test_no_valid_plan_beats_the_minimum(surface: LabelledSurface, data: st.Data
     assert verdict.segments is not None and verdict.segments >= oracle.bounds.lower
 
 
-@settings(max_examples=20, deadline=None)
+@examples(10)
 @given(instances(most_cells=6, most_colors=3))
 def test_instances_can_be_solved(instance: Instance) -> None:
     assert len(instance.cells) <= 6 and len(instance.colors) <= 3
@@ -96,7 +97,7 @@ def test_every_sort_of_broken_plan_is_drawn(reason: str) -> None:
     assert find(broken_plans(ROW), broken, settings=few)
 
 
-@settings(max_examples=30, deadline=None)
+@examples(15)
 @given(st.data())
 def test_broken_plans_of_a_surface_that_nothing_reaches(data: st.DataObject) -> None:
     bare = sheet(2, 2, [[(5, 5, 5, 5)]])

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from examples import examples
 from flat import one_segment, slit, square, whole
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 from painted_at_random import SHAPES, Painting, painted_at_random
 from path_checker import PathChecker
@@ -27,7 +28,7 @@ def covered(painting: Painting, pattern: str, spacing: float, **options: object)
 
 @pytest.mark.parametrize("pattern", PATTERNS)
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES))
-@settings(max_examples=4, deadline=None)
+@examples(4)
 def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str) -> None:
     assert_on_segments(pattern, seed, shape, 0.25)
 
@@ -36,7 +37,7 @@ def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str) -> No
 @pytest.mark.parametrize("pattern", PATTERNS)
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.sampled_from([0.04, 0.1, 0.25]))
 @example(1, "disc", 0.25)  # two segments of a quarter of the spacing squared, to the last digit
-@settings(max_examples=40, deadline=None)
+@examples(20)
 def test_many_paths_stay_on_their_segments(
     pattern: str, seed: int, shape: str, spacing: float
 ) -> None:
@@ -79,7 +80,7 @@ def test_whole_shapes_are_covered_nearly_once(pattern: str, shape: str) -> None:
 
 
 @given(st.integers(0, 10**6), st.sampled_from(sorted(PATTERNS)), st.data())
-@settings(max_examples=8, deadline=None)
+@examples(6)
 def test_walls_and_what_is_left_out_are_kept_off(
     seed: int, pattern: str, data: st.DataObject
 ) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from examples import examples
 from flat import one_segment, slit, square, whole
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from painted_at_random import SHAPES, painted_at_random
 
@@ -85,7 +86,7 @@ def test_normals_lie_between_those_of_the_corners() -> None:
 
 
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES))
-@settings(max_examples=15, deadline=None)
+@examples(7)
 def test_parts_have_the_area_of_their_vertices(seed: int, shape: str) -> None:
     painting = painted_at_random(seed, shape)
     regions = regions_of(*painting)
@@ -104,7 +105,7 @@ def test_parts_have_the_area_of_their_vertices(seed: int, shape: str) -> None:
 
 
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.floats(0.02, 0.2))
-@settings(max_examples=15, deadline=None)
+@examples(7)
 def test_refining_keeps_area_shape_and_place(seed: int, shape: str, longest: float) -> None:
     for region in regions_of(*painted_at_random(seed, shape))[:3]:
         fine = region.mesh.refined(longest)

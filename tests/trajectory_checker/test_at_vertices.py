@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
@@ -48,7 +49,7 @@ def expected(built: BuildResult, vertex: int, joints: Array) -> tuple[int | None
     return (color if near and color >= 0 else None), sure
 
 
-@settings(max_examples=200, deadline=None)
+@examples(40)
 @given(st.data())
 def test_the_color_is_that_of_the_nearest_configuration(data: st.DataObject) -> None:
     """Moved a little, turned by full circles, the last joint anyhow."""

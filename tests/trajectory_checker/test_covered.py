@@ -9,7 +9,8 @@ import pytest
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.arrays import Array
@@ -68,7 +69,7 @@ def fine(surface: Surface) -> FineMesh:
     return refined(surface, 0.0025, NEVER)
 
 
-@settings(deadline=None, max_examples=10)
+@examples(6)
 @given(seed=st.integers(0, 10_000))
 def test_distances_on_a_plane_are_plain_distances(seed: int) -> None:
     """Never shorter, and by less than a tenth longer; over a whole surface it is one or two %."""
@@ -137,7 +138,7 @@ def test_the_same_line_again_is_a_second_pass() -> None:
         assert set(visits[beside]) == {2}
 
 
-@settings(deadline=None, max_examples=25)
+@examples(12)
 @given(
     begin=st.floats(0.0, 0.02),
     length=st.floats(0.03, 0.06),

@@ -7,7 +7,8 @@ import pytest
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
@@ -32,7 +33,7 @@ def bumpy(seed: int, count: int = 5) -> Surface:
     return Surface(vertices, faces, normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
-@settings(deadline=None, max_examples=20)
+@examples(10)
 @given(seed=st.integers(0, 1000), longest=st.sampled_from([0.002, 0.005, 0.012, 0.1]))
 def test_refined_meshes_conform(seed: int, longest: float) -> None:
     surface = bumpy(seed)

@@ -7,7 +7,8 @@ import sys
 import dh_arms
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from independent import set_distance, wrapped
 from near_singular import KINDS, near_singular
@@ -150,7 +151,7 @@ def test_a_branch_alone_is_the_same_as_among_all(name: str) -> None:
     seed=st.integers(0, 2**32 - 1),
     steps=st.integers(20, 60),
 )
-@settings(deadline=None, max_examples=40)
+@examples(20)
 def test_names_stay_the_same_without_a_singularity(name: str, seed: int, steps: int) -> None:
     """On the straight way between two configurations, wherever no determinant is near zero."""
     random = np.random.default_rng(seed)

@@ -9,7 +9,7 @@ import calibrated
 import numpy as np
 import pytest
 from bent_tools import ACROSS, BENT, STRAIGHT, tip_frame, tip_frames
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from independent import set_distance, wrapped
 
@@ -53,7 +53,6 @@ place = st.tuples(*[st.floats(-2, 2)] * 3)
 
 
 @given(unit, place, unit, st.booleans())
-@settings(deadline=None)
 def test_the_tool_points_as_far_to_the_goal_as_it_can(
     goal: tuple[float, ...], point: tuple[float, ...], direction: tuple[float, ...], towards: bool
 ) -> None:
@@ -83,7 +82,6 @@ def test_the_rule_says_nothing_along_the_tool() -> None:
 
 
 @given(unit, unit, st.floats(-3.1, 3.1))
-@settings(deadline=None)
 def test_an_angle_about_the_tool_is_what_it_was_turned_by(
     direction: tuple[float, ...], other: tuple[float, ...], angle: float
 ) -> None:

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from independent import Eaik, regular, set_distance, wrapped
 from shipped import ROBOTS
@@ -75,7 +76,6 @@ def test_same_regular_solutions_at_straight_elbow_and_aligned_wrist(
         lambda q: abs(np.sin(q[4])) > 1e-3 and abs(np.sin(q[2])) > 1e-3
     )
 )
-@settings(deadline=None)
 def test_every_configuration_is_among_the_solutions_of_its_pose(
     robot: Robot, geometry: UrGeometry, five: list[float]
 ) -> None:
@@ -159,7 +159,7 @@ def arm_with_frames(folder: Path, lengths: Array, signs: list[int], turns: list[
     turns=st.lists(st.floats(-3, 3), min_size=3, max_size=3),
     seed=st.integers(0, 2**32 - 1),
 )
-@settings(deadline=None, max_examples=25)
+@examples(12)
 def test_frames_of_another_urdf_do_not_matter(
     tmp_path_factory: pytest.TempPathFactory, signs: list[int], turns: list[float], seed: int
 ) -> None:

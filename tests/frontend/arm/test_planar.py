@@ -10,7 +10,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from bent_tools import BENT, tip_frame, tip_frames, tool
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from independent import wrapped
 from refused_setups import refused_setup
@@ -84,7 +85,7 @@ angles = st.lists(st.floats(-3.1, 3.1), min_size=3, max_size=3)
 
 
 @given(lengths, zeros, flips, angles)
-@settings(deadline=None, max_examples=60)
+@examples(30)
 def test_every_configuration_is_among_the_solutions_of_its_pose(
     lengths: list[float], zeros: list[float], flips: list[bool], q: list[float]
 ) -> None:
@@ -113,7 +114,7 @@ def _hold(robot: Robot, joints: Array, found: Array) -> None:
 
 
 @given(lengths, zeros, flips, angles)
-@settings(deadline=None, max_examples=60)
+@examples(30)
 def test_the_elbow_is_where_its_name_says(
     lengths: list[float], zeros: list[float], flips: list[bool], q: list[float]
 ) -> None:

@@ -9,7 +9,8 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from bent_tools import tip_frame, tip_frames
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from refused_setups import refused_setup
 from scaras import (
@@ -69,7 +70,7 @@ def solved(robot: Robot, joints: Array) -> Array:
 
 
 @given(st.sampled_from(EVERY), seeds)
-@settings(deadline=None, max_examples=80)
+@examples(30)
 def test_every_configuration_is_among_the_solutions_of_its_pose(order: str, seed: int) -> None:
     """Poses are Pinocchio's, and both solutions reach them."""
     robot = scara(order, seed)

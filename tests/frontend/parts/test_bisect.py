@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.mesh import directed_edges
@@ -33,7 +34,7 @@ def smallest_angle(surface: Surface) -> float:
 
 
 @given(st.integers(0, 10**6), st.floats(0.005, 0.5), st.integers(1, 4))
-@settings(max_examples=40, deadline=None)
+@examples(20)
 def test_whatever_is_bisected_and_however_often(seed: int, share: float, rounds: int) -> None:
     given_surface = surface = on_unit_sphere(seed)
     rng = np.random.default_rng(seed)

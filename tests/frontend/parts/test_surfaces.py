@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -38,7 +39,7 @@ def double_areas(points: Array, faces: Array) -> Array:
 
 
 @given(st.integers(7, 3000), st.floats(0, 0.25), st.integers(0, 10**6))
-@settings(deadline=None, max_examples=50)
+@examples(25)
 def test_disc_is_a_counter_clockwise_disc(target: int, jitter: float, seed: int) -> None:
     points, faces = disc_mesh(target, jitter, seed)
     assert (double_areas(points, faces) > 0).all()
@@ -60,7 +61,7 @@ def test_disc_is_a_counter_clockwise_disc(target: int, jitter: float, seed: int)
     st.floats(0, 0.25),
     st.integers(0, 10**6),
 )
-@settings(deadline=None, max_examples=50)
+@examples(25)
 def test_grid_is_a_counter_clockwise_rectangle(
     width: float, height: float, target: int, jitter: float, seed: int
 ) -> None:

@@ -6,8 +6,9 @@ import itertools
 import math
 from dataclasses import replace
 
+from examples import examples
 from exhaustive_minima import minimum
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from vertex_minima import vertex_minimum
@@ -26,7 +27,7 @@ RED, BLUE = 0, 1
 SEEDS = st.integers(0, 10**6)
 
 
-@settings(max_examples=30, deadline=None)
+@examples(15)
 @given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
 def test_set_cover_is_a_lower_bound(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
@@ -41,7 +42,7 @@ def test_set_cover_splits_colors_into_regions() -> None:
     assert set_cover(apart).bound == 2
 
 
-@settings(max_examples=30, deadline=None)
+@examples(15)
 @given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 4))
 def test_dropping_dominated_colors_keeps_the_minimum(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 3, colors)
@@ -65,7 +66,7 @@ def with_colors(instance: Instance, colors: tuple[frozenset[int], ...]) -> Insta
     return replace(instance, cells=cells, edges=tuple(edges))
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
 def test_hard_cells_need_as_many_regions_as_all(seed: int, cells: int, colors: int) -> None:
     """Against trying all sets of regions; strangers wherever there are as many of them."""
@@ -141,7 +142,7 @@ def test_a_ring_of_cells_that_share_two_colors_bounds_no_crossings() -> None:
     assert set(enough_crossings(instance, both).values()) == {math.inf}
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
 def test_more_crossings_than_enough_gain_nothing(seed: int, cells: int, colors: int) -> None:
     """Against the reference solver, which knows nothing of this, with one strand more."""
@@ -157,7 +158,7 @@ def test_more_crossings_than_enough_gain_nothing(seed: int, cells: int, colors: 
     assert solve(instance, wider, "dfs").segments == found.segments
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(seed=SEEDS, colors=st.integers(2, 3), cracks=st.integers(0, 2))
 def test_the_surface_bound_holds_for_vertex_colorings(seed: int, colors: int, cracks: int) -> None:
     """No painting of the mesh's vertices, found without the graph, has fewer segments."""

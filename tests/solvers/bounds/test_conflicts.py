@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 import networkx as nx
-from hypothesis import given, reject, settings
+from examples import examples
+from hypothesis import given, reject
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import grid_faces, grid_points, surface
@@ -184,7 +185,7 @@ def can_pass(
     return any(extend([start]) for start in sorted(one[0]))
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(mesh=framed(5, 7))
 def test_what_is_in_conflict_cannot_pass_on_the_mesh(mesh: LabelledSurface) -> None:
     """Against trying all paths over mesh vertices, without cells, edges or merging."""
@@ -200,7 +201,7 @@ def test_what_is_in_conflict_cannot_pass_on_the_mesh(mesh: LabelledSurface) -> N
             assert not can_pass(mesh, (first[0], second[0]), one, other)
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(mesh=framed(5, 7))
 def test_the_surface_bound_holds_where_segments_are_in_conflict(mesh: LabelledSurface) -> None:
     """Against a sweep over vertex colorings, which knows no cells."""
@@ -246,7 +247,7 @@ def crossed_rings(draw: st.DrawFn) -> LabelledSurface:
     return LabelledSurface("rings", ("red", "blue", "green"), vertices, faces, tuple(labels))
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(mesh=crossed_rings())
 def test_what_is_in_conflict_cannot_pass_around_a_handle(mesh: LabelledSurface) -> None:
     """Against trying all paths over mesh vertices."""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from examples import examples
 from exhaustive_minima import minimum
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES
 
@@ -36,7 +37,7 @@ def wheel(*petals: frozenset[int]) -> Instance:
     )
 
 
-@settings(max_examples=100, deadline=None)
+@examples(40)
 @given(st.lists(COLORS, min_size=1, max_size=8))
 def test_the_checker_counts_the_same_links(colors: list[frozenset[int]]) -> None:
     instance = wheel(*colors)
@@ -45,7 +46,7 @@ def test_the_checker_counts_the_same_links(colors: list[frozenset[int]]) -> None
     assert hubs.links(0, lambda: tried.append(1)) == best_grouping(colors).links
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(seed=SEEDS, petals=st.integers(4, 30), colors=st.integers(3, 6))
 def test_a_single_hub_is_bounded_by_its_minimum(seed: int, petals: int, colors: int) -> None:
     instance = hub(seed, petals, colors)
@@ -53,7 +54,7 @@ def test_a_single_hub_is_bounded_by_its_minimum(seed: int, petals: int, colors: 
     assert hub_bound(instance).value == hub_minimum(ring)
 
 
-@settings(max_examples=20, deadline=None)
+@examples(10)
 @given(seed=SEEDS, colors=st.integers(2, 3))
 def test_no_division_has_fewer_segments(seed: int, colors: int) -> None:
     for instance in (planar_graph(seed, 4, 8, colors), hub_grid(seed, 1, 2, 3, 1)):
@@ -80,7 +81,7 @@ def part(value: int, cells: list[int], hubs: list[int]) -> Bound:
     return Bound("hubs", value, "surface", {"left_out": [], "parts": [document]})
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(seed=SEEDS, data=st.data())
 def test_nothing_false_is_verified(seed: int, data: st.DataObject) -> None:
     """Any cells and hubs, for one segment more than some division has."""

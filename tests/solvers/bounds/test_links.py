@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from itertools import chain
 
 from drawings import most_links_drawn, walks_and_parts
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from noncrossing import noncrossing
 
@@ -29,7 +30,7 @@ def check(grouping: Grouping, colors: Sequence[frozenset[int]]) -> None:
     assert all(g.color in colors[dart] for g in grouping.groups for dart in g.darts)
 
 
-@settings(max_examples=150, deadline=None)
+@examples(40)
 @given(st.lists(COLORS, min_size=1, max_size=8), st.data())
 def test_one_loop_has_the_links_of_the_best_partition(
     colors: list[frozenset[int]], data: st.DataObject
@@ -51,7 +52,7 @@ def single(loops: Sequence[Sequence[int]]) -> list[list[frozenset[int]]]:
     return [[frozenset({color}) for color in loop] for loop in loops]
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(LOOPS)
 def test_no_more_links_can_be_drawn_between_several_loops(loops: list[list[int]]) -> None:
     drawn = most_links_drawn(loops)
@@ -61,7 +62,7 @@ def test_no_more_links_can_be_drawn_between_several_loops(loops: list[list[int]]
     assert hubs_with_loops.most_links(loops, lambda: None) == bound
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(LOOPS, st.integers(0, 99))
 def test_what_mergers_lead_to_can_be_drawn(loops: list[list[int]], seed: int) -> None:
     """By Euler's formula: points less lines plus walks round faces are two for each part."""

@@ -7,7 +7,8 @@ from itertools import combinations, product
 
 import networkx as nx
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from meshes import grid_faces, grid_points, surface
 from vertex_minima import vertex_minimum
@@ -168,7 +169,7 @@ def can_be_drawn(mesh: LabelledSurface, segments: Sequence[tuple[int, list[set[i
     return fits(0, set())
 
 
-@settings(max_examples=12, deadline=None)
+@examples(6)
 @given(mesh=rooms(6, 7), data=st.data())
 def test_what_is_tangled_cannot_be_drawn_on_the_mesh(
     mesh: LabelledSurface, data: st.DataObject
@@ -198,7 +199,7 @@ def test_what_is_tangled_cannot_be_drawn_on_the_mesh(
             assert not can_be_drawn(mesh, segments)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(mesh=rooms(6, 7))
 def test_the_bound_holds_on_the_mesh(mesh: LabelledSurface) -> None:
     """Against a sweep over vertex colorings, which knows no cells."""

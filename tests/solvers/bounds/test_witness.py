@@ -7,7 +7,8 @@ from itertools import combinations
 
 import networkx as nx
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from library import PAPER
 from meshes import drawn, surfaces
 
@@ -33,7 +34,7 @@ def connected(instance: Instance, one: int, other: int) -> bool:
 
 
 @given(surfaces())
-@settings(max_examples=60, deadline=None)
+@examples(30)
 def test_no_two_witnesses_can_share_a_segment(surface: LabelledSurface) -> None:
     result = cellcolor.solve(surface, workers=1)
     cells = result.witness

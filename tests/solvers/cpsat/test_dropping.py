@@ -6,8 +6,9 @@ from itertools import pairwise
 
 import pytest
 from dart_graphs import graph_of
+from examples import examples
 from exhaustive_minima import minimum
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from petals import hub
 
@@ -37,7 +38,7 @@ def numbers(instance: Instance, seed: int, deadline: Deadline = NEVER) -> list[i
     return found
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(1, 7), colors=st.integers(1, 4))
 def test_each_division_is_legal_and_better(seed: int, cells: int, colors: int) -> None:
     instance = planar_graph(seed, cells, cells + 4, colors)

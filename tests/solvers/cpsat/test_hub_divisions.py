@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 
 import cellcolor
@@ -30,14 +31,14 @@ def divided(instance: Instance) -> int:
     return len(segments_of(graph, painting))
 
 
-@settings(max_examples=20, deadline=None)
+@examples(10)
 @given(seed=SEEDS, petals=st.integers(4, 40), colors=st.integers(3, 6))
 def test_a_single_hub_is_divided_best(seed: int, petals: int, colors: int) -> None:
     instance = hub(seed, petals, colors)
     assert divided(instance) == hub_minimum([cell.colors[0] for cell in instance.cells[1:]])
 
 
-@settings(max_examples=20, deadline=None)
+@examples(10)
 @given(seed=SEEDS, loops=st.integers(2, 5), petals=st.integers(3, 6), colors=st.integers(3, 5))
 def test_seams_lead_through_what_is_drawn(seed: int, loops: int, petals: int, colors: int) -> None:
     """Every petal is in one group, and each group is one segment, however seams part it."""

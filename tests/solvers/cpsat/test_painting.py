@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dart_graphs import graph_of
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
 from petals import hub
@@ -19,7 +20,7 @@ RED, BLUE = 0, 1
 SEEDS = st.integers(0, 10**6)
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(1, 4))
 def test_what_the_model_finds_has_a_scheme(seed: int, cells: int, colors: int) -> None:
     """The painting read off the model, made canonical, is a scheme with no more segments."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from examples import examples
 from exhaustive_minima import minimum
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from petals import hub
@@ -48,7 +49,7 @@ def segments_of(instance: Instance, plan: SegmentPlan, rings: int, rounds: int =
     return report.segments
 
 
-@settings(max_examples=60, deadline=None)
+@examples(30)
 @given(
     seed=SEEDS,
     cells=st.integers(1, 9),

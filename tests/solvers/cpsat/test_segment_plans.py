@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import pytest
+from examples import examples
 from exhaustive_minima import minimum
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
 from petals import hub
@@ -64,7 +65,7 @@ def test_plans_heed_conflicts(petals: tuple[int, ...], segments: int) -> None:
     assert set().union(*(s.cells for s in plan)) == set(range(len(petals) + 1))
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 3))
 def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors: int) -> None:
     """Against brute force, which paints with one strand, and the DFS with two."""

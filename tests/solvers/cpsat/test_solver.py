@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pytest
 from dart_graphs import graph_of
+from examples import examples
 from exhaustive_minima import optimal_schemes
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
@@ -27,7 +28,7 @@ RED, BLUE = 0, 1
 SEEDS = st.integers(0, 10**6)
 
 
-@settings(max_examples=25, deadline=None)
+@examples(12)
 @given(seed=SEEDS, petal_count=st.integers(2, 14), colors=st.integers(2, 5))
 def test_hubs_have_their_known_minimum(seed: int, petal_count: int, colors: int) -> None:
     if colors == 2 and petal_count % 2:
@@ -64,7 +65,7 @@ def test_without_a_proof_for_the_surface_nothing_is_called_optimal() -> None:
     assert not found.proved_for_surface
 
 
-@settings(max_examples=40, deadline=None)
+@examples(20)
 @given(seed=SEEDS, cells=st.integers(2, 6), colors=st.integers(2, 3))
 def test_fewest_cutting_paths(seed: int, cells: int, colors: int) -> None:
     """Against all optimal schemes: a division with the fewest sub-cells is a scheme."""

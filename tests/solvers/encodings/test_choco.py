@@ -7,7 +7,8 @@ import time
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from examples import examples
+from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 
@@ -51,14 +52,14 @@ def test_figures(path: Path) -> None:
     assert minimum(instance) == instance.known.paper.segments
 
 
-@settings(deadline=None, max_examples=25)
+@examples(12)
 @given(seed=st.integers(0, 10**6), cells=st.integers(3, 5), self_edges=st.booleans())
 def test_reference_solver(seed: int, cells: int, self_edges: bool) -> None:
     instance = planar_graph(seed, cells, cells + 3, 3, self_edges=self_edges)
     assert minimum(instance) == ReferenceSolver().minimize(instance, Options()).lower_bound
 
 
-@settings(deadline=None, max_examples=10)
+@examples(6)
 @given(seed=st.integers(0, 10**6), petals=st.integers(4, 9))
 def test_hubs(seed: int, petals: int) -> None:
     instance = hub(seed, petals, 4)

@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from examples import examples
 from exhaustive_minima import live_darts, minimum
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
@@ -56,7 +57,7 @@ def test_figures(path: Path, name: str) -> None:
     assert proved(instance, name) == instance.known.paper.segments
 
 
-@settings(deadline=None, max_examples=15)
+@examples(7)
 @given(seed=st.integers(0, 10**6), cells=st.integers(3, 4), self_edges=st.booleans())
 def test_brute_force_over_all_partitions(seed: int, cells: int, self_edges: bool) -> None:
     instance = planar_graph(seed, cells, cells + 3, 3, self_edges=self_edges)
@@ -66,7 +67,7 @@ def test_brute_force_over_all_partitions(seed: int, cells: int, self_edges: bool
         assert proved(instance, name) == expected, name
 
 
-@settings(deadline=None, max_examples=15)
+@examples(7)
 @given(seed=st.integers(0, 10**6), self_edges=st.booleans())
 def test_reference_solver_on_graphs(seed: int, self_edges: bool) -> None:
     family = SMALL["graphs with self-edges" if self_edges else "graphs"]
@@ -78,7 +79,7 @@ def test_reference_solver_on_graphs(seed: int, self_edges: bool) -> None:
         assert proved(instance, name) == expected, name
 
 
-@settings(deadline=None, max_examples=10)
+@examples(6)
 @given(seed=st.integers(0, 10**6), petals=st.integers(4, 6), choices=st.integers(1, 3))
 def test_hubs(seed: int, petals: int, choices: int) -> None:
     """One cell in which links would cross; of single colors the minimum is known."""
