@@ -32,7 +32,8 @@ class Child:
 
         Args:
             command: the program and its arguments.
-            folder: where it works, and what it complains of is kept.
+            folder: for its temporary files, also those that it would have removed had it not been
+                killed, and for what it complains of. It works where this process does.
 
         Raises:
             CellcolorError: it cannot be started.
@@ -42,7 +43,7 @@ class Child:
         try:
             self._process = subprocess.Popen(
                 command,
-                cwd=folder,
+                env=os.environ | {"TMPDIR": str(folder)},
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.PIPE,
                 stderr=self._errors,

@@ -129,6 +129,18 @@ def test_a_program_that_does_not_end_is_killed_with_its_children(tmp_path: Path)
     assert (mark.stat().st_size if mark.exists() else 0) == size
 
 
+def test_a_program_that_is_killed_leaves_its_files_in_the_folder(tmp_path: Path) -> None:
+    """MiniZinc keeps the flattened model in a temporary file, and a killed one cannot remove it."""
+    script = (
+        "import os, tempfile, time; print(os.getcwd()); "
+        "print(tempfile.mkstemp()[1], flush=True); time.sleep(600)"
+    )
+    with Child([sys.executable, "-c", script], tmp_path) as program:
+        where, file = islice(program.lines(NEVER), 2)
+    assert Path(where) == Path.cwd()
+    assert Path(file).exists() and Path(file).parent == tmp_path
+
+
 def test_a_program_that_fails_says_why(tmp_path: Path) -> None:
     script = "import sys; print('one'); sys.exit('out of order')"
     with Child([sys.executable, "-c", script], tmp_path) as program:

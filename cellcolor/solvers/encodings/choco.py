@@ -287,10 +287,11 @@ class ChocoSolver:
         try:
             Problem.of(instance, deadline)  # what cannot be solved is refused here
             fewest = len(greedy_strangers(instance))
-            with tempfile.TemporaryDirectory() as name:
+            with tempfile.TemporaryDirectory(prefix="cellcolor-") as name:
                 folder = Path(name)
-                (folder / "instance.json").write_text(instance.to_json(), encoding="utf-8")
-                command = [sys.executable, "-m", __name__, "instance.json", str(deadline.left)]
+                file = folder / "instance.json"
+                file.write_text(instance.to_json(), encoding="utf-8")
+                command = [sys.executable, "-m", __name__, str(file), str(deadline.left)]
                 with Child(command, folder) as child:
                     for line in child.lines(deadline):
                         told = _told(line)

@@ -113,7 +113,7 @@ class _Rival:
             runner = f"cellcolor.solvers.linear.run_{self.name}"
             # Its own limit comes earlier, so that it can say what it knows in the end.
             arguments = str(file), f"{0.9 * deadline.left:.2f}", str(options.seed)
-            with Child([sys.executable, "-m", runner, *arguments], Path.cwd()) as child:
+            with Child([sys.executable, "-m", runner, *arguments], Path(place)) as child:
                 # A signal may stand for the end of the time: OutOfTime.
                 for line in child.lines(deadline):
                     if heard.take(line) and progress is not None:
