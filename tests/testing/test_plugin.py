@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import importlib
 import json
+import multiprocessing
+import os
 import re
 import subprocess
 import sys
 from importlib.metadata import entry_points
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -23,12 +27,41 @@ LOADED = (
 )
 
 
-def run(folder: Path, tests: str, *options: str, surface: LabelledSurface = ROW) -> str:
-    """What pytest says of some tests in a folder that has ``row.surface.json``."""
+@pytest.fixture(scope="module", autouse=True)
+def loaded() -> None:
+    """What the runs need is imported once: they are forked, and start with all of it."""
+    cellcolor.Oracle(ROW).judge([0] * 18)
+    if find_spec("matplotlib"):
+        importlib.import_module("cellcolor.pictures.static")
+
+
+def written(
+    folder: Path, tests: str, options: tuple[str, ...], surface: LabelledSurface
+) -> list[str]:
+    """The tests in a folder that has ``row.surface.json``, and the arguments to run them with."""
     (folder / "row.surface.json").write_text(surface.to_json())
     (folder / "test_planner.py").write_text(tests)
-    command = [sys.executable, "-m", "pytest", *LOADED, "-q", "-p", "no:xdist", *options]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False).stdout
+    return [*LOADED, "-q", "-p", "no:xdist", *options]
+
+
+def run(folder: Path, tests: str, *options: str, surface: LabelledSurface = ROW) -> str:
+    """What pytest says of some tests, run in a fork of this process."""
+    said = folder / "said.txt"
+    arguments = written(folder, tests, options, surface)
+    child = multiprocessing.get_context("fork").Process(target=_run, args=(said, arguments))
+    child.start()
+    child.join()
+    return said.read_text()
+
+
+def _run(said: Path, arguments: list[str]) -> None:
+    os.chdir(said.parent)
+    sys.path.insert(0, str(said.parent))
+    with said.open("w") as file:
+        os.dup2(file.fileno(), 1)
+        os.dup2(file.fileno(), 2)
+        sys.stdout = sys.stderr = file
+        pytest.main(arguments)
 
 
 def test_a_plan_that_can_be_beaten_fails_with_the_place_and_a_picture(tmp_path: Path) -> None:
@@ -197,15 +230,17 @@ def test_the_time_limit_is_an_option(tmp_path: Path) -> None:
 
 
 def test_nothing_is_imported_before_a_test_asks(tmp_path: Path) -> None:
-    out = run(
-        tmp_path,
+    """In a process of its own."""
+    tests = (
         "import sys\n"
         "def test_mine():\n"
         "    heavy = [m for m in sys.modules if m.startswith(('cellcolor', 'numpy', 'ortools'))]\n"
         "    assert set(heavy) <= {'cellcolor', 'cellcolor.version', 'cellcolor.testing',\n"
-        "                          'cellcolor.testing.plugin'}, heavy\n",
+        "                          'cellcolor.testing.plugin'}, heavy\n"
     )
-    assert "1 passed" in out
+    command = [sys.executable, "-m", "pytest", *written(tmp_path, tests, (), ROW)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert "1 passed" in done.stdout
 
 
 def test_without_a_cache_there_is_no_picture(tmp_path: Path) -> None:
