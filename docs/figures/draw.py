@@ -1,4 +1,4 @@
-"""Draw the figures of docs/concepts.md: ``python docs/figures/draw.py [FOLDER]``.
+"""Draw the figures of docs/concepts.md: ``python docs/figures/draw.py [FOLDER [TERM…]]``.
 
 Everything in them is made by the package: cells and edges by the decomposition, divisions by a
 solver, areas cut like those of ``cellcolor show``. The same versions give the same bytes.
@@ -7,7 +7,7 @@ solver, areas cut like those of ``cellcolor show``. The same versions give the s
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import matplotlib as mpl
@@ -344,14 +344,14 @@ def petal(fig: Figure) -> None:
     hub_and_petals(axes, petals=True)
 
 
-def main(folder: Path) -> None:
-    """Draw all figures into a folder."""
+def main(folder: Path, terms: Iterable[str]) -> None:
+    """Draw the figures of some terms into a folder."""
     style = {"svg.hashsalt": "cellcolor", "font.size": 9, "hatch.linewidth": 5.0}
     with mpl.rc_context(style):
-        for name, draw in FIGURES.items():
+        for name in terms:
             fig = Figure(figsize=SIZES.get(name, (8.4, 3.1)), dpi=100)
             canvas = FigureCanvasAgg(fig)
-            draw(fig)
+            FIGURES[name](fig)
             fig.tight_layout()
             canvas.draw()
             picture = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
@@ -361,4 +361,5 @@ def main(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).resolve().parent)
+    own = Path(__file__).resolve().parent
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else own, sys.argv[2:] or FIGURES)

@@ -108,8 +108,7 @@ def test_an_own_arm_whose_solutions_have_no_names(tmp_path: Path) -> None:
 
 
 def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
-    with followed("add-a-part", tmp_path):
-        del sys.modules["torus_part"]
+    with followed("add-a-part", tmp_path, run=False):
         build_surface(shipped("wok", 50))
         assert "torus_part" not in sys.modules
         Scene.read("torus.toml")
@@ -127,7 +126,7 @@ def test_what_is_not_named_is_not_imported(tmp_path: Path) -> None:
     ],
 )
 def test_faulty_registrations(tmp_path: Path, change: tuple[str, str], message: str) -> None:
-    with followed("add-a-part", tmp_path):
+    with followed("add-a-part", tmp_path, run=False):
         points = tmp_path / "toy-1.0.dist-info" / "entry_points.txt"
         points.write_text(points.read_text().replace(*change))
         with pytest.raises(InputError, match=message) as caught:

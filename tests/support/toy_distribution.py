@@ -14,12 +14,12 @@ from guides import ROOT, blocks, follow
 
 
 @contextmanager
-def followed(guide: str, folder: Path) -> Iterator[dict[str, Any]]:
+def followed(guide: str, folder: Path, *, run: bool = True) -> Iterator[dict[str, Any]]:
     """Do what the guide ``docs/how-to/GUIDE.md`` says, in an empty folder beside ``models``.
 
     A block that a file's name introduces is written to that file; entry points of
     ``pyproject.toml`` are found afterwards as if the distribution had been installed; what is left
-    of the Python is run.
+    of the Python is run, unless only the files are wanted.
 
     Yields:
         the names that the run left behind.
@@ -35,7 +35,8 @@ def followed(guide: str, folder: Path) -> Iterator[dict[str, Any]]:
     with _in(folder):
         names: dict[str, Any] = {}
         try:
-            exec(compile(code, f"{guide}.md", "exec"), names)
+            if run:
+                exec(compile(code, f"{guide}.md", "exec"), names)
             yield names
         finally:
             for file in folder.glob("*.py"):
