@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from library import PAPER
+from petals import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.instance import Cell, Instance
@@ -64,7 +65,7 @@ def test_cells_with_several_loops_are_refused() -> None:
 def test_models_that_would_not_be_written_in_time_are_refused() -> None:
     """200 darts of one cell: 200 choose 4 pairs of chords."""
     with pytest.raises(TooLarge, match="64684950 pairs"):
-        solve(hub(0, 200, 4), Options(), "clingo")
+        solve(four_colors_in_turn(200), Options(), "clingo")
 
 
 @pytest.mark.parametrize("count", [0, 1])

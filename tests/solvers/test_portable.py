@@ -15,6 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
+from petals import four_colors_in_turn
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
@@ -120,7 +121,7 @@ def test_clauses_say_what_the_rows_say() -> None:
 
 
 def test_what_is_too_large_is_refused_before_it_is_made(tmp_path: Path) -> None:
-    huge = hub(0, 400, 4)
+    huge = four_colors_in_turn(400)
     assert estimated_terms(huge) > 5_000_000
     for name in ("opb", "wcnf", "mps", "lp"):
         with pytest.raises(TooLarge):

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 from library import PAPER
+from petals import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.instance import Cell, Instance
@@ -57,7 +58,7 @@ def test_versions_have_a_number(name: str) -> None:
 
 def test_what_is_too_large_is_refused(name: str) -> None:
     with pytest.raises(TooLarge):
-        solve(hub(0, 400, 4), Options(), name)
+        solve(four_colors_in_turn(400), Options(), name)
 
 
 def test_no_time_is_no_proof(name: str) -> None:

@@ -17,3 +17,8 @@ def hub(*petals: int) -> Instance:
         ),
         tuple(Edge(i, 0, i) for i in range(1, len(petals) + 1)),
     )
+
+
+def four_colors_in_turn(petals: int) -> Instance:
+    """A hub however large, made at once, since no minimum is worked out with it."""
+    return hub(*(number % 4 for number in range(petals)))

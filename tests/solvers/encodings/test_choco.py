@@ -11,6 +11,7 @@ from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
+from petals import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.instance import Cell, Instance
@@ -101,7 +102,7 @@ def test_several_loops_are_refused() -> None:
 
 def test_models_that_would_not_fit_are_refused() -> None:
     with pytest.raises(TooLarge, match="terms is not built"):
-        solve(hub(0, 220, 4), Options(), "choco")
+        solve(four_colors_in_turn(220), Options(), "choco")
 
 
 def test_at_the_deadline_the_best_and_a_bound() -> None:

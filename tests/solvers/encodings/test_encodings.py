@@ -11,6 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
+from petals import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.instance import Cell, Edge, Instance
@@ -142,7 +143,7 @@ def test_several_loops_are_refused(name: str) -> None:
 
 def test_models_that_would_not_fit_are_refused(name: str) -> None:
     with pytest.raises(TooLarge, match=r"a model of more than 6e\+05 terms is not built"):
-        solve(hub(0, 220, 4), Options(), name)
+        solve(four_colors_in_turn(220), Options(), name)
 
 
 def test_no_time_is_no_proof(name: str) -> None:
