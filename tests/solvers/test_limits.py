@@ -121,11 +121,11 @@ def test_plans_partings_and_models_end_with_the_deadline() -> None:
     instance = hub(5, 12, 2)
     graph = graph_of(instance)
     regions = color_regions(instance)
-    planner = Planner(instance, regions, set_cover(instance).bound, solved, OVER)
+    planner = Planner(instance, regions, set_cover(instance).bound, solved)
     plan = planner.plan(2, 0)
     assert plan is not None
     with pytest.raises(OutOfTime):
-        planner.find_partings(plan)
+        planner.find_partings(plan, OVER)
     with pytest.raises(OutOfTime):
         full_model(graph, regions, deadline=OVER)
     # What is left of a route is a division; windows are not begun.

@@ -1,19 +1,20 @@
-"""Hubs with petals: a cell of all colors, and cells of one color all round it."""
+"""Hubs with petals: a cell of all colors, and cells of one color or more all round it."""
 
 from __future__ import annotations
 
 from cellcolor.data.instance import Cell, Edge, Instance
 
 
-def hub(*petals: int) -> Instance:
-    """A cell of all colors, two at least, with petals in these colors."""
-    colors = tuple(range(max(1, *petals) + 1))
+def hub(*petals: int | tuple[int, ...]) -> Instance:
+    """A cell of all colors, two at least, with petals in these colors, each in one or more."""
+    own = [(its,) if isinstance(its, int) else its for its in petals]
+    colors = tuple(range(max(1, *map(max, own)) + 1))
     return Instance(
         "hub",
         tuple(f"color {c}" for c in colors),
         (
             Cell(0, colors, (tuple(range(1, len(petals) + 1)),)),
-            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(petals, start=1)),
+            *(Cell(i, petal, ((-i,),)) for i, petal in enumerate(own, start=1)),
         ),
         tuple(Edge(i, 0, i) for i in range(1, len(petals) + 1)),
     )

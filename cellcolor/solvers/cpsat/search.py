@@ -107,6 +107,7 @@ class PartSearch:
         self._running: int | None = None
         self._plan_effort = PLAN_EFFORT
         self._undecided = False
+        self._avoiding = False
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
         whole: Painting = [[Block(min(colors), set())] for colors in self._colors]
         self.best = graph, canonical(graph, whole)
@@ -168,7 +169,6 @@ class PartSearch:
             self._regions,
             self.cover_bound,
             self._solve_plan,
-            deadline,
             self._planned,
         )
         self._undecided = True
@@ -178,12 +178,19 @@ class PartSearch:
 
     def plan_on(self, deadline: Deadline) -> None:
         """What was left undecided is planned with more effort, where hubs do not say more."""
-        if self.planner is None or not self._undecided or self.hubs is not None:
-            return
-        self._undecided = False
-        self._plan_effort = MORE_EFFORT
-        with suppress(Undecided):
-            self._route_all(self.planner, deadline)
+        if self._undecided:
+            self._plan_with_effort(deadline)
+
+    def plan_avoiding(self, deadline: Deadline) -> None:
+        """Plans that say what segments avoid, too, where hubs do not say more."""
+        self._avoiding = True
+        self._plan_with_effort(deadline)
+
+    def _plan_with_effort(self, deadline: Deadline) -> None:
+        if self.planner is not None and self.hubs is None:
+            self._plan_effort = MORE_EFFORT
+            with suppress(Undecided):
+                self._route_all(self.planner, deadline)
 
     def _route_all(self, planner: Planner, deadline: Deadline) -> None:
         for attempt in range(ATTEMPTS):
@@ -211,10 +218,11 @@ class PartSearch:
                 continue
             self._planned = [segment.region for segment in plan]
             # Looking for segments that cross takes longer than routing when none do. With 0 rings
-            # a cell is painted whole, with 1 it has room for cutting paths.
-            for rings in (0, 1):
+            # a cell is painted whole, with 1 it has room for cutting paths. What has been planned
+            # and not routed before is not likely to be routed now.
+            for rings in () if self._avoiding else (0, 1):
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
-            if self.done or not planner.find_conflicts(plan):
+            if self.done or not planner.find_conflicts(plan, deadline, avoiding=self._avoiding):
                 return plan
 
     def drop_segments(self, deadline: Deadline) -> None:

@@ -181,6 +181,7 @@ class _Search:
             lambda part, deadline: part.drop_segments(deadline.share(1 / 4)),
             lambda part, deadline: part.improve_large(deadline.share(1 / 2)),
             lambda part, deadline: part.plan_on(deadline.share(1 / 2)),
+            lambda part, deadline: part.plan_avoiding(deadline.share(1 / 2)),
             PartSearch.solve_small_model,
             PartSearch.solve_model,
             PartSearch.improve_on,

@@ -19,23 +19,23 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.bounds.merged_cells import merge_cells
-from cellcolor.solvers.bounds.tangles import Tangles, Touching
+from cellcolor.solvers.bounds.tangles import TangledSegment, Tangles, Touching
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
 RED, BLUE, GREEN = 0, 1, 2
 
 
-def room(*loops: Sequence[int]) -> Instance:
+def room(*loops: Sequence[int | tuple[int, ...]]) -> Instance:
     """A cell of all colors with petals round its loops, numbered from 1 as they come."""
-    petals = [color for loop in loops for color in loop]
+    petals = [(own,) if isinstance(own, int) else own for loop in loops for own in loop]
     numbers = iter(range(1, len(petals) + 1))
     return Instance(
         "room",
         ("red", "blue", "green"),
         (
             Cell(0, (RED, BLUE, GREEN), tuple(tuple(next(numbers) for _ in lp) for lp in loops)),
-            *(Cell(n, (color,), ((-n,),)) for n, color in enumerate(petals, start=1)),
+            *(Cell(n, own, ((-n,),)) for n, own in enumerate(petals, start=1)),
         ),
         tuple(Edge(n, 0, n) for n in range(1, len(petals) + 1)),
     )
@@ -49,7 +49,7 @@ def tangles_of(instance: Instance) -> Tangles:
 def all_petals(instance: Instance) -> list[Touching]:
     """One segment for each color, that touches all of its petals."""
     return [
-        (number, tuple(sorted(cells - {0})))
+        Touching(number, tuple(sorted(cells - {0})))
         for number, (_, cells) in enumerate(color_regions(instance))
     ]
 
@@ -62,7 +62,7 @@ def test_three_segments_that_fit_two_at_a_time() -> None:
     tangles = tangles_of(ISLAND_BETWEEN)
     plan = all_petals(ISLAND_BETWEEN)
     (found,) = tangles.find(plan, NEVER)
-    groups = {color: {frozenset(group) for group in own} for color, own in found.segments}
+    groups = {own.region: set(own.groups) for own in found.segments}
     assert groups == {
         RED: {frozenset({1}), frozenset({3})},
         BLUE: {frozenset({2}), frozenset({5})},
@@ -104,6 +104,30 @@ def test_a_handle_leads_past() -> None:
     assert tangles_of(with_handle).find(all_petals(with_handle), NEVER) == []
 
 
+ROUND_A_PETAL = room((GREEN, RED, (BLUE, GREEN), RED, GREEN, (RED, BLUE)))
+"""Blue passes from petal 3 to petal 6 only if red, from petal 2 to 4, goes round petal 6."""
+
+
+def test_a_way_round_a_cell_that_a_segment_does_not_touch() -> None:
+    tangles = tangles_of(ROUND_A_PETAL)
+    blue, red = Touching(BLUE, (3, 6)), Touching(RED, (2, 4))
+    assert tangles.find([blue, red], NEVER) == []
+    (found,) = tangles.find([blue, Touching(RED, (2, 4), frozenset({6}))], NEVER)
+    assert set(found.segments) == {
+        TangledSegment(BLUE, (frozenset({3}), frozenset({6}))),
+        TangledSegment(RED, (frozenset({2}), frozenset({4})), frozenset({6})),
+    }
+
+
+def test_a_segment_does_not_pass_what_it_avoids() -> None:
+    tangles = tangles_of(ROUND_A_PETAL)
+    plan = [Touching(RED, (2, 4), frozenset({0})), Touching(BLUE, (0,))]
+    (found,) = tangles.find(plan, NEVER)
+    (own,) = found.segments
+    assert (own.region, own.avoided) == (RED, {0})
+    assert {min(group) for group in own.groups} == {2, 4}
+
+
 def test_looking_for_tangles_ends_at_the_deadline() -> None:
     with pytest.raises(OutOfTime):
         tangles_of(ISLAND_BETWEEN).find(all_petals(ISLAND_BETWEEN), Deadline.after(0))
@@ -117,10 +141,11 @@ def rooms(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
     rim += [(row, width - 1) for row in range(1, height)]
     rim += [(height - 1, column) for column in reversed(range(width - 1))]
     rim += [(row, 0) for row in reversed(range(1, height - 1))]
-    pieces = draw(st.permutations([RED, RED, BLUE, GREEN]))
-    pieces += draw(st.lists(st.sampled_from([RED, BLUE, GREEN]), max_size=2))
+    pieces: list[tuple[int, ...]] = draw(st.permutations([(RED,), (RED,), (BLUE,), (GREEN,)]))
+    further = st.sampled_from([(RED,), (BLUE,), (GREEN,), (RED, BLUE), (BLUE, GREEN)])
+    pieces += draw(st.lists(further, max_size=3))
     labels: dict[tuple[int, int], Sequence[int]] = {
-        place: (pieces[number * len(pieces) // len(rim)],) for number, place in enumerate(rim)
+        place: pieces[number * len(pieces) // len(rim)] for number, place in enumerate(rim)
     }
     halves = draw(several), draw(several)
     for row in range(1, height - 1):
@@ -136,13 +161,18 @@ def rooms(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
     )
 
 
-def can_be_drawn(mesh: LabelledSurface, segments: Sequence[tuple[int, list[set[int]]]]) -> bool:
+def can_be_drawn(
+    mesh: LabelledSurface, segments: Sequence[tuple[int, list[set[int]], set[int]]]
+) -> bool:
     """Whether disjoint sets of mesh vertices exist, each connected in its color from a first set of
-    vertices to a second: every path without shortcuts is tried for all but the last."""
+    vertices to a second without some others: every path without shortcuts is tried for all but the
+    last."""
     mesh_graph: nx.Graph[int] = nx.Graph(mesh.left_of.keys())
     graphs = [
-        mesh_graph.subgraph(v for v, own in enumerate(mesh.vertex_colors) if color in own)
-        for color, _ in segments
+        mesh_graph.subgraph(
+            v for v, own in enumerate(mesh.vertex_colors) if color in own and v not in avoided
+        )
+        for color, _, avoided in segments
     ]
 
     def fits(number: int, used: set[int]) -> bool:
@@ -151,7 +181,7 @@ def can_be_drawn(mesh: LabelledSurface, segments: Sequence[tuple[int, list[set[i
                 not part.isdisjoint(ends[0]) and not part.isdisjoint(ends[1])
                 for part in nx.connected_components(graph.subgraph(graph.nodes - used))
             )
-            for graph, (_, ends) in list(zip(graphs, segments, strict=True))[number:]
+            for graph, (_, ends, _) in list(zip(graphs, segments, strict=True))[number:]
         ):
             return False
         if number == len(segments) - 1:
@@ -178,24 +208,38 @@ def test_what_is_tangled_cannot_be_drawn_on_the_mesh(
     instance = decompose(mesh, "mesh")
     assert instance.surface is not None
     cell_of = instance.surface.vertex_cell
+
+    def vertices(cell: int) -> set[int]:
+        return {v for v, own in enumerate(cell_of) if own == cell}
+
     regions = color_regions(instance)
-    plan: list[Touching] = []
+    ends: list[tuple[int, tuple[int, ...]]] = []
     for number, (_, cells) in enumerate(regions):
-        alone = sorted(cell for cell in cells if len(instance.cells[cell].colors) == 1)
-        if len(alone) > 1:
-            two = st.lists(st.sampled_from(alone), min_size=2, max_size=2, unique=True)
-            plan.append((number, tuple(data.draw(two))))
+        small = sorted(cell for cell in cells if len(instance.cells[cell].colors) < 3)
+        if len(small) > 1:
+            two = st.lists(st.sampled_from(small), min_size=2, max_size=2, unique=True)
+            ends.append((number, tuple(data.draw(two))))
+    every = {cell for _, cells in ends for cell in cells}
+    plan = [
+        Touching(
+            number,
+            cells,
+            frozenset(data.draw(st.sets(st.sampled_from(sorted(every)))) & regions[number][1])
+            - set(cells),
+        )
+        for number, cells in ends
+    ]
     for tangle in tangles_of(instance).find(plan, NEVER):
-        groups = [[sorted(group) for group in own] for _, own in tangle.segments]
-        for chosen in product(*(product(*own) for own in groups)):
+        for chosen in product(*(product(*map(sorted, own.groups)) for own in tangle.segments)):
             segments = [
                 (
-                    regions[region][0],
-                    [{v for v, c in enumerate(cell_of) if c == end} for end in ends],
+                    regions[own.region][0],
+                    [vertices(cell) for cell in cells],
+                    set[int]().union(*map(vertices, own.avoided)),
                 )
-                for (region, _), ends in zip(tangle.segments, chosen, strict=True)
+                for own, cells in zip(tangle.segments, chosen, strict=True)
             ]
-            assert all(len(ends) == 2 for _, ends in segments)
+            assert all(len(ends) == 2 for _, ends, _ in segments)
             assert not can_be_drawn(mesh, segments)
 
 

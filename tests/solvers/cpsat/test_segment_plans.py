@@ -33,10 +33,10 @@ def planner_of(instance: Instance) -> Planner:
         solver.parameters.random_seed = seed
         return solver, solver.solve(model)
 
-    return Planner(instance, color_regions(instance), set_cover(instance).bound, run, NEVER)
+    return Planner(instance, color_regions(instance), set_cover(instance).bound, run)
 
 
-def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
+def fewest_planned(instance: Instance, avoiding: bool = False) -> tuple[int, SegmentPlan]:
     """The fewest segments for which there is a plan without conflicts and tangles."""
     planner = planner_of(instance)
     segments = set_cover(instance).bound
@@ -44,7 +44,7 @@ def fewest_planned(instance: Instance) -> tuple[int, SegmentPlan]:
         plan = planner.plan(segments, 0)
         if plan is None:
             segments += 1
-        elif not planner.find_conflicts(plan):
+        elif not planner.find_conflicts(plan, NEVER, avoiding=avoiding):
             return segments, plan
 
 
@@ -66,11 +66,13 @@ def test_plans_heed_conflicts(petals: tuple[int, ...], segments: int) -> None:
 
 
 @examples(20)
-@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 3))
-def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors: int) -> None:
+@given(seed=SEEDS, cells=st.integers(2, 7), colors=st.integers(2, 3), avoiding=st.booleans())
+def test_what_cannot_be_planned_cannot_be_painted(
+    seed: int, cells: int, colors: int, avoiding: bool
+) -> None:
     """Against brute force, which paints with one strand, and the DFS with two."""
     instance = planar_graph(seed, cells, cells + 3, colors)
-    fewest, plan = fewest_planned(instance)
+    fewest, plan = fewest_planned(instance, avoiding)
     assert set_cover(instance).bound <= fewest <= minimum(instance)
     wide = solve(instance, Options(search_space="surface", strands=2), "dfs")
     assert wide.segments is not None
@@ -80,11 +82,34 @@ def test_what_cannot_be_planned_cannot_be_painted(seed: int, cells: int, colors:
     assert all(segment.cells <= segment.region[1] for segment in plan)
 
 
+def test_plans_heed_what_segments_do_not_touch() -> None:
+    """Blue can join the petals 3 and 6 only if red, that joins 2 and 4, has petal 6 as well. Then
+    red would part both green petals, too."""
+    instance = hub(GREEN, RED, (BLUE, GREEN), RED, GREEN, (RED, BLUE))
+    assert fewest_planned(instance)[0] == 3
+    assert fewest_planned(instance, avoiding=True)[0] == 4 == minimum(instance)
+
+
+@examples(10)
+@given(
+    petals=st.lists(
+        st.sampled_from([RED, BLUE, GREEN, (RED, BLUE), (BLUE, GREEN), (RED, GREEN)]),
+        min_size=4,
+        max_size=6,
+    )
+)
+def test_what_segments_avoid_rules_out_no_division(petals: list[int | tuple[int, ...]]) -> None:
+    """Around a hub, where one time in ten it makes a difference, against brute force."""
+    instance = hub(*petals)
+    assert fewest_planned(instance)[0] <= fewest_planned(instance, avoiding=True)[0]
+    assert fewest_planned(instance, avoiding=True)[0] <= minimum(instance)
+
+
 def test_more_partings_are_heeded_where_there_is_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """Around a hub of two colors in turn: undecided at first, then the bound rises as ever."""
     planner = planner_of(hub(RED, BLUE, RED, BLUE))
     plan = planner.plan(2, 0)
-    assert plan is not None and planner.find_partings(plan)
+    assert plan is not None and planner.find_partings(plan, NEVER)
     monkeypatch.setattr(segment_plans, "MOST_PARTED", 0)
     with pytest.raises(Undecided):
         planner.plan(2, 0)
