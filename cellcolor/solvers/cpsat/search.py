@@ -182,9 +182,14 @@ class PartSearch:
             self._plan_with_effort(deadline)
 
     def plan_avoiding(self, deadline: Deadline) -> None:
-        """Plans that say what segments avoid, too, where hubs do not say more."""
-        self._avoiding = True
-        self._plan_with_effort(deadline)
+        """Plans that say what segments avoid, too, where one segment is left above the bound.
+
+        The bound rises by one in seconds, if at all. Where more is missing, models and other routes
+        have the better use of the time.
+        """
+        if self.segments == self.bound + 1:
+            self._avoiding = True
+            self._plan_with_effort(deadline)
 
     def _plan_with_effort(self, deadline: Deadline) -> None:
         if self.planner is not None and self.hubs is None:
