@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -32,6 +33,7 @@ def four_cores(monkeypatch):
     monkeypatch.setattr(os, "sched_getaffinity", lambda _process: {0, 1, 2, 3})
 
 
+@examples(12)  # processes are begun
 @given(st.integers(0, 40), st.integers(1, 9))
 def test_every_part_is_done_once_in_as_many_processes_as_pay(parts, at_least):
     done = shared((parts, 2), np.int64)

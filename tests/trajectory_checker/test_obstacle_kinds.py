@@ -14,6 +14,7 @@ import rasters
 from standing import KINDS, standing
 from world import World
 
+from cellcolor.arrays import Array
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 
@@ -25,12 +26,12 @@ def test_an_obstacle_in_the_way_is_found(kind: str, tmp_path: Path) -> None:
     obstacle, shapes = standing(kind, middle, tmp_path)
     blocked = prepare(prepared.scene.with_obstacle(obstacle))
     world = World(prepared.robot, prepared.surface.vertices, prepared.surface.faces)
-    gaps = []
-    for q in trajectory.joints:
+
+    def hits(q: Array) -> bool:
         world.place(q)
-        gaps.append(min(world.to_solid(*shape) for shape in shapes))
-    hit = np.flatnonzero(np.array(gaps) < 0)
-    assert len(hit) > 0
+        return any(world.to_solid(*shape) < 0 for shape in shapes)
+
+    first = next(sample for sample, q in enumerate(trajectory.joints) if hits(q))
     verdict = check_trajectory(blocked, built, trajectory)
     found = [f for f in verdict.of_kind("invalid") if f.reason == "obstacle collision"]
-    assert found and abs(min(fault.sample for fault in found) - hit[0]) <= 1
+    assert found and abs(min(fault.sample for fault in found) - first) <= 1

@@ -49,7 +49,7 @@ def wok() -> Surface:
 
 @pytest.fixture(scope="module")
 def joints() -> Array:
-    return np.random.default_rng(21).uniform(-np.pi, np.pi, (1500, 6))
+    return np.random.default_rng(21).uniform(-np.pi, np.pi, (600, 6))
 
 
 def placed(robot: Robot, joints: Array) -> Array:

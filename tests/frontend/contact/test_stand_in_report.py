@@ -56,7 +56,7 @@ def test_a_capsule_around_a_cylinder_is_off_at_its_ends() -> None:
 
 def test_capsules_are_not_off_where_they_overlap() -> None:
     """Of an L two capsules follow the arms; what of one is inside the other does not count."""
-    arms = [trimesh.creation.capsule(height=0.4, radius=0.05) for _ in range(2)]
+    arms = [trimesh.creation.capsule(height=0.4, radius=0.05, count=(12, 12)) for _ in range(2)]
     arms[1].apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
     report = reported(trimesh.util.concatenate(arms), "capsules")
     one = reported(trimesh.util.concatenate(arms).convex_hull, "capsules")

@@ -230,8 +230,8 @@ def test_what_is_linked_can_be_followed(
     ]
     steps = [joint_step(q[i, b], q[j, b]) for i, j, b in joined]
     # The fastest ones, and some from everywhere.
-    fastest = np.argsort(steps)[-20:].tolist()
-    others = np.random.default_rng(2).choice(len(joined), 30, replace=False).tolist()
+    fastest = np.argsort(steps)[-12:].tolist()
+    others = np.random.default_rng(2).choice(len(joined), 12, replace=False).tolist()
     follower = Follower(robot)
     for i, j, branch in (joined[row] for row in fastest + others):
         ends = [i, j]

@@ -63,7 +63,7 @@ def check(scene: Scene, most: int) -> Array:
 
 def test_box() -> None:
     # Its true cracks run where a wrist is aligned.
-    assert len(check(box(20, slivers=False), most=40)) > 5
+    assert len(check(box(20, slivers=False), most=15)) > 5
 
 
 @pytest.mark.parametrize(
@@ -76,11 +76,11 @@ def test_box() -> None:
     ],
 )
 def test_noisy_caps(radius: float, position: list[float]) -> None:
-    check(noisy_cap(1200, radius, position), most=40)
+    check(noisy_cap(1200, radius, position), most=15)
 
 
 def test_shipped_scene_with_cracks() -> None:
-    assert len(check(without_slivers(shipped("hemisphere_tilted", 1000)), most=40)) > 0
+    assert len(check(without_slivers(shipped("hemisphere_tilted", 1000)), most=15)) > 0
 
 
 def segments(scene: Scene) -> int:
@@ -104,11 +104,11 @@ def test_the_minimum_does_not_hang_on_the_size_of_triangles(edge_mm: float) -> N
 @pytest.mark.slow
 @pytest.mark.parametrize("edge_mm", [8, 4])
 def test_finer_boxes(edge_mm: float) -> None:
-    check(box(edge_mm, slivers=False), most=400)
+    check(box(edge_mm, slivers=False), most=150)
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("vertices", [3000, 30_000])
 def test_finer_noisy_caps(vertices: int) -> None:
-    check(noisy_cap(vertices, 0.2, [0.465, -0.15, -0.04]), most=400)
-    check(noisy_cap(vertices, 0.105, [0.403, 0.183, 0.326]), most=400)
+    check(noisy_cap(vertices, 0.2, [0.465, -0.15, -0.04]), most=150)
+    check(noisy_cap(vertices, 0.105, [0.403, 0.183, 0.326]), most=150)

@@ -37,14 +37,15 @@ def test_reasons_agree_with_an_independent_loop(setup: Setup, scene: Varied, wea
     surface = result.surface
     world = World(robot, surface.vertices, surface.faces)
     unclear = 0
-    for q, code in zip(result.configurations.reshape(-1, 6), result.reasons.flat, strict=True):
+    codes = result.reasons[::2]
+    for q, code in zip(result.configurations[::2].reshape(-1, 6), codes.flat, strict=True):
         first = arm_reason(robot, setup, q)
         # Contacts are asked for only where they can matter: NaN cannot be placed.
         contacts = {} if first is not Reason.VALID else clearances(world, setup, 0.0, q)
         expected = possible_reasons(first, contacts)
         assert Reason(code) in expected
         unclear += len(expected) > 1
-    assert unclear < 0.01 * result.reasons.size
+    assert unclear < 0.01 * codes.size
     counts = result.report.candidates
     assert sum(counts.values()) == result.reasons.size
     assert sum(count > 0 for count in counts.values()) >= 6
