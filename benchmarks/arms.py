@@ -6,11 +6,11 @@
 ``solutions`` compares the sets of all solutions, both ways and modulo full turns: of the poses of
 random configurations, and of a fiftieth as many near each kind of singularity, 1e-2, 1e-4, 1e-7 and
 0 rad from it. Of the SCARA the other solver is Newton's method on Pinocchio's Jacobian from 16
-starts for each pose, and near singularities only lost ones are counted. ``scenes`` builds and
-solves; ``benchmarks/motions.py SCENE`` plans motions on the same ones and judges them. Without
-names: all arms but the calibrated one, whose judge is another
-(tests/frontend/arm/test_calibrated.py), and all scenes in instances/arms. docs/arms.md has what
-came out.
+starts for each pose, and near singularities only lost ones are counted. Of the calibrated arm it is
+Newton's method from 240 starts (tests/support/many_starts.py), and a line says how often its
+solutions were found. ``scenes`` builds and solves; ``benchmarks/motions.py SCENE`` plans motions on
+the same ones and judges them. Without names: all arms, and all scenes in instances/arms.
+docs/arms.md has what came out.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -33,30 +34,75 @@ from cellcolor.frontend.setup import Setup  # noqa: E402
 from cellcolor.solvers.checked import solve  # noqa: E402
 from cellcolor.solvers.interface import Options  # noqa: E402
 
+if TYPE_CHECKING:
+    from solution_sets import Arm, Compared
+
+    from cellcolor.arrays import Array, Index
+
 ROBOTS, SCENES = TOP / "models" / "robots", TOP / "instances" / "arms"
-SCARA = "cobra600"
+SCARA, CALIBRATED = "cobra600", "ur5e_calibrated"
+STARTS = 240
 OFF = (1e-2, 1e-4, 1e-7, 0.0)  # rad
 
 
 def solutions(name: str, poses: int) -> str:
-    """A row: how the arm's family and ssik agree."""
+    """A row: how the arm's family and another solver agree, ssik or many starts."""
     from near_singular import KINDS, near_singular
     from solution_sets import Arm
 
     arm = Arm.of(Setup.read(ROBOTS / f"{name}_polishing.toml"))
+    judge = ByStarts(arm) if name == CALIBRATED else None
+    compared = judge.compared if judge else arm.compared
     q = np.random.default_rng(6).uniform(-np.pi, np.pi, (poses, 6))
-    found = arm.compared(q)
+    found = compared(q)
     near = [
-        (arm.compared(rows), arm.lost(rows, 1e-9 / off) if off >= 1e-4 else 0)
+        (compared(rows), arm.lost(rows, 1e-9 / off) if off >= 1e-4 else 0)
         for kind in KINDS
         for off in OFF
         for rows in [near_singular(arm.robot, arm.family.reach, kind, off, max(1, poses // 50))]
     ]
-    return (
+    row = (
         f"| {name} | {found.poses} | {found.solutions} | {found.different} | {found.farthest:.0e} "
         f"| {sum(each.poses for each, _ in near)} | {sum(each.different for each, _ in near)} "
         f"| {sum(lost for _, lost in near)} |"
     )
+    return row + (f"\n\n{judge.said()}" if judge else "")
+
+
+class ByStarts:
+    """An arm against Newton's method from many starts, and how often that found each solution."""
+
+    def __init__(self, arm: Arm) -> None:
+        from many_starts import ManyStarts
+
+        self.arm, self.other = arm, ManyStarts.of(arm.robot.model)
+        self.poses = 0
+        self.hits: list[Index] = []
+
+    def compared(self, q: Array) -> Compared:
+        """Both on the poses of configurations (n, 6)."""
+        points, directions, _ = self.other.posed(q[:, :5])
+
+        def progress(done: int) -> None:
+            if done % 100 == 0:
+                print(f"\r{self.poses + done} poses by many starts", end="", file=sys.stderr)
+
+        found = self.other.solutions(points, directions, STARTS, self.poses, progress)
+        self.poses += len(q)
+        self.hits += [each.hits[self.arm.is_regular(each.joints)] for each in found]
+        return self.arm.held_against([each.joints for each in found], q)
+
+    def said(self) -> str:
+        """How complete the starts were, of solutions that are compared."""
+        from many_starts import estimated_missing
+
+        hits = np.concatenate(self.hits)
+        few = [int(np.count_nonzero(hits == often)) for often in range(1, 6)]
+        return (
+            f"{STARTS} starts for each of {self.poses} poses: {len(hits)} solutions, each found "
+            f"{hits.mean():.1f} times in the mean, {int(hits.min())} at least; {few} of them once "
+            f"to five times; {estimated_missing(hits):.1f} missing by this (Chao)"
+        )
 
 
 def scara_solutions(name: str, poses: int) -> str:
@@ -120,7 +166,7 @@ def main() -> None:
     given = parser.parse_intermixed_args()
     if given.what == "solutions":
         setups = sorted(path.stem for path in ROBOTS.glob("*_polishing.toml"))
-        names = [name.removesuffix("_polishing") for name in setups if "calibrated" not in name]
+        names = [name.removesuffix("_polishing") for name in setups]
         names.append(SCARA)
         print("| arm | poses | solutions | different | rad | near singular | different | lost |")
     else:

@@ -102,20 +102,15 @@ class EaikKinematics(InverseKinematics):
         not exact. Its own mark of least-squares answers is not asked: of arms with a spherical
         wrist and no parallel axes it marks exact solutions as well.
         """
-        candidates = self._closed_form(points, directions)
-        if self._off is not None and branches is not None and self._signs is not None:
-            one = branches_of_calibrated(
-                self._robot,
-                lambda rows, _: candidates[rows],
-                points,
-                directions,
-                self._signs,
-                branches,
-                np.arange(len(BRANCHES)),
-            )
-            return one[:, None]
-        finish = exact_solutions if self._off is None else solutions_of_calibrated
-        found = finish(self._robot, candidates, points, directions, self._signs)
+        if self._off is None:
+            candidates = self._closed_form(points, directions)
+            found = exact_solutions(self._robot, candidates, points, directions, self._signs)
+        elif branches is None or self._signs is None:
+            of = points, directions, self._signs, self._off
+            found = solutions_of_calibrated(self._robot, self._closed_form, *of)
+        else:
+            named = points, directions, self._signs, self._off, branches, np.arange(len(BRANCHES))
+            return branches_of_calibrated(self._robot, self._closed_form, *named)[:, None]
         return found if branches is None else found[np.arange(len(points)), branches][:, None]
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
@@ -124,8 +119,13 @@ class EaikKinematics(InverseKinematics):
             return ()
         return (remark_on_calibration(self._robot, self._off, self.solve(points, directions)),)
 
-    def _closed_form(self, points: Array, directions: Array) -> Array:
-        """EAIK's answers (n, s, 6) in rad, joint 6 locked, NaN after the last of each pose."""
+    def _closed_form(
+        self, points: Array, directions: Array, _: NDArray[np.intp] | None = None
+    ) -> Array:
+        """EAIK's answers (n, s, 6) in rad, joint 6 locked, NaN after the last of each pose.
+
+        It has no names for them, so that all are given whichever branches are wanted.
+        """
         counts = np.zeros(len(points), dtype=np.int64)
         asked = np.flatnonzero(np.isfinite(points + directions).all(axis=1))
         if not len(asked):

@@ -14,13 +14,13 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.kinematics import TASK_JOINTS, Poses, forward, task_jacobian
 from cellcolor.frontend.arm.robot import Robot
 
-__all__ = ["REACHED", "both_sides_of_folds", "merged", "misses", "polished"]
+__all__ = ["REACHED", "SAME", "both_sides_of_folds", "merged", "misses", "nearest", "polished"]
 
 REACHED = 1e-9  # m, and for the unit vector of the tool's direction: what counts as a solution
 _STEPS = 25
 _GOOD = 1e-12  # m and rad; nothing is gained from there on
 _LARGEST = 0.3  # rad; no step moves a joint farther
-_SAME = 1e-6  # rad; two solutions nearer than this are one
+SAME = 1e-6  # rad; two solutions nearer than this are one
 _FOLDED = 0.05  # smallest singular value from which on down two solutions are about to meet
 _APART = 0.1  # rad, to both sides of there
 _AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
@@ -108,6 +108,21 @@ def both_sides_of_folds(robot: Robot, candidates: Array) -> Array:
     return np.concatenate([candidates, *beside.reshape(2, *shape)], axis=1)
 
 
+def nearest(solutions: Array, others: Array) -> Array:
+    """How far each of some solutions (n, s, joints) is from the nearest of others (n, t, joints).
+
+    Returns:
+        (n, s) in rad: the joint of the first five that differs most, modulo full circles. It is
+        infinite where there is no other, and where there is no solution.
+    """
+    found = np.full(solutions.shape[:2], np.inf)
+    for other in range(others.shape[1]):
+        off = solutions[:, :, :TASK_JOINTS] - others[:, other, None, :TASK_JOINTS]
+        off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+        found = np.fmin(found, off)
+    return found
+
+
 def merged(solutions: Array) -> Array:
     """Solutions (n, s, joints) with each once, those that there are first, NaN after them.
 
@@ -122,7 +137,7 @@ def merged(solutions: Array) -> Array:
         for later in range(1, five.shape[1]):
             off = five[:, :later] - five[:, later : later + 1]
             off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
-            own[:, later] &= ~((off < _SAME) & own[:, :later]).any(axis=1)
+            own[:, later] &= ~((off < SAME) & own[:, :later]).any(axis=1)
     return _packed(packed, kept)
 
 

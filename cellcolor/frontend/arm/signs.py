@@ -91,20 +91,23 @@ class Signs:
         # Above the line to a wrist in front is on the other side of it than above one behind.
         return np.stack([lever, area * np.where(lever >= 0, 1.0, -1.0), flip], axis=1)
 
-    def branches(self, robot: Robot, configurations: Array) -> NDArray[np.intp]:
-        """The index of the branch (k,) that each configuration (k, joints) in rad belongs to.
+    def branches(self, robot: Robot, configurations: Array) -> tuple[NDArray[np.intp], Array]:
+        """Of configurations (k, joints) in rad the branch and the task determinant, (k,) each.
+
+        The branch is an index, the determinant absolute, in m^3.
 
         Of a calibrated arm, next to a singularity, a factor can have the wrong sign, since axes
         that nearly meet have a center only nearly. Then the product of the signs is not that of the
         task determinant, and the factor nearest to zero is the wrong one.
         """
         found = np.empty(len(configurations), dtype=np.intp)
+        determinants = np.empty(len(configurations))
         for first in range(0, len(found), _AT_ONCE):
             rows = slice(first, first + _AT_ONCE)
-            found[rows] = self._branches(forward(robot, configurations[rows]))
-        return found
+            found[rows], determinants[rows] = self._branches(forward(robot, configurations[rows]))
+        return found, determinants
 
-    def _branches(self, poses: Poses) -> NDArray[np.intp]:
+    def _branches(self, poses: Poses) -> tuple[NDArray[np.intp], Array]:
         factors = self.factors(poses)
         negative = factors < 0
         # The product of the plain factors: the second one has the sign of the first in it.
@@ -115,7 +118,7 @@ class Signs:
         negative[wrong, nearest] ^= True
         # A shoulder that changes its sign takes the elbow's with it, whose own factor stays.
         negative[wrong[nearest == 0], 1] ^= True
-        return np.asarray(negative @ np.array([4, 2, 1]), dtype=np.intp)
+        return np.asarray(negative @ np.array([4, 2, 1]), dtype=np.intp), np.abs(determinant)
 
 
 def signs_of(robot: Robot, reach: float, tolerance: float) -> Signs | None:

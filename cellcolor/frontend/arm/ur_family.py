@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.candidates import (
     CALIBRATION,
@@ -100,17 +100,15 @@ class _Calibrated:
     ) -> Array:
         """All solutions (n, 8, 6) in rad by branch, or some (n, 1, 6); see ``solve_inverse``."""
 
-        def ideal(rows: Index | slice, wanted: NDArray[np.intp] | None) -> Array:
-            of = self._geometry, points[rows], directions[rows]
-            return solve_inverse(*of, locked, wanted, _SLACK)
+        def ideal(
+            points: Array, directions: Array, wanted: NDArray[np.intp] | None = None
+        ) -> Array:
+            return solve_inverse(self._geometry, points, directions, locked, wanted, _SLACK)
 
+        of = points, directions, self._signs, self.off
         if branches is None:
-            every = ideal(slice(None), None)
-            found = solutions_of_calibrated(self._robot, every, points, directions, self._signs)
-            return found[:, self._of_sign]
-        one = branches_of_calibrated(
-            self._robot, ideal, points, directions, self._signs, branches, self._of_sign
-        )
+            return solutions_of_calibrated(self._robot, ideal, *of)[:, self._of_sign]
+        one = branches_of_calibrated(self._robot, ideal, *of, branches, self._of_sign)
         return one[:, None]
 
     def _names(self, signs: Signs) -> NDArray[np.intp]:
@@ -125,4 +123,4 @@ class _Calibrated:
         found = found[~np.isnan(found).any(axis=(1, 2))]
         factors = signs.factors(forward(self._robot, found.reshape(-1, 6)))
         clearest = np.argmax(np.abs(factors).reshape(len(found), -1).min(axis=1))
-        return np.asarray(signs.branches(self._robot, found[clearest]), dtype=np.intp)
+        return signs.branches(self._robot, found[clearest])[0]

@@ -12,12 +12,13 @@ from independent import wrapped
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.arm.candidates import put_all
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.ideal import Axes, idealized
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.lost import missing
-from cellcolor.frontend.arm.newton import both_sides_of_folds, merged, polished
+from cellcolor.frontend.arm.newton import both_sides_of_folds, merged, nearest, polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES
 from cellcolor.frontend.arm.ur_family import UrKinematics
@@ -181,3 +182,21 @@ def test_both_sides_of_a_fold_are_tried() -> None:
     assert tried.shape == (2, 3, 6) and np.isnan(tried[1]).all()
     sides = tried[0, 1:] - tried[0, 0]
     assert np.allclose(np.linalg.norm(sides, axis=1), 0.1) and np.allclose(sides[0], -sides[1])
+
+
+def test_two_of_the_same_signs_have_names_as_long_as_there_are_any() -> None:
+    named = np.full((16, 6), np.nan)
+    solutions = np.outer(np.arange(1.0, 6.0), np.full(6, 0.1))
+    solutions[4] = solutions[0] + 2 * np.pi  # the first one again
+    # Of the second pose: three by the name 2, and one by 6, each with its determinant.
+    put_all(named, solutions, np.array([10, 10, 10, 14, 10]), np.array([0.2, 0.3, 0.1, 0.5, 0.2]))
+    assert np.flatnonzero(~np.isnan(named[:, 0])).tolist() == [9, 10, 14]
+    # The largest determinant has the name, the next one that of the other elbow and wrist.
+    assert (named[[10, 9, 14]] == solutions[[1, 0, 3]]).all()
+
+
+def test_the_nearest_is_told_modulo_full_circles() -> None:
+    solutions = np.array([[[0.0] * 6, [1.0] * 6, [np.nan] * 6]])
+    others = np.array([[[2 * np.pi + 0.1] * 5 + [3.0], [np.nan] * 6]])
+    assert np.allclose(nearest(solutions, others), [[0.1, 0.9, np.inf]])
+    assert np.isinf(nearest(solutions, others[:, 1:])).all()

@@ -164,7 +164,7 @@ def test_names_stay_the_same_without_a_singularity(name: str, seed: int, steps: 
     clear = determinant > 2 * np.abs(np.diff(determinant)).max()
     signs = FAMILIES[name]._signs
     assert signs is not None
-    branches = signs.branches(ROBOTS[name], fine)
+    branches, _ = signs.branches(ROBOTS[name], fine)
     together = clear[1:] & clear[:-1]
     assert (branches[1:][together] == branches[:-1][together]).all()
 

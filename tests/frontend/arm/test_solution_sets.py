@@ -1,4 +1,7 @@
-"""Every shipped arm's solutions against ssik: 5,000 poses each in ``benchmarks/arms.py``."""
+"""Every shipped arm's solutions against ssik: 5,000 poses each in ``benchmarks/arms.py``.
+
+The calibrated arm's are in ``test_many_starts.py``.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,6 @@ import numpy as np
 import pytest
 from shipped import ROBOTS
 
-from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.setup import Setup
 
 pytest.importorskip("ssik")
@@ -46,16 +48,6 @@ def test_none_is_lost_next_to_a_singularity(name: str, kind: str) -> None:
         assert one.compared(q).different == 0
         if off >= 1e-4:  # half of the digits are lost where two solutions meet
             assert one.lost(q, within=1e-9 / off) == 0
-
-
-def test_the_calibrated_arm_finds_its_own_configurations() -> None:
-    """Beyond a ninth of the setup's threshold on the task determinant; docs/arms.md has more."""
-    one = arm("ur5e_calibrated")
-    q = np.random.default_rng(6).uniform(-np.pi, np.pi, (1000, 6))
-    poses = forward(one.robot, q)
-    determinant = task_determinant(*tip_jacobian(poses), poses.tool_axis)
-    well = q[determinant > 1e-4 * one.family.reach**3]
-    assert len(well) > 950 and one.lost(well, within=1e-6) == 0
 
 
 def test_a_lost_solution_is_noticed() -> None:
