@@ -58,6 +58,11 @@ class _Router:
             [net for net, segment in enumerate(plan) if cell in segment.region[1]]
             for cell in range(len(graph.nodes))
         ]
+        # The cells that only one net can be in cost it nothing.
+        self._own: list[set[int]] = [set() for _ in plan]
+        for cell, nets in enumerate(self._nets_of):
+            if len(nets) == 1:
+                self._own[nets[0]].add(cell)
         # Cells that no other region of the plan reaches.
         self._terminals = [
             [
@@ -133,8 +138,9 @@ class _Router:
         One search serves for all of them (Dijkstra): what a new way takes starts at distance 0
         again, and distances that are known already can only become shorter by that.
         """
-        color = self._plan[net].region[0]
-        graph = self._graph
+        near = self._graph.near(self._plan[net].region[0])
+        cell_of, past, used, price = self._graph.cell, self._past, self._used, self._price
+        own = self._own[net]
         route = set(self._taken(start))
         left = set(targets)
         distance = dict.fromkeys(route, 0.0)
@@ -144,8 +150,8 @@ class _Router:
             length, node = heapq.heappop(heap)
             if length > distance[node]:
                 continue
-            if graph.cell[node] in left:
-                left.discard(graph.cell[node])
+            if cell_of[node] in left:
+                left.discard(cell_of[node])
                 while node not in route:
                     for taken in self._taken(node):
                         route.add(taken)
@@ -153,16 +159,22 @@ class _Router:
                         heapq.heappush(heap, (0.0, taken))
                     node = before[node]
                 continue  # it stands in the heap again, at distance 0
-            for other in self._next_to(node, color):
-                longer = length + self._cost(other, net)
-                if longer < distance.get(other, inf):
+            for other in near[node]:
+                known = distance.get(other, inf)
+                if known <= length:
+                    continue
+                longer = length
+                if cell_of[other] not in own:
+                    # As in ``_cost``; a call for each neighbor would take most of the time.
+                    longer += (1.0 + past[other]) * (1.0 + price * used[other])
+                if longer < known:
                     distance[other] = longer
                     before[other] = node
                     heapq.heappush(heap, (longer, other))
         return route
 
     def _cost(self, node: int, net: int) -> float:
-        if self._nets_of[self._graph.cell[node]] == [net]:
+        if self._graph.cell[node] in self._own[net]:
             return 0.0
         return (1.0 + self._past[node]) * (1.0 + self._price * self._used[node])
 
@@ -171,16 +183,10 @@ class _Router:
         cell = self._graph.cell[node]
         return self._graph.nodes[cell] if len(self._nets_of[cell]) == 1 else (node,)
 
-    def _next_to(self, node: int, color: int) -> Iterable[int]:
-        """Neighbors that can have the node's color; they never lead out of its color region."""
-        yield from self._graph.beside[node]
-        for other, joinable in self._graph.across[node]:
-            if color in joinable:
-                yield other
-
     def _spread(self) -> list[int | None]:
         """The net of each node, routes grown over free nodes as far as their regions go."""
         owner: list[int | None] = [None] * len(self._used)
+        near = [self._graph.near(segment.region[0]) for segment in self._plan]
         for net, route in reversed(list(enumerate(self._routes))):
             for node in route:
                 owner[node] = net
@@ -188,7 +194,7 @@ class _Router:
         for node in reached:
             its = owner[node]
             assert its is not None
-            for other in self._next_to(node, self._plan[its].region[0]):
+            for other in near[its][node]:
                 if owner[other] is None:
                     owner[other] = its
                     reached.append(other)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
@@ -34,6 +34,24 @@ class RefinedGraph:
     beside: list[list[int]]
     across: list[list[tuple[int, frozenset[int]]]]
     at: list[int]
+    _near: dict[int, dict[int, list[int]]] = field(default_factory=dict)
+
+    def near(self, color: int) -> dict[int, list[int]]:
+        """The neighbors that can have a color, of each node that can.
+
+        Those of the same cell come first. They never lead out of a color region.
+        """
+        if color not in self._near:
+            self._near[color] = {
+                node: [
+                    *self.beside[node],
+                    *(other for other, joinable in self.across[node] if color in joinable),
+                ]
+                for cell, nodes in enumerate(self.nodes)
+                if color in self.graph.colors[cell]
+                for node in nodes
+            }
+        return self._near[color]
 
 
 def refined(graph: DartGraph, rings: int) -> RefinedGraph:
