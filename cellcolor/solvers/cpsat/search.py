@@ -34,7 +34,7 @@ from cellcolor.solvers.cpsat.model.full import (
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, moved, segments_of
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import ConnectedPart
-from cellcolor.solvers.cpsat.routes.dropping import drop_segments
+from cellcolor.solvers.cpsat.routes.dropping import FRUITLESS, drop_segments
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
@@ -54,12 +54,25 @@ for plans that were left undecided, before the full model is tried."""
 LARGE_MODEL = 200_000
 """Terms of a part's model; a larger part is first improved window by window."""
 
+WIDE_GAP, SHARE_OF_ROUTES = 2, 1 / 4
+"""Segments above the bound from which other routes are tried before models; and what part of the
+time that is left one kind of them gets before the other has its turn."""
+
+MORE_TRIES = 10
+"""Segments left out in vain for each segment, once other routes have their turns."""
+
+TURNS = 2
+"""Turns of both kinds in a row without a better division before models are tried all the same."""
+
 WINDOW_EFFORT = 0.1
 """Deterministic seconds for the model of a window."""
 
 FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
 be routed takes a few."""
+
+FAR = 2
+"""How many times the bound a large part may have after its first routes to be planned further."""
 
 FEW_DARTS = 10
 """The live darts of a cell up to which planning comes before counting links."""
@@ -108,6 +121,7 @@ class PartSearch:
         self._plan_effort = PLAN_EFFORT
         self._undecided = False
         self._avoiding = False
+        self._tries = 0
         graph = self._graph(self._once, self._seams(self._once, FEW_STRANDS))
         whole: Painting = [[Block(min(colors), set())] for colors in self._colors]
         self.best = graph, canonical(graph, whole)
@@ -227,6 +241,8 @@ class PartSearch:
             # and not routed before is not likely to be routed now.
             for rings in () if self._avoiding else (0, 1):
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
+                if self.large and self.segments > FAR * self.bound:
+                    raise Undecided  # windows first: on so large a part all this takes too long
             if self.done or not planner.find_conflicts(plan, deadline, avoiding=self._avoiding):
                 return plan
 
@@ -235,34 +251,52 @@ class PartSearch:
 
         Around hubs the model is the better way, as it is to their bound.
         """
-        if self.hubs is None:
-            self._drop(self._options.seed, deadline)
+        if self.hubs is None and not self.large:
+            self._drop(self._options.seed, deadline, FRUITLESS)
 
     def improve_large(self, deadline: Deadline) -> None:
         """Better divisions by solving some cells at a time anew, of a part too large for more."""
-        if model_size(self.best[0]) >= LARGE_MODEL:
+        if self.large:
             self._improve(self._options.seed, deadline)
+
+    def narrow_gap(self, deadline: Deadline) -> None:
+        """Other routes and windows, where more is missing than a model is likely to close."""
+        in_vain = 0
+        while in_vain < TURNS and self.hubs is None and self.segments - self.bound >= WIDE_GAP:
+            before = self.segments
+            self._take_turns(deadline)
+            in_vain = 0 if self.segments < before else in_vain + 1
 
     def improve_on(self, deadline: Deadline) -> None:
         """Better divisions by other routes and windows, as long as there is time."""
-        seed = self._options.seed
         while isfinite(deadline.moment) and not self.done:
-            deadline.check()
-            seed += 1
-            self._drop(seed, deadline)
-            self._improve(seed, deadline)
+            self._take_turns(deadline)
 
-    def _drop(self, seed: int, deadline: Deadline) -> None:
+    def _take_turns(self, deadline: Deadline) -> None:
+        """Segments left out, then windows, with another seed than before."""
+        deadline.check()
+        self._tries += 1
+        seed = self._options.seed + self._tries
+        if not self.large:
+            self._drop(seed, deadline.share(SHARE_OF_ROUTES), MORE_TRIES)
+        self._improve(seed, deadline.share(SHARE_OF_ROUTES))
+
+    @property
+    def large(self) -> bool:
+        """Whether it is improved window by window before a model of the whole is thought of."""
+        return model_size(self.best[0]) >= LARGE_MODEL
+
+    def _drop(self, seed: int, deadline: Deadline, tries: float) -> None:
         graph, painting = self.best
-        for better in drop_segments(graph, painting, self._regions, seed, deadline):
-            self._offer(graph, better)
+        for better in drop_segments(graph, painting, self._regions, seed, deadline, tries):
+            self._keep(graph, better)
             if self.done:
                 return
 
     def _improve(self, seed: int, deadline: Deadline) -> None:
         graph, painting = self.best
         for better in improve(graph, painting, self._solve_window, seed, deadline):
-            self._offer(graph, better)
+            self._keep(graph, better)
             if self.done:
                 return
 
@@ -384,7 +418,10 @@ class PartSearch:
         return widened(self.instance, self._colors, strands, part.loops, part.seams, most)
 
     def _offer(self, graph: DartGraph, painting: Painting) -> None:
-        painting = canonical(graph, painting)
+        self._keep(graph, canonical(graph, painting))
+
+    def _keep(self, graph: DartGraph, painting: Painting) -> None:
+        """A canonical painting, if it is the best so far."""
         segments = len(segments_of(graph, painting))
         if segments < self.segments:
             self.segments, self.best = segments, (graph, painting)

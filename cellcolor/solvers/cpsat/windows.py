@@ -1,14 +1,15 @@
 """A division improved window by window: some cells are solved anew, all others stay as they are.
 
 What lies outside a window is contracted: a connected piece of a segment becomes one cell of one
-color, with all the darts by which it meets the window. The full model of such a graph is small, so
-that large neighborhood search (Shaw, CP 1998) gets on where the model of the whole is hopeless.
+color, with all the darts by which it meets the window. The full model of such a graph is small, and
+its routes are short, so that large neighborhood search (Shaw, CP 1998) gets on where the whole is
+hopeless. All that is done for a window takes time by what it meets, not by the size of the whole.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from ortools.sat.python import cp_model
@@ -19,6 +20,7 @@ from cellcolor.solvers.cpsat.model.dart_graph import Dart, DartGraph
 from cellcolor.solvers.cpsat.model.full import full_model, model_size, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
 from cellcolor.solvers.cpsat.model_runs import SolveWithSeed
+from cellcolor.solvers.cpsat.routes.dropping import drop_segments
 from cellcolor.union_find import UnionFind
 
 __all__ = ["improve"]
@@ -28,6 +30,21 @@ WINDOW_SIZES = (1_000, 2_000, 4_000, 8_000)
 
 LARGEST_WINDOW = 30_000
 """Terms of a window's model, with what lies around it."""
+
+ROUTED = 0.95
+"""The share of windows that are improved by routes."""
+
+ROUTED_SIZES = (3_000, 6_000, 12_000, 25_000, 50_000)
+"""Terms that their models would have. Larger ones come as smaller ones are of no more use."""
+
+SHARE = 0.1
+"""Of the time that is left, for the routes of one window."""
+
+TRIES = 1
+"""Segments left out for each segment of a window that is improved by routes."""
+
+STALE = 50
+"""Segments for each gain that is not looked for among them, before they are listed anew."""
 
 FRUITLESS = 3
 """Tries for each segment of a division before nothing better is expected."""
@@ -43,12 +60,14 @@ class _Window:
         darts: the dart of the whole graph that each dart is.
         blocks: for each dart of the whole graph that faces the window from outside, the block that
             it belongs to or, in state 0, shows.
+        painting: what the division is on the window's graph.
     """
 
     graph: DartGraph
     cells: list[int]
     darts: list[int]
     blocks: dict[int, Block]
+    painting: Painting
 
 
 def improve(
@@ -64,27 +83,39 @@ def improve(
         deadline: when to stop.
     """
     chance = random.Random(seed)
-    fruitless = 0
+    fruitless = gained = 0
+    block_of = {dart: block for blocks in painting for block in blocks for dart in block.darts}
     segments = segments_of(graph, painting)
     while fruitless < FRUITLESS * len(segments) and not deadline.over:
         # Small segments are the likeliest that others can do without.
         weights = [1 / len(segment) for segment in segments]
         (segment,) = chance.choices(segments, weights)
         fruitless += 1
-        cells = _cells_around(graph, segment, chance.choice(WINDOW_SIZES), chance)
-        window = _contracted(graph, painting, cells)
-        # A piece outside may face the window with many darts.
-        if not cells or model_size(window.graph) > LARGEST_WINDOW:
+        routed = chance.random() < ROUTED
+        largest = 2 + 2 * fruitless // len(segments)
+        room = chance.choice(ROUTED_SIZES[:largest] if routed else WINDOW_SIZES)
+        cells = _cells_around(graph, segment, room, chance)
+        if not cells:
             continue
-        changed = _solved(window, graph, painting, solve, chance.randrange(2**20))
-        if changed is None:
+        window = _contracted(graph, painting, block_of, cells)
+        if routed:
+            found = _routed(window, chance.randrange(2**20), deadline.share(SHARE))
+        else:
+            found = _solved(window, solve, chance.randrange(2**20))
+        if found is None:
             continue
-        found = segments_of(graph, changed)
-        if len(found) <= len(segments):
-            if len(found) < len(segments):
-                fruitless = 0
-                yield changed
-            painting, segments = changed, found
+        fewer = len(segments_of(window.graph, window.painting)) - len(
+            segments_of(window.graph, found)
+        )
+        if fewer < 0:
+            continue
+        painting = _with_window(graph, painting, window, found, block_of)
+        if fewer:
+            fruitless = 0
+            gained += fewer
+            if gained * STALE >= len(segments):
+                segments, gained = segments_of(graph, painting), 0
+            yield painting
 
 
 def _cells_around(
@@ -115,18 +146,10 @@ def _cells_around(
     return kept
 
 
-def _contracted(graph: DartGraph, painting: Painting, cells: list[int]) -> _Window:
+def _contracted(
+    graph: DartGraph, painting: Painting, block_of: Mapping[int, Block], cells: list[int]
+) -> _Window:
     inside = set(cells)
-    piece_of: dict[int, Block] = {}
-    pieces: UnionFind[int] = UnionFind()
-    for cell, blocks in enumerate(painting):
-        if cell not in inside:
-            for block in blocks:
-                piece_of |= dict.fromkeys(block.darts, block)
-    for dart, block in piece_of.items():
-        other = piece_of.get(graph.darts[dart].twin)
-        if other is not None:
-            pieces.union(id(block), id(other))
     facing: dict[int, Block] = {}
     for cell in cells:
         for dart in graph.lists[cell]:
@@ -134,6 +157,7 @@ def _contracted(graph: DartGraph, painting: Painting, cells: list[int]) -> _Wind
             beyond = graph.darts[twin].cell
             if beyond not in inside:
                 facing[twin] = _shown(graph.lists[beyond], painting[beyond], twin)
+    pieces = _pieces(graph, block_of, facing.values(), inside)
     lists = [
         [d for d in graph.lists[cell] if _can_join(graph, d, facing.get(graph.darts[d].twin))]
         for cell in cells
@@ -167,7 +191,60 @@ def _contracted(graph: DartGraph, painting: Painting, cells: list[int]) -> _Wind
         for dart in own
     ]
     reduced = DartGraph(tuple(whole), tuple(numbered), tuple(colors), graph.seams)
-    return _Window(reduced, cells, darts, facing)
+    before = _restricted(reduced, painting, block_of, cells, darts)
+    return _Window(reduced, cells, darts, facing, before)
+
+
+def _pieces(
+    graph: DartGraph, block_of: Mapping[int, Block], facing: Iterable[Block], inside: set[int]
+) -> dict[int, int]:
+    """By the id of each block outside a window the piece of its segment that it is in.
+
+    Only blocks that hang together with those that face the window are looked at.
+    """
+    piece: dict[int, int] = {}
+    for number, first in enumerate(facing):
+        if id(first) in piece:
+            continue
+        piece[id(first)] = number
+        reached = [first]
+        for block in reached:
+            for dart in block.darts:
+                twin = graph.darts[dart].twin
+                if graph.darts[twin].cell in inside:
+                    continue
+                other = block_of[twin]
+                if id(other) not in piece:
+                    piece[id(other)] = number
+                    reached.append(other)
+    return piece
+
+
+def _restricted(
+    reduced: DartGraph,
+    painting: Painting,
+    block_of: Mapping[int, Block],
+    cells: Sequence[int],
+    darts: Sequence[int],
+) -> Painting:
+    """What a division is on a window's graph."""
+    joined = {
+        number
+        for number, dart in enumerate(darts)
+        if dart in block_of and darts[reduced.darts[number].twin] in block_of
+    }
+    index = {darts[number]: number for number in joined}
+    own = [
+        [Block(b.color, {index[dart] for dart in b.darts if dart in index}) for b in painting[cell]]
+        for cell in cells
+    ]
+    beyond = [
+        [Block(min(colors), joined.intersection(numbers))]
+        for numbers, colors in zip(
+            reduced.lists[len(cells) :], reduced.colors[len(cells) :], strict=True
+        )
+    ]
+    return [[b for b in blocks if b.darts] or blocks[:1] for blocks in [*own, *beyond]]
 
 
 def _can_join(graph: DartGraph, dart: int, beyond: Block | None) -> bool:
@@ -182,27 +259,61 @@ def _shown(darts: Sequence[int], blocks: Sequence[Block], dart: int) -> Block:
     return next((block_of[d] for d in walk if d in block_of), blocks[0])
 
 
-def _solved(
-    window: _Window, graph: DartGraph, painting: Painting, solve: SolveWithSeed, seed: int
-) -> Painting | None:
-    """The whole painting with the window's cells solved anew; None if nothing was found."""
+def _routed(window: _Window, seed: int, deadline: Deadline) -> Painting | None:
+    """The best of the window that leaving segments out leads to; None if that is nothing better."""
+    best = None
+    for better in drop_segments(
+        window.graph, window.painting, _regions(window.graph), seed, deadline, TRIES
+    ):
+        best = better
+    return best
+
+
+def _solved(window: _Window, solve: SolveWithSeed, seed: int) -> Painting | None:
+    """The window solved anew; None if it is too large, or nothing was found."""
+    # A piece outside may face the window with many darts.
+    if model_size(window.graph) > LARGEST_WINDOW:
+        return None
     built = full_model(window.graph, _regions(window.graph))
     solver, status = solve(built.model, seed)
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
-    found = read_painting(window.graph, built.variables, solver)
-    changed = [[Block(block.color, set(block.darts)) for block in blocks] for blocks in painting]
+    return read_painting(window.graph, built.variables, solver)
+
+
+def _with_window(
+    graph: DartGraph,
+    painting: Painting,
+    window: _Window,
+    found: Painting,
+    block_of: dict[int, Block],
+) -> Painting:
+    """The whole painting with the window as it was found; the blocks of darts change with it."""
+    joined = {window.darts[dart] for blocks in found for block in blocks for dart in block.darts}
+    around = {graph.darts[dart].cell for dart in window.blocks}
+    changed = list(painting)
     for cell, blocks in zip(window.cells, found, strict=False):
         changed[cell] = [Block(b.color, {window.darts[d] for d in b.darts}) for b in blocks]
-    joined = {window.darts[dart] for blocks in found for block in blocks for dart in block.darts}
+    copies: dict[int, Block] = {}
+    for cell in around:
+        for block in painting[cell]:
+            copies[id(block)] = Block(block.color, set(block.darts))
+        changed[cell] = [copies[id(block)] for block in painting[cell]]
     for dart, block in window.blocks.items():
-        cell = graph.darts[dart].cell
-        own = changed[cell][next(n for n, b in enumerate(painting[cell]) if b is block)]
         if dart in joined:
-            own.darts.add(dart)
+            copies[id(block)].darts.add(dart)
         else:
-            own.darts.discard(dart)
-    return canonical(graph, changed)
+            copies[id(block)].darts.discard(dart)
+    for cell in around:
+        # A block that was joined with the window only may have no darts left.
+        changed[cell] = [b for b in changed[cell] if b.darts] or changed[cell][:1]
+    changed = canonical(graph, changed, around.union(window.cells))
+    for cell, (old, new) in enumerate(zip(painting, changed, strict=True)):
+        if old is not new:
+            for dart in graph.lists[cell]:
+                block_of.pop(dart, None)
+            block_of.update({dart: block for block in new for dart in block.darts})
+    return changed
 
 
 def _regions(graph: DartGraph) -> list[Region]:

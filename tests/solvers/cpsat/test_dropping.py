@@ -18,8 +18,19 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph, voronoi
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, division_of
+from cellcolor.solvers.cpsat.model.painting import (
+    Block,
+    Painting,
+    canonical,
+    division_of,
+    segments_of,
+)
 from cellcolor.solvers.cpsat.routes.dropping import drop_segments
+from cellcolor.solvers.cpsat.routes.routing import route
+from cellcolor.solvers.cpsat.routes.sectors import held_nodes, painting_of_nodes, refined
+from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment
+
+RED, BLUE = 0, 1
 
 SEEDS = st.integers(0, 10**6)
 
@@ -61,3 +72,45 @@ def test_a_surface_with_holes_and_cracks() -> None:
 
 def test_no_time_leaves_what_there_was() -> None:
     assert len(numbers(hub(0, 1, 0, 1), 0, Deadline.after(0))) == 1
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=SEEDS, cells=st.integers(1, 12), colors=st.integers(1, 5), rings=st.integers(0, 2))
+def test_what_a_division_holds_is_a_division_again(
+    seed: int, cells: int, colors: int, rings: int
+) -> None:
+    """Each node is held once, in one of its cell's colors; drawn again there are no more segments.
+
+    That is so where no two sub-cells of a cell need its center, as in what was routed.
+    """
+    instance = planar_graph(seed, cells, cells + 6, colors)
+    graph = graph_of(instance)
+    regions = color_regions(instance)
+    plan = tuple(PlannedSegment(region, region[1]) for region in regions)
+    ways = refined(graph, 1)
+    routed = canonical(graph, route(ways, plan, 5, seed))
+    ways = refined(graph, max(rings, 1))
+    held = held_nodes(ways, routed)
+    node_colors = [-1] * len(ways.cell)
+    for color, nodes in held:
+        for node in nodes:
+            assert node_colors[node] == -1
+            node_colors[node] = color
+            assert color in graph.colors[ways.cell[node]]
+    again = canonical(graph, painting_of_nodes(ways, node_colors))
+    assert len(segments_of(graph, again)) <= len(segments_of(graph, routed))
+
+
+def test_routes_begin_with_what_is_held() -> None:
+    """Before any round the blue petals are connected; without that the hub is red."""
+    instance = hub(RED, BLUE, RED, BLUE)
+    graph = graph_of(instance)
+    red, blue = color_regions(instance)
+    plan = tuple(
+        PlannedSegment(region, frozenset(cells))
+        for region, cells in ((red, {1}), (red, {3}), (blue, {0, 2, 4}))
+    )
+    ways = refined(graph, 1)
+    held = [{node for cell in segment.cells for node in ways.nodes[cell]} for segment in plan]
+    assert {0, 2, 4} in segments_of(graph, route(ways, plan, 0, 0, NEVER, held))
+    assert {0, 1, 3} in segments_of(graph, route(ways, plan, 0, 0))

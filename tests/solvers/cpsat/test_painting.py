@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from copy import deepcopy
+
 from dart_graphs import graph_of
 from examples import examples
 from hypothesis import given
@@ -14,6 +16,9 @@ from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.model.full import full_model, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, canonical, division_of
+from cellcolor.solvers.cpsat.routes.routing import route
+from cellcolor.solvers.cpsat.routes.sectors import refined
+from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment
 
 RED, BLUE = 0, 1
 
@@ -36,6 +41,31 @@ def test_what_the_model_finds_has_a_scheme(seed: int, cells: int, colors: int) -
     report = check_division(instance, division_of(graph, painting))
     assert report.is_scheme, (report.problems, report.not_canonical)
     assert report.segments is not None and report.segments <= round(solver.objective_value)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=SEEDS, cells=st.integers(2, 10), colors=st.integers(1, 4), chosen=st.integers(0, 99))
+def test_a_change_is_made_canonical_where_it_was_made(
+    seed: int, cells: int, colors: int, chosen: int
+) -> None:
+    """A cell of a scheme is cut off all round; only it and its neighbors are looked at again."""
+    instance = planar_graph(seed, cells, cells + 5, colors)
+    graph = graph_of(instance)
+    plan = tuple(PlannedSegment(region, region[1]) for region in color_regions(instance))
+    scheme = canonical(graph, route(refined(graph, 1), plan, 5, seed))
+    cell = chosen % len(scheme)
+    twins = {graph.darts[dart].twin for dart in graph.lists[cell]}
+    around = {cell, *(graph.darts[twin].cell for twin in twins)}
+    changed = [
+        [Block(b.color, b.darts - twins - set(graph.lists[cell])) for b in blocks]
+        for blocks in scheme
+    ]
+    changed = [[b for b in blocks if b.darts] or blocks[:1] for blocks in changed]
+    before = deepcopy(changed)
+    found = canonical(graph, changed, around)
+    assert changed == before
+    report = check_division(instance, division_of(graph, found))
+    assert report.is_scheme, (report.problems, report.not_canonical)
 
 
 def test_a_canonical_painting_has_no_idle_cuts_and_no_single_darts() -> None:

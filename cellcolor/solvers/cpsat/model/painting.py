@@ -97,7 +97,9 @@ def colored_segments(graph: DartGraph, painting: Painting) -> list[tuple[int, se
     return segments
 
 
-def canonical(graph: DartGraph, painting: Painting) -> Painting:
+def canonical(
+    graph: DartGraph, painting: Painting, changed: Iterable[int] | None = None
+) -> Painting:
     """Make a scheme of a legal painting, with no more segments (docs/semantics.md, section 3).
 
     Throughout, a dart in state 0 shows the color of the sub-cell before it in cyclic order; a loop
@@ -112,21 +114,37 @@ def canonical(graph: DartGraph, painting: Painting) -> Painting:
     Each of them leaves as many segments or fewer. The first two only add joins or take away
     sub-cells; the third takes away a join and a sub-cell, so that all this comes to an end. On a
     graph without seams there are no more cutting paths than before either (docs/encodings.md).
+
+    Args:
+        graph: the dart graph.
+        painting: what is legal on it.
+        changed: the cells in which it is not a scheme's yet; None for all of them, and to work on
+            the painting's own blocks. Cells that stay as they are keep their lists of blocks.
     """
-    cells = [_Cell(loops, blocks) for loops, blocks in zip(graph.loops, painting, strict=True)]
-    waiting = dict.fromkeys(reversed(range(len(cells))))
+    made: dict[int, _Cell] = {}
+
+    def at(number: int) -> _Cell:
+        if number not in made:
+            own = painting[number]
+            if changed is not None:
+                own = [Block(block.color, set(block.darts)) for block in own]
+            made[number] = _Cell(graph.loops[number], own)
+        return made[number]
+
+    first = range(len(painting)) if changed is None else sorted(changed)
+    waiting = dict.fromkeys(reversed(first))
     while waiting:
         number, _ = waiting.popitem()
-        cell = cells[number]
+        cell = at(number)
         for dart in graph.lists[number]:
             if dart in cell.block_of:
                 continue
             twin = graph.darts[dart].twin
             beyond = graph.darts[twin].cell
-            one, its = cell.shown(dart), cells[beyond].shown(twin)
+            one, its = cell.shown(dart), at(beyond).shown(twin)
             if one.color == its.color and one.color in graph.darts[dart].colors:
                 cell.add(dart, one)
-                cells[beyond].add(twin, its)
+                at(beyond).add(twin, its)
                 if len(graph.loops[beyond]) > 1:
                     waiting[beyond] = None  # another sub-cell may be its first one now
         cell.merge()
@@ -135,9 +153,12 @@ def canonical(graph: DartGraph, painting: Painting) -> Painting:
             twin = graph.darts[single].twin
             beyond = graph.darts[twin].cell
             cell.remove(single)
-            cells[beyond].remove(twin)
+            at(beyond).remove(twin)
             waiting[number] = waiting[beyond] = None
-    return [cell.blocks() for cell in cells]
+    found = list(painting)
+    for number, cell in made.items():
+        found[number] = cell.blocks()
+    return found
 
 
 class _Cell:

@@ -17,13 +17,16 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Painting, canonical, colored_segments
 from cellcolor.solvers.cpsat.routes.routing import route
-from cellcolor.solvers.cpsat.routes.sectors import RefinedGraph, refined
+from cellcolor.solvers.cpsat.routes.sectors import RefinedGraph, held_nodes, refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, SegmentPlan
 
-__all__ = ["drop_segments"]
+__all__ = ["FRUITLESS", "drop_segments"]
 
 ROUNDS = 20
 """Rounds of routing a plan; most that can be routed take a few."""
+
+PATIENCE = 6
+"""Rounds in succession without fewer shared nodes after which a plan is given up."""
 
 RINGS = (1, 1, 2)
 """Rings of sectors, drawn for each plan: one leaves room enough in most cells, and is quicker."""
@@ -38,6 +41,7 @@ def drop_segments(
     regions: Sequence[Region],
     seed: int,
     deadline: Deadline,
+    tries: float = FRUITLESS,
 ) -> Iterator[Painting]:
     """Better and better divisions of a graph, each with a segment less at least.
 
@@ -49,6 +53,7 @@ def drop_segments(
         regions: the color regions of the instance.
         seed: of the choice of segments and of routing.
         deadline: when to stop.
+        tries: for each segment, before nothing better is expected.
     """
     chance = random.Random(seed)
     region_of = {(region[0], cell): region for region in regions for cell in region[1]}
@@ -61,8 +66,9 @@ def drop_segments(
         ]
 
     segments = planned(painting)
+    held: dict[int, list[tuple[int, set[int]]]] = {}
     fruitless, fewest = 0, len(segments)
-    while fruitless < FRUITLESS * len(segments) and not deadline.over:
+    while fruitless < tries * len(segments) and not deadline.over:
         fruitless += 1
         kept = _without_one(segments, regions, chance)
         if kept is None:
@@ -71,13 +77,19 @@ def drop_segments(
         rings = chance.choice(RINGS)
         if rings not in ways:
             ways[rings] = refined(graph, rings)
-        painting = route(ways[rings], plan, ROUNDS, chance.randrange(2**20), deadline)
+        if rings not in held:
+            held[rings] = held_nodes(ways[rings], painting)
+        begun = _kept_nodes(ways[rings], plan, segments, held[rings])
+        routed = route(
+            ways[rings], plan, ROUNDS, chance.randrange(2**20), deadline, begun, PATIENCE
+        )
         if deadline.over:
             return
-        changed = canonical(graph, painting)
+        changed = canonical(graph, routed)
         found = planned(changed)
         if len(found) <= len(segments):
-            segments = found
+            painting, segments = changed, found
+            held = {}
         if len(found) < fewest:
             fruitless, fewest = 0, len(found)
             yield changed
@@ -110,6 +122,31 @@ def _without_one(
         return None
     second = chance.choice(spare)
     return [*(segment for segment in kept if segment is not second), added]
+
+
+def _kept_nodes(
+    graph: RefinedGraph,
+    plan: SegmentPlan,
+    segments: Sequence[PlannedSegment],
+    held: Sequence[tuple[int, set[int]]],
+) -> list[set[int]]:
+    """Of each planned segment the nodes that it holds already, the most that hang together."""
+    left = [(color, nodes, {graph.cell[node] for node in nodes}) for color, nodes in held]
+    found: list[set[int]] = []
+    for segment in plan:
+        whole = [
+            s.cells for s in segments if s.region == segment.region and segment.cells <= s.cells
+        ]
+        place = next(
+            (
+                number
+                for number, (color, _, cells) in enumerate(left)
+                if color == segment.region[0] and any(cells <= its for its in whole)
+            ),
+            None,
+        )
+        found.append(set() if place is None else left.pop(place)[1])
+    return found
 
 
 def _each_cell_once(

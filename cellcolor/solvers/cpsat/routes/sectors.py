@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 
-__all__ = ["RefinedGraph", "painting_of_nodes", "refined"]
+__all__ = ["RefinedGraph", "held_nodes", "painting_of_nodes", "refined"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,3 +111,42 @@ def painting_of_nodes(refined: RefinedGraph, colors: Sequence[int]) -> Painting:
         if color == colors[beyond] and color in dart.colors:
             block_of[node].darts.add(number)
     return [[block for block in cell if block.darts] or cell[:1] for cell in painting]
+
+
+def held_nodes(refined: RefinedGraph, painting: Painting) -> list[tuple[int, set[int]]]:
+    """The connected nodes of one color that a division comes to, the largest sets first.
+
+    A sector belongs to the sub-cell that its dart is in or, in state 0, shows. The center belongs
+    to a sub-cell that is not connected along the ring, if there is one. A segment that passes a
+    cell beside another such sub-cell falls into several sets.
+    """
+    colors = [0] * len(refined.cell)
+    for nodes, darts, blocks in zip(refined.nodes, refined.graph.lists, painting, strict=True):
+        block_of = {dart: block for block in blocks for dart in block.darts}
+        shown = next((block_of[dart] for dart in reversed(darts) if dart in block_of), blocks[0])
+        ring: list[Block] = []
+        for dart in darts:
+            shown = block_of.get(dart, shown)
+            ring.append(shown)
+        starts = [own for before, own in pairwise(ring[-1:] + ring) if own is not before]
+        center = max(blocks, key=lambda block: sum(own is block for own in starts))
+        for node in nodes:
+            colors[node] = center.color
+        if ring:
+            for node, place in zip(nodes[:-1], range(len(nodes) - 1), strict=True):
+                colors[node] = ring[place % len(ring)].color
+    found: list[tuple[int, set[int]]] = []
+    seen: set[int] = set()
+    for first, color in enumerate(colors):
+        if first in seen:
+            continue
+        near = refined.near(color)
+        seen.add(first)
+        reached = [first]
+        for node in reached:
+            for other in near[node]:
+                if colors[other] == color and other not in seen:
+                    seen.add(other)
+                    reached.append(other)
+        found.append((color, set(reached)))
+    return sorted(found, key=lambda own: -len(own[1]))
