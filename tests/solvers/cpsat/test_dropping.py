@@ -74,7 +74,7 @@ def test_no_time_leaves_what_there_was() -> None:
     assert len(numbers(hub(0, 1, 0, 1), 0, Deadline.after(0))) == 1
 
 
-@settings(max_examples=60, deadline=None)
+@examples(40)
 @given(seed=SEEDS, cells=st.integers(1, 12), colors=st.integers(1, 5), rings=st.integers(0, 2))
 def test_what_a_division_holds_is_a_division_again(
     seed: int, cells: int, colors: int, rings: int
