@@ -22,7 +22,7 @@ from cellcolor.solvers.bounds.conflicts import conflicts
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat import search, windows
+from cellcolor.solvers.cpsat import model_search, windows
 from cellcolor.solvers.cpsat.cuts import fewest
 from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
@@ -190,13 +190,13 @@ def test_what_is_too_large_is_not_built_and_that_is_said(
     fewest_cuts: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     instance = hub(3, 12, 3)
-    monkeypatch.setattr(search, "LARGEST_MODEL", 10)
+    monkeypatch.setattr(model_search, "LARGEST_MODEL", 10)
     monkeypatch.setattr(model_module, "LARGEST_MODEL", 10)
 
     def refuse(*_: object, **__: object) -> None:
         raise AssertionError("built")
 
-    monkeypatch.setattr(search, "full_model", refuse)
+    monkeypatch.setattr(model_search, "full_model", refuse)
     found = solve(instance, Options(fewest_cuts=fewest_cuts), "cp-sat-model")
     assert found.status == "feasible"
     assert len(found.notes) == 1 and "was not built" in found.notes[0]
@@ -347,7 +347,7 @@ def test_what_there_is_no_time_to_build_is_not_begun(
     def never(*_arguments: object, **_named: object) -> None:
         raise AssertionError("a model was begun")
 
-    monkeypatch.setattr(search, "full_model", never)
+    monkeypatch.setattr(model_search, "full_model", never)
     monkeypatch.setattr(fewest, "build_apart", never)
     instance = hub(1, 130, 4)
     options = Options(deadline=Deadline.after(1.0), fewest_cuts=fewest_cuts)

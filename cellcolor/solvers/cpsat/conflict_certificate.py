@@ -42,7 +42,8 @@ def _part(part: PartSearch) -> dict[str, Any]:
         hubs, hard = (cells(found) for found in (part.hubs.hubs, part.hubs.cells))
         return {"value": part.surface_bound, "cells": hard, "conflicts": [], "hubs": hubs}
     conflicts = []
-    for one, other, parting in part.planner.partings if part.planner is not None else ():
+    planner = part.planning.planner
+    for one, other, parting in planner.partings if planner is not None else ():
         for group, further in combinations(parting.groups, 2):
             for pair in product(group, further):
                 ends, parted = ([cells(m) for m in two] for two in (parting.ends, pair))

@@ -144,7 +144,7 @@ class _Search:
             start = division_of(known, its, self._options.strands)
             if count_segments(start) < count_segments(division):
                 graph, division = known, start
-        notes = {note for part in self._parts for note in part.notes}
+        notes = {note for part in self._parts for note in part.models.notes}
         cuts = 0 if self._options.fewest_cuts else None
         if self._fewest is not None:
             cuts = self._fewest.bound
@@ -172,20 +172,22 @@ class _Search:
     def _stages(self) -> list[_Stage]:
         """What is done for every part that is not proved, before any goes on to the next."""
         if not self._plans:
-            return [PartSearch.cover, PartSearch.solve_model]
+            return [PartSearch.cover, lambda part, deadline: part.models.solve(deadline)]
         return [
             PartSearch.cover,
             lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=True),
-            lambda part, deadline: part.route_plans(deadline.share(1 / (4 if part.large else 2))),
+            lambda part, deadline: part.planning.route(
+                deadline.share(1 / 4 if part.large else 1 / 2)
+            ),
             lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=False),
-            lambda part, deadline: part.drop_segments(deadline.share(1 / 4)),
-            lambda part, deadline: part.improve_large(deadline.share(9 / 10)),
-            lambda part, deadline: part.plan_on(deadline.share(1 / 2)),
-            lambda part, deadline: part.plan_avoiding(deadline.share(1 / 2)),
-            lambda part, deadline: part.narrow_gap(deadline.share(3 / 4)),
-            PartSearch.solve_small_model,
-            PartSearch.solve_model,
-            PartSearch.improve_on,
+            lambda part, deadline: part.improving.drop(deadline.share(1 / 4)),
+            lambda part, deadline: part.improving.improve_large(deadline.share(9 / 10)),
+            lambda part, deadline: part.planning.go_on(deadline.share(1 / 2)),
+            lambda part, deadline: part.planning.avoid(deadline.share(1 / 2)),
+            lambda part, deadline: part.improving.narrow_gap(deadline.share(3 / 4)),
+            lambda part, deadline: part.models.solve_small(deadline),
+            lambda part, deadline: part.models.solve(deadline),
+            lambda part, deadline: part.improving.improve_on(deadline),
         ]
 
     def _run_stage(self, stage: _Stage, parts: list[PartSearch]) -> None:

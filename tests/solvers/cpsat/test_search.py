@@ -20,8 +20,8 @@ def test_what_segments_avoid_proves_the_last_one() -> None:
     options = Options()
     search = PartSearch(part, options, Runner(options), lambda: None)
     search.cover(NEVER)
-    search.route_plans(NEVER)
-    search.drop_segments(NEVER)
+    search.planning.route(NEVER)
+    search.improving.drop(NEVER)
     assert (search.segments, search.surface_bound) == (7, 6)
-    search.plan_avoiding(NEVER)
+    search.planning.avoid(NEVER)
     assert search.surface_bound == 7

@@ -1,0 +1,124 @@
+"""The full model of a part, from a small one to one as wide as can be needed."""
+
+from __future__ import annotations
+
+from math import ceil, isfinite
+
+from ortools.sat.python import cp_model
+
+from cellcolor.data.solution import Seam
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.solvers.bounds.cover import color_regions
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.model.full import (
+    LARGEST_MODEL,
+    SECONDS_A_TERM,
+    Model,
+    add_hint,
+    full_model,
+    model_size,
+    not_built,
+    read_painting,
+    seams_size,
+)
+from cellcolor.solvers.cpsat.model.painting import canonical, moved
+from cellcolor.solvers.cpsat.part_state import FEW_STRANDS, PartState
+from cellcolor.solvers.interface import PORTFOLIO
+
+__all__ = ["ModelSearch"]
+
+TRIAL_EFFORT = 2.0
+"""Deterministic seconds a worker for a model that is not the widest: its bound proves nothing."""
+
+
+class ModelSearch:
+    """Solves models of a part.
+
+    Attributes:
+        notes: what was left out and why, a sentence each.
+    """
+
+    def __init__(self, part: PartState) -> None:
+        self._part = part
+        self.notes: list[str] = []
+
+    def solve_small(self, deadline: Deadline) -> None:
+        """The full model in the colors of the last plan only."""
+        colors = tuple(
+            frozenset(color for color, cells in self._part.planned if cell.id in cells)
+            for cell in self._part.instance.cells
+        )
+        if all(colors) and colors != self._part.colors:
+            seams = self._part.seams(self._part.once, FEW_STRANDS)
+            self._minimize(self._part.once, seams, colors, deadline, final=False)
+
+    def solve(self, deadline: Deadline) -> None:
+        """The full model, with as many strands as were asked for and seams can need."""
+        stages = self._stages()
+        for number, stage in enumerate(stages):
+            if not self._part.done and stages.index(stage) == number:
+                self._minimize(*stage, self._part.colors, deadline, final=stage == stages[-1])
+
+    def _stages(self) -> list[tuple[dict[int, int], tuple[Seam, ...]]]:
+        """Strands and seams, from narrow ones to as wide ones as can be needed."""
+        wanted = self._part.widest
+        # The paper's divisions are among the surface's, and usually enough for the bound.
+        widths = [self._part.once, wanted] if wanted != self._part.once else [wanted]
+        return [
+            (strands, self._part.seams(strands, width))
+            for strands in widths
+            for width in (FEW_STRANDS, None)
+        ]
+
+    def _minimize(
+        self,
+        strands: dict[int, int],
+        seams: tuple[Seam, ...],
+        colors: tuple[frozenset[int], ...],
+        deadline: Deadline,
+        final: bool,
+    ) -> None:
+        """Solve one model; only the final one, the widest, proves a bound of its own."""
+        if not self._fits(seams_size(seams)):
+            return
+        graph = dart_graph(self._part.instance, colors, strands, seams, self._part.connected.loops)
+        size = model_size(graph)
+        if not self._fits(size):
+            return
+        if size * SECONDS_A_TERM > deadline.left:
+            raise OutOfTime("building the model would take longer than there is time")
+        built = full_model(graph, color_regions(self._part.instance, colors), deadline=deadline)
+        # What meets the bound ends the search; by itself the model would have to prove it first.
+        built.model.add(sum(built.variables.root) + sum(built.variables.alone) >= self._part.bound)
+        self._hint(built, graph)
+        solver = self._part.runner.solver(None if final else TRIAL_EFFORT, deadline)
+        if final:
+            solver.best_bound_callback = self._proved
+        status = self._part.runner.solve(solver, built.model, self._part.watch)
+        self._part.watch(None)
+        if final and isfinite(solver.best_objective_bound):
+            self._proved(solver.best_objective_bound)
+        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            self._part.offer(graph, read_painting(graph, built.variables, solver))
+
+    def _proved(self, bound: float) -> None:
+        self._part.raise_to(ceil(bound - 1e-6), for_surface=False)
+
+    def _fits(self, size: float) -> bool:
+        """Whether a model of so many terms is small enough to be built; noted if it is not."""
+        # Every worker has a copy of its own.
+        size *= max(1.0, (self._part.options.workers or PORTFOLIO) / PORTFOLIO)
+        if size > LARGEST_MODEL:
+            self.notes.append(not_built(size))
+        return size <= LARGEST_MODEL
+
+    def _hint(self, built: Model, graph: DartGraph) -> None:
+        """Hint the best division, if it has no strands and no colors beyond the model's."""
+        known, painting = self._part.best
+        fits = all(
+            block.color in graph.colors[cell]
+            for cell, blocks in enumerate(painting)
+            for block in blocks
+        )
+        if fits and {dart.name for dart in known.darts} <= {dart.name for dart in graph.darts}:
+            add_hint(built, graph, canonical(graph, moved(known, painting, graph)))

@@ -1,0 +1,139 @@
+"""Plans of the segments of a part, and divisions by routing them.
+
+A plan says of each segment its color and the cells that it has a share in; ``routes`` has both.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+
+from ortools.sat.python import cp_model
+
+from cellcolor.deadline import Deadline
+from cellcolor.solvers.cpsat.part_state import PartState
+from cellcolor.solvers.cpsat.routes.routing import route
+from cellcolor.solvers.cpsat.routes.sectors import refined
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
+
+__all__ = ["Planning"]
+
+PLAN_EFFORT, MORE_EFFORT = 0.05, 2.0
+"""Deterministic seconds for a plan; most take a hundredth of the first number. The second one is
+for plans that were left undecided, before the full model is tried."""
+
+FIRST_ROUNDS, ROUNDS = 20, 60
+"""Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
+be routed takes a few."""
+
+FAR = 2
+"""How many times the bound a large part may have after its first routes to be planned further."""
+
+ATTEMPTS = 3
+"""Plans to route before the full model has to decide."""
+
+
+class Planning:
+    """Plans a part, and plans it on.
+
+    Attributes:
+        planner: what has planned its segments; None before.
+    """
+
+    def __init__(self, part: PartState) -> None:
+        self._part = part
+        self.planner: Planner | None = None
+        self._effort = PLAN_EFFORT
+        self._undecided = False
+        self._avoiding = False
+
+    def route(self, deadline: Deadline) -> None:
+        """Divisions by routing what is planned; where nothing can be planned the bound rises."""
+        self.planner = planner = Planner(
+            self._part.instance,
+            self._part.regions,
+            self._part.cover_bound,
+            self._solve_plan,
+            self._part.planned,
+        )
+        self._undecided = True
+        with suppress(Undecided):
+            self._route_all(planner, deadline)
+            self._undecided = False
+
+    def go_on(self, deadline: Deadline) -> None:
+        """What was left undecided is planned with more effort, where hubs do not say more."""
+        if self._undecided:
+            self._plan_with_effort(deadline)
+
+    def avoid(self, deadline: Deadline) -> None:
+        """Plans that say what segments avoid, too, where one segment is left above the bound.
+
+        The bound rises by one in seconds, if at all. Where more is missing, models and other routes
+        have the better use of the time.
+        """
+        if self._part.segments == self._part.bound + 1:
+            self._avoiding = True
+            self._plan_with_effort(deadline)
+
+    def _plan_with_effort(self, deadline: Deadline) -> None:
+        if self.planner is not None and self._part.hubs is None:
+            self._effort = MORE_EFFORT
+            with suppress(Undecided):
+                self._route_all(self.planner, deadline)
+
+    def _route_all(self, planner: Planner, deadline: Deadline) -> None:
+        for attempt in range(ATTEMPTS):
+            plan = self._plan_that_holds(planner, attempt, deadline)
+            for rings in (1, 2):
+                self._route(plan, rings, ROUNDS, attempt, deadline)
+            if self._part.done:
+                return
+        looser = planner.plan(self._part.bound + 1, 0)
+        if looser is not None:
+            self._route(looser, 1, ROUNDS, 0, deadline)
+
+    def _plan_that_holds(self, planner: Planner, attempt: int, deadline: Deadline) -> SegmentPlan:
+        """A plan with as many segments as the bound in which no two are known to cross.
+
+        Raises:
+            Undecided: none was found, nor that there is none.
+            OutOfTime: the deadline came first.
+        """
+        while True:
+            deadline.check()
+            plan = planner.plan(self._part.bound, attempt, self._effort > PLAN_EFFORT)
+            if plan is None:
+                self._part.raise_to(self._part.bound + 1, for_surface=True)
+                continue
+            self._part.planned = [segment.region for segment in plan]
+            # Looking for segments that cross takes longer than routing when none do. With 0 rings
+            # a cell is painted whole, with 1 it has room for cutting paths. What has been planned
+            # and not routed before is not likely to be routed now.
+            for rings in () if self._avoiding else (0, 1):
+                self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
+                if self._part.large and self._part.segments > FAR * self._part.bound:
+                    raise Undecided  # windows first: on so large a part all this takes too long
+            if self._part.done:
+                return plan
+            if not planner.find_conflicts(plan, deadline, avoiding=self._avoiding):
+                return plan
+
+    def _solve_plan(
+        self, model: cp_model.CpModel, seed: int
+    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+        # Too small for a portfolio.
+        solver = self._part.runner.solver(self._effort, workers=1, seed=seed)
+        if self._effort > PLAN_EFFORT:
+            # What takes effort are plans of many segments. As with covers (``bounds/cover``), it is
+            # the linear relaxation that tells that there are none. Small plans are quicker without.
+            solver.parameters.linearization_level = 2
+        return solver, self._part.runner.solve(solver, model)
+
+    def _route(
+        self, plan: SegmentPlan, rings: int, rounds: int, seed: int, deadline: Deadline
+    ) -> None:
+        if self._part.done:
+            return
+        graph = self._part.narrow_graph()
+        seed += self._part.options.seed
+        self._part.offer(graph, route(refined(graph, rings), plan, rounds, seed, deadline))
