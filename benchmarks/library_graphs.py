@@ -54,7 +54,9 @@ RANDOM = {
         "thin_36": "MEDIUM['thin'](36)",
         "thin_42": "MEDIUM['thin'](42)",
         "thin_57": "MEDIUM['thin'](57)",
+        "thin_40": "MEDIUM['thin'](40)",
         "rim_3": "MEDIUM['rim'](3)",
+        "rim_26": "MEDIUM['rim'](26)",
         "disc_1": "LARGE['disc'](1)",
         "double_torus_2": "LARGE['double torus'](2)",
         "part_150": "part(0, 150, 40)",
@@ -79,8 +81,6 @@ RANDOM = {
         "hub_loops_2x12": "hub_with_loops(0, 2, 12, 4)",
     },
     "hard": {
-        "thin_40": "MEDIUM['thin'](40)",
-        "rim_26": "MEDIUM['rim'](26)",
         "hub_wide_80": "wide_hub(0, 80, 10, 2)",
         "hub_grid_6x6x2": "hub_grid(0, 6, 6, 4, 2)",
         "hub_grid_10x10x2": "hub_grid(0, 10, 10, 4, 2)",

@@ -183,7 +183,7 @@ class _Search:
             lambda part, deadline: part.improving.drop(deadline.share(1 / 4)),
             lambda part, deadline: part.improving.improve_large(deadline.share(9 / 10)),
             lambda part, deadline: part.planning.go_on(deadline.share(1 / 2)),
-            lambda part, deadline: part.planning.avoid(deadline.share(1 / 2)),
+            lambda part, deadline: part.planning.avoid(deadline.share(1 / 3)),
             lambda part, deadline: part.improving.narrow_gap(deadline.share(3 / 4)),
             lambda part, deadline: part.models.solve_small(deadline),
             lambda part, deadline: part.models.solve(deadline),

@@ -82,8 +82,10 @@ class _MiniZinc:
             file = Path(place) / "instance.dzn"
             file.write_text(data, encoding="ascii")
             command = ["minizinc", "--solver", self.name, "-a", "-r", str(options.seed)]
-            if math.isfinite(deadline.left):  # for the case that this process is killed
-                command += ["--time-limit", str(math.ceil(1000 * deadline.left))]
+            if math.isfinite(deadline.left):
+                # For the case that this process is killed; a second later than the deadline, since
+                # MiniZinc ends with an error where its limit comes before it has begun to search.
+                command += ["--time-limit", str(math.ceil(1000 * (deadline.left + 1.0)))]
             with Child([*command, *self.flags, str(MODEL), str(file)], Path(place)) as child:
                 # A signal may stand for the end of the time: OutOfTime.
                 for line in child.lines(deadline):
