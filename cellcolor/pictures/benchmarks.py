@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-from itertools import cycle
 
 import matplotlib as mpl
 from matplotlib.axes import Axes
@@ -51,16 +50,12 @@ def _draw(axes: Axes, plot: Plot) -> None:
     """Curves, each told from the others by color and by dashes or marks."""
     axes.set_xscale("log" if plot.log_x else "linear")
     axes.set_yscale("log" if plot.log_y else "linear")
-    for axis, logarithmic in ((axes.xaxis, plot.log_x), (axes.yaxis, plot.log_y)):
-        if logarithmic:
-            axis.set_major_locator(LogLocator(subs=(1, 2, 5), numticks=12))
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axis.set_minor_formatter(NullFormatter())
     if plot.diagonal:
         ends = [value for curve in plot.curves for point in curve.points for value in point]
         if ends:
             axes.plot([min(ends), max(ends)], [min(ends), max(ends)], color=GREY, linewidth=0.8)
-    for number, (curve, mark) in enumerate(zip(plot.curves, cycle(_MARKS), strict=False)):
+    for number, curve in enumerate(plot.curves):
+        mark = _MARKS[(number + number // len(LINES)) % len(_MARKS)]
         xs, ys = ([point[axis] for point in curve.points] for axis in (0, 1))
         color = LINES[number % len(LINES)]
         if plot.joined == "points":
@@ -76,3 +71,11 @@ def _draw(axes: Axes, plot: Plot) -> None:
             axes.plot(
                 xs, ys, color=color, linestyle=style, marker=mark, markersize=3, label=curve.label
             )
+    for axis, logarithmic in ((axes.xaxis, plot.log_x), (axes.yaxis, plot.log_y)):
+        if logarithmic:
+            low, high = axis.get_view_interval()
+            # On a long axis labels of more would run into each other.
+            subs = (1,) if high > 1000 * low else (1, 2, 5)
+            axis.set_major_locator(LogLocator(subs=subs, numticks=12))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
