@@ -112,8 +112,8 @@ def nearest(solutions: Array, others: Array) -> Array:
     """How far each of some solutions (n, s, joints) is from the nearest of others (n, t, joints).
 
     Returns:
-        (n, s) in rad: the joint of the first five that differs most, modulo full circles. It is
-        infinite where there is no other, and where there is no solution.
+        The largest difference of a joint, of the first five, modulo full circles, (n, s) in rad.
+        It is infinite where there is no other, and where there is no solution.
     """
     found = np.full(solutions.shape[:2], np.inf)
     for other in range(others.shape[1]):
