@@ -118,9 +118,14 @@ def nearest(solutions: Array, others: Array) -> Array:
     found = np.full(solutions.shape[:2], np.inf)
     for other in range(others.shape[1]):
         off = solutions[:, :, :TASK_JOINTS] - others[:, other, None, :TASK_JOINTS]
-        off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
-        found = np.fmin(found, off)
+        found = np.fmin(found, _largest_turn(off))
     return found
+
+
+def _largest_turn(angles: Array) -> Array:
+    """The largest of the last axis, absolute and modulo full circles."""
+    largest: Array = np.abs(np.remainder(angles + np.pi, 2 * np.pi) - np.pi).max(axis=-1)
+    return largest
 
 
 def merged(solutions: Array) -> Array:
@@ -135,8 +140,7 @@ def merged(solutions: Array) -> Array:
         five = packed[first : first + _AT_ONCE, :, :TASK_JOINTS]
         own = kept[first : first + _AT_ONCE]
         for later in range(1, five.shape[1]):
-            off = five[:, :later] - five[:, later : later + 1]
-            off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+            off = _largest_turn(five[:, :later] - five[:, later : later + 1])
             own[:, later] &= ~((off < SAME) & own[:, :later]).any(axis=1)
     return _packed(packed, kept)
 

@@ -133,7 +133,7 @@ def held_nodes(refined: RefinedGraph, painting: Painting) -> list[tuple[int, set
         for node in nodes:
             colors[node] = center.color
         if ring:
-            for node, place in zip(nodes[:-1], range(len(nodes) - 1), strict=True):
+            for place, node in enumerate(nodes[:-1]):
                 colors[node] = ring[place % len(ring)].color
     found: list[tuple[int, set[int]]] = []
     seen: set[int] = set()
