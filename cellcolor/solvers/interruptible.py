@@ -9,8 +9,15 @@ from threading import Event, Thread
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
+from cellcolor.solvers.interface import PORTFOLIO
 
-__all__ = ["make_cp_solver", "solve_interruptibly"]
+__all__ = ["make_cp_solver", "make_portfolio", "solve_interruptibly"]
+
+FEW_WORKERS, STRATEGIES = 2, ("core_max_lp", "max_lp")
+"""Up to how many workers search in OR-Tools' strategies of these names, in turns. With more of them
+OR-Tools chooses; one or two would have its default strategy alone, which hardly ever proves a bound
+around hubs. Both of these use the full linear relaxation; the first one raises the bound by cores,
+sets of literals of which some must cost a segment."""
 
 
 def make_cp_solver(
@@ -20,7 +27,7 @@ def make_cp_solver(
 
     Args:
         deadline: when to stop.
-        workers: its search workers.
+        workers: its search workers; one searches in OR-Tools' default strategy.
         seed: for everything that is random.
         effort: the limit for each worker in OR-Tools' deterministic time, which measures the work
             done and not the clock; None for as long as there is time.
@@ -34,6 +41,24 @@ def make_cp_solver(
         solver.parameters.max_time_in_seconds = deadline.left
     if effort is not None:
         solver.parameters.max_deterministic_time = effort
+    return solver
+
+
+def make_portfolio(
+    deadline: Deadline, workers: int | None, seed: int, effort: float | None = None
+) -> cp_model.CpSolver:
+    """A CP-SAT solver for a model that is worth several strategies, whatever the workers.
+
+    Args:
+        deadline: when to stop.
+        workers: its search workers, None for ``PORTFOLIO``.
+        seed: for everything that is random.
+        effort: see :func:`make_cp_solver`.
+    """
+    solver = make_cp_solver(deadline, workers or PORTFOLIO, seed, effort)
+    if solver.parameters.num_workers <= FEW_WORKERS:
+        solver.parameters.interleave_search = True
+        solver.parameters.subsolvers.extend(STRATEGIES)
     return solver
 
 

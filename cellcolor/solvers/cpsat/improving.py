@@ -87,5 +87,5 @@ class Improving:
     def _solve_window(
         self, model: cp_model.CpModel, seed: int
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = self._part.runner.solver(WINDOW_EFFORT, workers=1, seed=seed)
+        solver = self._part.runner.single(WINDOW_EFFORT, seed)
         return solver, self._part.runner.solve(solver, model)

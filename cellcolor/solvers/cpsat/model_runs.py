@@ -7,8 +7,8 @@ from collections.abc import Callable
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.solvers.interface import PORTFOLIO, Options
-from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.interruptible import make_cp_solver, make_portfolio, solve_interruptibly
 
 __all__ = ["Runner", "SolveWithSeed"]
 
@@ -37,27 +37,26 @@ class Runner:
         """Seconds that are left, 0 after Ctrl-C."""
         return 0.0 if self._stopped else self._options.deadline.left
 
-    def solver(
-        self,
-        effort: float | None,
-        deadline: Deadline | None = None,
-        workers: int | None = None,
-        seed: int = 0,
+    def portfolio(
+        self, effort: float | None = None, deadline: Deadline | None = None
     ) -> cp_model.CpSolver:
-        """A solver with limits.
+        """A solver with the options' workers.
 
         Args:
             effort: deterministic seconds a worker, None for as long as there is time.
             deadline: an earlier one than the options'.
-            workers: other than the options' number of them.
+        """
+        options = self._options
+        return make_portfolio(deadline or options.deadline, options.workers, options.seed, effort)
+
+    def single(self, effort: float | None = None, seed: int = 0) -> cp_model.CpSolver:
+        """A solver with one worker, for models that are too small for a portfolio.
+
+        Args:
+            effort: deterministic seconds, None for as long as there is time.
             seed: added to the options' seed.
         """
-        return make_cp_solver(
-            deadline or self._options.deadline,
-            workers or self._options.workers or PORTFOLIO,
-            self._options.seed + seed,
-            effort,
-        )
+        return make_cp_solver(self._options.deadline, 1, self._options.seed + seed, effort)
 
     def solve(
         self,

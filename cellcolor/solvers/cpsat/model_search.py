@@ -91,7 +91,7 @@ class ModelSearch:
         # What meets the bound ends the search; by itself the model would have to prove it first.
         built.model.add(sum(built.variables.root) + sum(built.variables.alone) >= self._part.bound)
         self._hint(built, graph)
-        solver = self._part.runner.solver(None if final else TRIAL_EFFORT, deadline)
+        solver = self._part.runner.portfolio(None if final else TRIAL_EFFORT, deadline)
         if final:
             solver.best_bound_callback = self._proved
         status = self._part.runner.solve(solver, built.model, self._part.watch)

@@ -122,7 +122,7 @@ class Planning:
         self, model: cp_model.CpModel, seed: int
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
         # Too small for a portfolio.
-        solver = self._part.runner.solver(self._effort, workers=1, seed=seed)
+        solver = self._part.runner.single(self._effort, seed)
         if self._effort > PLAN_EFFORT:
             # What takes effort are plans of many segments. As with covers (``bounds/cover``), it is
             # the linear relaxation that tells that there are none. Small plans are quicker without.

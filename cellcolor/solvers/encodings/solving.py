@@ -14,8 +14,8 @@ from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.encodings.problem import Pair, Problem
-from cellcolor.solvers.interface import PORTFOLIO, Abilities, Answer, OnProgress, Options
-from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
+from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
+from cellcolor.solvers.interruptible import make_portfolio, solve_interruptibly
 from cellcolor.solvers.joined_chains import division_of_chains
 
 __all__ = ["Encoding", "EncodingSolver"]
@@ -66,7 +66,7 @@ class EncodingSolver:
             built = self.encoding(problem, options.deadline)
         except OutOfTime:
             return Answer(None, (), ())
-        solver = make_cp_solver(options.deadline, options.workers or PORTFOLIO, options.seed)
+        solver = make_portfolio(options.deadline, options.workers, options.seed)
         found = None if progress is None else lambda segments: progress(segments, 0)
         status, interrupt = solve_interruptibly(solver, built.model, found)
         if interrupt is not None and not isinstance(interrupt, OutOfTime):

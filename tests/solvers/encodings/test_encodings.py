@@ -153,12 +153,12 @@ def test_no_time_is_no_proof(name: str) -> None:
 
 def test_at_the_deadline_the_best_and_a_bound(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The search is cut off by effort, which does not depend on how busy the machine is."""
-    make = interruptible.make_cp_solver
+    make = interruptible.make_portfolio
 
-    def hasty(deadline: Deadline, workers: int, seed: int) -> cp_model.CpSolver:
+    def hasty(deadline: Deadline, workers: int | None, seed: int) -> cp_model.CpSolver:
         return make(deadline, workers, seed, effort=0.2)
 
-    monkeypatch.setattr("cellcolor.solvers.encodings.solving.make_cp_solver", hasty)
+    monkeypatch.setattr("cellcolor.solvers.encodings.solving.make_portfolio", hasty)
     grid = hub_grid(0, 5, 5, 4)
     heard: list[int | None] = []
     solution = solve(grid, Options(workers=1), name, lambda best, _: heard.append(best))

@@ -146,5 +146,5 @@ class FewestCuts:
             self._cuts, self.best = cuts, seamed
 
     def _solve(self, model: cp_model.CpModel) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = self._runner.solver(None)
+        solver = self._runner.portfolio()
         return solver, self._runner.solve(solver, model)

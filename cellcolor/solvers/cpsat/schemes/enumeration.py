@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Generator, Iterator
 from contextlib import closing
-from dataclasses import replace
 from math import isfinite
 from queue import SimpleQueue
 from threading import Semaphore, Thread
@@ -54,12 +53,12 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
     if not instance.cells:
         yield ()
         return
-    runner = Runner(replace(options, workers=1))
+    runner = Runner(options)
 
     def solve(
         small: cp_model.CpModel,
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = runner.solver(None)
+        solver = runner.single()
         return solver, runner.solve(solver, small)
 
     writer = SeamWriter(instance, dict.fromkeys((e.id for e in instance.edges), 1), solve)
