@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import isfinite
 from threading import Event, Thread
 
@@ -13,11 +13,10 @@ from cellcolor.solvers.interface import PORTFOLIO
 
 __all__ = ["make_cp_solver", "make_portfolio", "solve_interruptibly"]
 
-FEW_WORKERS, STRATEGIES = 2, ("core_max_lp", "max_lp")
-"""Up to how many workers search in OR-Tools' strategies of these names, in turns. With more of them
-OR-Tools chooses; one or two would have its default strategy alone, which hardly ever proves a bound
-around hubs. Both of these use the full linear relaxation; the first one raises the bound by cores,
-sets of literals of which some must cost a segment."""
+FEW_WORKERS = 2
+"""Up to how many workers search in strategies that we name, in turns. With more of them OR-Tools
+chooses; one or two would have its default strategy alone, which hardly ever proves a bound around
+hubs."""
 
 
 def make_cp_solver(
@@ -45,7 +44,11 @@ def make_cp_solver(
 
 
 def make_portfolio(
-    deadline: Deadline, workers: int | None, seed: int, effort: float | None = None
+    deadline: Deadline,
+    workers: int | None,
+    seed: int,
+    strategies: Sequence[str],
+    effort: float | None = None,
 ) -> cp_model.CpSolver:
     """A CP-SAT solver for a model that is worth several strategies, whatever the workers.
 
@@ -53,12 +56,13 @@ def make_portfolio(
         deadline: when to stop.
         workers: its search workers, None for ``PORTFOLIO``.
         seed: for everything that is random.
+        strategies: OR-Tools' names of those for ``FEW_WORKERS`` or fewer.
         effort: see :func:`make_cp_solver`.
     """
     solver = make_cp_solver(deadline, workers or PORTFOLIO, seed, effort)
     if solver.parameters.num_workers <= FEW_WORKERS:
         solver.parameters.interleave_search = True
-        solver.parameters.subsolvers.extend(STRATEGIES)
+        solver.parameters.subsolvers.extend(strategies)
     return solver
 
 

@@ -12,6 +12,10 @@ from cellcolor.solvers.interruptible import make_cp_solver, make_portfolio, solv
 
 __all__ = ["Runner", "SolveWithSeed"]
 
+STRATEGIES = "core_max_lp", "max_lp"
+"""Of one or two workers. Both use the full linear relaxation; the first one raises the bound by
+cores, sets of literals of which some must cost a segment."""
+
 SolveWithSeed = Callable[[cp_model.CpModel, int], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
 """Solves a model with a seed, within limits that it knows; hands back the solver and its status."""
 
@@ -46,8 +50,8 @@ class Runner:
             effort: deterministic seconds a worker, None for as long as there is time.
             deadline: an earlier one than the options'.
         """
-        options = self._options
-        return make_portfolio(deadline or options.deadline, options.workers, options.seed, effort)
+        its = self._options
+        return make_portfolio(deadline or its.deadline, its.workers, its.seed, STRATEGIES, effort)
 
     def single(self, effort: float | None = None, seed: int = 0) -> cp_model.CpSolver:
         """A solver with one worker, for models that are too small for a portfolio.

@@ -21,6 +21,11 @@ from cellcolor.solvers.joined_chains import division_of_chains
 __all__ = ["Encoding", "EncodingSolver"]
 
 
+STRATEGIES = "core", "default_lp"
+"""Of one or two workers. Cores, sets of literals of which some must cost a segment, raise the bound;
+the default strategy finds divisions, which are not at hand beforehand here."""
+
+
 class Encoding(ABC):
     """A model whose objective is the number of segments."""
 
@@ -66,7 +71,7 @@ class EncodingSolver:
             built = self.encoding(problem, options.deadline)
         except OutOfTime:
             return Answer(None, (), ())
-        solver = make_portfolio(options.deadline, options.workers, options.seed)
+        solver = make_portfolio(options.deadline, options.workers, options.seed, STRATEGIES)
         found = None if progress is None else lambda segments: progress(segments, 0)
         status, interrupt = solve_interruptibly(solver, built.model, found)
         if interrupt is not None and not isinstance(interrupt, OutOfTime):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
@@ -155,8 +156,10 @@ def test_at_the_deadline_the_best_and_a_bound(name: str, monkeypatch: pytest.Mon
     """The search is cut off by effort, which does not depend on how busy the machine is."""
     make = interruptible.make_portfolio
 
-    def hasty(deadline: Deadline, workers: int | None, seed: int) -> cp_model.CpSolver:
-        return make(deadline, workers, seed, effort=0.2)
+    def hasty(
+        deadline: Deadline, workers: int | None, seed: int, strategies: Sequence[str]
+    ) -> cp_model.CpSolver:
+        return make(deadline, workers, seed, strategies, effort=0.5)
 
     monkeypatch.setattr("cellcolor.solvers.encodings.solving.make_portfolio", hasty)
     grid = hub_grid(0, 5, 5, 4)
