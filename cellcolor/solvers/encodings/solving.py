@@ -22,8 +22,8 @@ __all__ = ["Encoding", "EncodingSolver"]
 
 
 STRATEGIES = "core", "default_lp"
-"""Of one or two workers. Cores, sets of literals of which some must cost a segment, raise the bound;
-the default strategy finds divisions, which are not at hand beforehand here."""
+"""Of one or two workers. Cores, sets of literals of which some must cost a segment, raise the
+bound; the default strategy finds divisions, as none is at hand beforehand here."""
 
 
 class Encoding(ABC):
