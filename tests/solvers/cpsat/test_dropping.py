@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from petals import hub
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph, voronoi
@@ -62,6 +62,23 @@ def test_each_division_is_legal_and_better(seed: int, cells: int, colors: int) -
 def test_a_segment_that_others_can_do_without_goes(petals: tuple[int, ...]) -> None:
     """Each petal alone to begin with, save those of the hub's color."""
     assert numbers(hub(*petals), 0)[-1] == minimum(hub(*petals))
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_two_colors_take_the_place_of_three(seed: int) -> None:
+    """Three colors have two cells of a row of six each, and two others have three each.
+
+    Painted in the three, no segment can be left out, not even for one of the other colors.
+    """
+    colors = (0, 3), (0, 3), (1, 3), (1, 4), (2, 4), (2, 4)
+    around = ((1,),), ((-1, 2),), ((-2, 3),), ((-3, 4),), ((-4, 5),), ((-5,),)
+    row = Instance(
+        "row",
+        tuple(f"color {color}" for color in range(5)),
+        tuple(Cell(*its) for its in zip(range(6), colors, around, strict=True)),
+        tuple(Edge(number, number - 1, number) for number in range(1, 6)),
+    )
+    assert numbers(row, seed) == [3, 2]
 
 
 def test_a_surface_with_holes_and_cracks() -> None:

@@ -31,6 +31,9 @@ PATIENCE = 6
 RINGS = (1, 1, 2)
 """Rings of sectors, drawn for each plan: one leaves room enough in most cells, and is quicker."""
 
+EXCHANGED = 0.5
+"""The share of tries in which a segment in another region takes the place of the one left out."""
+
 FRUITLESS = 3
 """Tries for each segment of a division before nothing better is expected."""
 
@@ -70,7 +73,8 @@ def drop_segments(
     fruitless, fewest = 0, len(segments)
     while fruitless < tries * len(segments) and not deadline.over:
         fruitless += 1
-        kept = _without_one(segments, regions, chance)
+        change = _exchanged if chance.random() < EXCHANGED else _without_one
+        kept = change(segments, regions, chance)
         if kept is None:
             continue
         plan = _each_cell_once(kept, len(graph.lists), chance)
@@ -103,15 +107,10 @@ def _without_one(
     Where they would not, a segment in another region, that touches what is missing, takes the place
     of a second one that is not needed then.
     """
-    holders = Counter(cell for segment in segments for cell in segment.cells)
-    # The fewer cells have no other segment, the likelier others can reach them.
-    weights = [1 / (1 + sum(holders[cell] == 1 for cell in s.cells)) for s in segments]
-    (dropped,) = chance.choices(segments, weights)
-    kept = [segment for segment in segments if segment is not dropped]
-    missed = dropped.cells.difference(*(segment.region[1] for segment in kept))
+    dropped, kept, missed = _left_out(segments, chance)
     if not missed:
         return kept
-    others = [r for r in regions if missed <= r[1] and r != dropped.region]
+    others = _regions_with(missed, regions, dropped)
     if not others:
         return None
     added = PlannedSegment(chance.choice(others), missed)
@@ -122,6 +121,39 @@ def _without_one(
         return None
     second = chance.choice(spare)
     return [*(segment for segment in kept if segment is not second), added]
+
+
+def _exchanged(
+    segments: Sequence[PlannedSegment], regions: Sequence[Region], chance: random.Random
+) -> list[PlannedSegment] | None:
+    """A segment in another region, a large one rather than a small one, in the place of one; None
+    if no other has all cells that no segment that is left can touch."""
+    dropped, kept, missed = _left_out(segments, chance)
+    others = _regions_with(missed, regions, dropped)
+    if not others:
+        return None
+    (region,) = chance.choices(others, [len(cells) for _, cells in others])
+    cells = missed or frozenset((chance.choice(sorted(region[1])),))
+    return [*kept, PlannedSegment(region, cells)]
+
+
+def _left_out(
+    segments: Sequence[PlannedSegment], chance: random.Random
+) -> tuple[PlannedSegment, list[PlannedSegment], frozenset[int]]:
+    """A segment, all others, and the cells that no region of theirs has."""
+    holders = Counter(cell for segment in segments for cell in segment.cells)
+    # The fewer cells have no other segment, the likelier others can reach them.
+    weights = [1 / (1 + sum(holders[cell] == 1 for cell in s.cells)) for s in segments]
+    (dropped,) = chance.choices(segments, weights)
+    kept = [segment for segment in segments if segment is not dropped]
+    return dropped, kept, dropped.cells.difference(*(segment.region[1] for segment in kept))
+
+
+def _regions_with(
+    cells: frozenset[int], regions: Sequence[Region], dropped: PlannedSegment
+) -> list[Region]:
+    """The regions that have some cells, without that of a segment that was left out."""
+    return [region for region in regions if cells <= region[1] and region != dropped.region]
 
 
 def _kept_nodes(
