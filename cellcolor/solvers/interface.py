@@ -17,7 +17,8 @@ from cellcolor.files.validation import settle
 
 PORTFOLIO = 8
 """CP-SAT's workers unless asked for otherwise. Each worker searches in a way of its own, so that
-more workers than cores are of use."""
+more workers than cores are of use. One or two take turns in a few of these ways
+(``interruptible``)."""
 
 STRANDS: dict[SearchSpace, int] = {"paper": 1, "surface": 2}
 """Strands per topological edge unless asked for otherwise. A strand is one of the parallel
