@@ -85,11 +85,21 @@ RANDOM = {
         "hub_grid_6x6x2": "hub_grid(0, 6, 6, 4, 2)",
         "hub_grid_10x10x2": "hub_grid(0, 10, 10, 4, 2)",
         "hub_grid_5x5x3": "hub_grid(0, 5, 5, 4, 3)",
+        "hub_loops_4x6_8": "hub_with_loops(0, 4, 6, 8)",
         "large_torus_2": "LARGE['torus'](2)",
         "large_double_torus_1": "LARGE['double torus'](1)",
         "large_part_1": "LARGE['parts'](1)",
         "large_blobs_0": "blobs(0, 80, 10, waves=2.5)",
+        "large_blobs_96_0": "blobs(0, 96, 12, waves=3.0)",
+        "large_blobs_96_2": "blobs(2, 96, 12, waves=3.0)",
+        "large_blobs_96_4": "blobs(4, 96, 12, waves=3.0)",
         "large_trees_1": "LARGE['trees'](1)",
+        **{
+            f"patches_overlapping_{seed}": (f"voronoi({seed}, 'disc', 24, 78, 20, scattered=True)")
+            for seed in (0, 2, 3, 4)
+        },
+        "patches_disc_3": ("voronoi(3, 'disc', 24, 78, 30, scattered=True, coverage=(0.2, 0.4))"),
+        "patches_torus_0": ("voronoi(0, 'torus', 16, 34, 30, scattered=True, coverage=(0.2, 0.4))"),
     },
 }
 """The random graphs by folder and name, each as what makes it."""

@@ -170,6 +170,9 @@ class TestAgreement:
     def test_compared(self) -> None:
         assert compared(times("a", 1.0, 1.0, None) + times("b", 1.0, None, None)) == 1
 
+    def test_a_solver_with_other_workers_is_no_other_solver(self) -> None:
+        assert compared([replace(ROW, workers=1), replace(ROW, workers=2)]) == 0
+
 
 class TestSummary:
     def text(self, rows: Sequence[Row]) -> str:

@@ -32,9 +32,12 @@ def disagreements(rows: Iterable[Row]) -> list[str]:
 
 
 def compared(rows: Iterable[Row]) -> int:
-    """On how many instances two solvers or more have proved a minimum."""
+    """On how many instances two solvers or more have proved a minimum.
+
+    One solver with other workers is no other solver.
+    """
     return sum(
-        len({row.contestant for row in own if row.status == "optimal"}) > 1
+        len({row.solver for row in own if row.status == "optimal"}) > 1
         for own in _by_instance(rows)
     )
 
