@@ -13,7 +13,8 @@ __all__ = ["thumbnail"]
 
 _SIZE = 160.0
 _MARGIN = 8.0
-_ITERATIONS = 50
+_ITERATIONS, _MOVES = 50, 20_000
+"""Iterations of the layout, and about how often cells are moved altogether, which takes seconds."""
 
 
 def thumbnail(instance: Instance) -> str:
@@ -61,7 +62,8 @@ def _places(cells: int, joined: list[tuple[int, int]]) -> Array:
         start = nx.planar_layout(graph)
     except nx.NetworkXException:  # a handle
         start = None
-    found: dict[int, Array] = nx.spring_layout(graph, pos=start, seed=0, iterations=_ITERATIONS)
+    iterations = min(_ITERATIONS, 1 + _MOVES // cells)
+    found: dict[int, Array] = nx.spring_layout(graph, pos=start, seed=0, iterations=iterations)
     places = np.array([found[cell] for cell in range(cells)])
     extent = float(np.ptp(places, axis=0).max())
     middle = (places.max(axis=0) + places.min(axis=0)) / 2
