@@ -23,6 +23,7 @@ FaultKind = Literal[
     "acceleration",
     "pose",
     "off surface",
+    "dragged",
     "tilted",
     "turned",
     "invalid",
@@ -30,6 +31,7 @@ FaultKind = Literal[
     "crack",
     "unplanned",
     "claim",
+    "lift-offs",
     "uncovered",
     "repeated",
 ]

@@ -3,7 +3,8 @@
 Pham and Pham, A new approach to time-optimal path parameterization based on reachability
 analysis, 2018. Between two samples every joint moves in proportion to time, so derivatives along
 the way are differences of samples, and limits hold for what is written down: velocities between
-samples, and their change from one step to the next over the time from middle to middle.
+samples, their change from one step to the next over the time from middle to middle, and how far
+the velocity of a step is off the mean of its two neighbors'.
 """
 
 from __future__ import annotations
@@ -68,7 +69,7 @@ def timed(
         steps = np.maximum(2 * _STEP / (rates[1:] + rates[:-1]), least)
         times = np.concatenate([[0.0], np.cumsum(steps)])
         # In sharp bends the differences say more than the derivatives do: slower just there.
-        excess = (np.abs(accelerations(times, joints)) / speeds.accelerations).max(axis=1)
+        excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
         if excess.max() <= 1.0:
             break
         slower = np.sqrt(np.maximum(excess / _MARGIN, 1.0))
@@ -80,18 +81,31 @@ def timed(
 
 
 def accelerations(times: Array, joints: Array) -> Array:
-    """Changes (k, joints) of the velocity at the samples of a motion from rest to rest, rad/s^2."""
+    """The least accelerations (k, joints) at the samples of a motion from rest to rest, rad/s^2.
+
+    No smooth motion through the samples has less. Between neighboring steps it is the change of
+    velocity. Of three steps with the velocities u, v, w that last r, s, t it is 4 |v - (u + w) / 2|
+    by r + s + t: within s of the middle step velocities differ by as at most, and their mean is at
+    most as/4 off the middle of the first and the last, which are ar/2 and at/2 off u and w.
+    """
     steps = np.diff(times)
     velocity = np.diff(joints, axis=0) / steps[:, None]
     rest = np.zeros((1, joints.shape[1]))
     change = np.diff(np.concatenate([rest, velocity, rest]), axis=0)
     around = np.append(steps, 0.0) + np.insert(steps, 0, 0.0)
-    return np.asarray(change / (around / 2)[:, None])
+    least = np.abs(change) / (around / 2)[:, None]
+    # Each step between its neighbors, rest at both ends; it counts at both of its samples.
+    padded = np.concatenate([rest, velocity, rest])
+    three = np.convolve(np.concatenate([[0.0], steps, [0.0]]), np.ones(3), "valid")
+    bent = np.abs(velocity - (padded[2:] + padded[:-2]) / 2) / (three / 4)[:, None]
+    least[:-1] = np.maximum(least[:-1], bent)
+    least[1:] = np.maximum(least[1:], bent)
+    return np.asarray(least)
 
 
 def _kept(times: Array, joints: Array, speeds: Speeds) -> Array:
     """The times, stretched all alike where an acceleration is still too large."""
-    excess = float((np.abs(accelerations(times, joints)) / speeds.accelerations).max())
+    excess = float((accelerations(times, joints) / speeds.accelerations).max())
     return np.asarray(times * max(1.0, np.sqrt(excess)))
 
 

@@ -11,6 +11,7 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import CoveredArea
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.trajectory_checker.claims import judge_left_out
 from cellcolor.trajectory_checker.covered import excused, patches, reach, reachable_areas
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
@@ -47,6 +48,7 @@ def judge_area(
     rows: Index,
     located: Located,
     branches: Index,
+    touching: Mask,
     fine: FineMesh,
     spacing: float,
     limits: Limits,
@@ -56,7 +58,10 @@ def judge_area(
 
     Args:
         rows: (c,) those of ``dense`` in contact, with their places and branches.
+        touching: (c,) whether the tip is on the surface there; nothing else covers anything.
     """
+    rows, branches = rows[touching], branches[touching]
+    located = Located(*(getattr(located, field.name)[touching] for field in fields(located)))
     kept = thinned(dense, rows, spacing)
     length = _length(dense, rows)
     rows, branches = rows[kept], branches[kept]
@@ -66,7 +71,8 @@ def judge_area(
     reached = reach(fine, located, FAR * spacing)
     missed = (areas > 0) & (reached.distance > NEAR * spacing)
     right = excused(prepared, trajectory, dense, rows, branches, fine, reached, missed)
-    uncovered = missed & ~right & (reached.distance > FAR * spacing)
+    near = reached.distance <= FAR * spacing
+    uncovered = missed & ~right & ~near
     visits = passes(dense, rows, located, fine, _VISIT * spacing)
     visited = (visits > 0) & (areas > 0)
     twice = repeated_stretches(dense, rows, located, _ALONG * spacing, _APART * spacing)
@@ -84,7 +90,7 @@ def judge_area(
     covered = CoveredArea(
         reachable_m2=total,
         spacing_m=spacing,
-        covered_share=share(reached.distance <= FAR * spacing),
+        covered_share=share(near),
         closely_covered_share=share(reached.distance <= NEAR * spacing),
         left_out_share=share(right),
         uncovered_m2=float(areas[uncovered].sum()),
@@ -96,6 +102,7 @@ def judge_area(
         length_m=length,
         length_times_spacing_per_area=length * spacing / total if total else 0.0,
     )
+    judge_left_out(trajectory, fine, areas, near, right, missed, spacing, faults)
     _note_uncovered(fine, areas, uncovered, missed & ~right, total, spacing, limits, faults)
     if covered.mean_visits > limits.most_mean_visits:
         text = (

@@ -14,12 +14,18 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.area import judge_area
+from cellcolor.trajectory_checker.claims import judge_lift_offs
 from cellcolor.trajectory_checker.dense import Dense, densified, poses_of
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.file_poses import judge_poses
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
-from cellcolor.trajectory_checker.on_surface import branches_of, judge_contact, judge_cracks
+from cellcolor.trajectory_checker.on_surface import (
+    branches_of,
+    judge_contact,
+    judge_cracks,
+    judge_dragged,
+)
 from cellcolor.trajectory_checker.tolerances import Limits
 from cellcolor.trajectory_checker.tool_turn import across_of, judge_turn
 from cellcolor.trajectory_checker.validity import judge_validity
@@ -70,7 +76,7 @@ def check_trajectory(
     tips, axes = poses_of(robot, trajectory.joints, deadline)
     jumps = judge_joints(trajectory, tips, _joint_limits(prepared, timed, notes), timed, faults)
     judge_poses(trajectory, robot, tips, axes, faults)
-    _judge_claims(trajectory, faults)
+    judge_lift_offs(trajectory, minimum_lift_offs, faults)
     skip = jumps.copy()
     skip[[sample for sample in trajectory.unplanned if sample < len(skip)]] = True
     dense = densified(trajectory, robot, tips, axes, skip, deadline)
@@ -81,7 +87,8 @@ def check_trajectory(
     fine = refined(prepared.surface, fine_edge, deadline)
     rows = np.flatnonzero(dense.contact)
     located = fine.locate(dense.tips[rows], dense.outward[rows], deadline)
-    judge_contact(dense, rows, located, faults)
+    touching = judge_contact(dense, rows, located, faults)
+    judge_dragged(dense, fine, deadline, faults)
     across, turn = np.zeros((len(rows), 3)), prepared.setup.task.turn
     if turn is not None:
         across = across_of(robot, dense.joints[rows], deadline)
@@ -95,8 +102,8 @@ def check_trajectory(
         report("area")
         deadline.check()
         covered = judge_area(
-            prepared, built, trajectory, dense, rows, located, branches, fine, motion.spacing_m,
-            limits or Limits(), faults,
+            prepared, built, trajectory, dense, rows, located, branches, touching, fine,
+            motion.spacing_m, limits or Limits(), faults,
         )  # fmt: skip
     return _verdict(trajectory, dense, timed, minimum_lift_offs, faults, covered, notes)
 
@@ -162,11 +169,13 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         notes.append("The setup leaves out collisions and joint limits.")
     velocity = robot.velocity
     acceleration: Array | None = None
+    tool_speed = np.inf
     if not timed:
         notes.append("There are no times, so velocities and accelerations are not judged.")
     elif setup.motion is None:
         notes.append("The setup has no [motion], so accelerations are not judged.")
     if setup.motion is not None:
+        tool_speed = setup.motion.speed_m_per_s
         lowered = setup.motion.joint_velocities_rad_per_s
         acceleration = np.array(setup.motion.joint_accelerations_rad_per_s2)
         for key, given in (
@@ -183,13 +192,4 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         names = [robot.joint_names[joint] for joint in np.flatnonzero(np.isnan(velocity))]
         notes.append(f"Without a limit, so velocities are not judged: {', '.join(names)}.")
         velocity = np.where(np.isnan(velocity), np.inf, velocity)
-    return JointLimits(lower, upper, velocity, acceleration)
-
-
-def _judge_claims(trajectory: Trajectory, faults: FaultList) -> None:
-    """Note extra lift-offs that are stated where there is none."""
-    ends = {after - 1 for _, after in trajectory.strokes[:-1]}
-    for extra in trajectory.extra_lift_offs:
-        if extra.sample not in ends:
-            text = "an extra lift-off is stated after this sample, and there is none"
-            faults.add("claim", text, extra.sample, place=np.array(extra.place))
+    return JointLimits(lower, upper, velocity, acceleration, tool_speed)

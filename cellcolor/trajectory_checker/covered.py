@@ -91,8 +91,9 @@ def excused(
 ) -> Mask:
     """Which vertices (n,) of the fine mesh are rightly left out.
 
-    That is so where the trajectory states to leave out a part of a segment, and the configuration
-    of the segment's branch is not valid, in the nearest segment if one is near.
+    The trajectory has to state that it leaves something out. Beside a pass of a segment of which
+    that is stated, the configuration of the segment's own branch must not be valid. Far from every
+    pass nothing tells which segment is meant, so there no branch may be valid.
 
     Args:
         rows: (c,) those of ``dense`` in contact; ``branches`` (c,) of these.
@@ -101,19 +102,18 @@ def excused(
     right = np.zeros(len(fine.vertices), dtype=bool)
     segment = trajectory.segment[dense.sample[rows]]
     near = np.append(segment, -1)[reached.nearest]
-    for stated in sorted({part.segment for part in trajectory.left_out}):
-        own = branches[(segment == stated) & (branches >= 0)]
-        asked = np.flatnonzero(missed & ~right & ((near == stated) | (near < 0)))
-        if not len(asked):
-            continue
-        # A segment that is nowhere worked on may be left out only where no branch would do.
-        some = np.unique(own) if len(own) else np.arange(len(prepared.kinematics.branches))
-        invalid = np.ones(len(asked), dtype=bool)
-        for branch in some.tolist():
+    stated = sorted({part.segment for part in trajectory.left_out})
+    every = np.arange(len(prepared.kinematics.branches))
+    regions = [(near == number, branches[segment == number]) for number in stated]
+    if stated:
+        regions.append((near < 0, every))
+    for region, own in regions:
+        asked = np.flatnonzero(missed & region)
+        for branch in np.unique(own[own >= 0]).tolist():
             of = np.full(len(asked), branch, dtype=np.intp)
             found = prepared.follow(fine.vertices[asked], -fine.normals[asked], of)
-            invalid &= prepared.judge(found).reasons != VALID
-        right[asked[invalid]] = True
+            asked = asked[prepared.judge(found).reasons != VALID]
+        right[asked] = True
     return right
 
 

@@ -1,4 +1,4 @@
-"""Times and joints alone: order, jumps, limits, velocities, accelerations."""
+"""Times and joints: order, jumps, limits, velocities of joints and tool, accelerations."""
 
 from __future__ import annotations
 
@@ -6,12 +6,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
-from cellcolor.trajectory_checker.fault_list import FaultList
-from cellcolor.trajectory_checker.tolerances import ANGLE_ROUNDING, JUMP, SHARE_OVER_LIMIT
+from cellcolor.trajectory_checker.fault_list import FaultList, stretches
+from cellcolor.trajectory_checker.tolerances import (
+    ANGLE_ROUNDING,
+    JUMP,
+    POSE_ROUNDING,
+    SHARE_OVER_LIMIT,
+)
 
-__all__ = ["JointLimits", "judge_joints"]
+__all__ = ["JointLimits", "corners", "judge_joints"]
 
 
 @dataclass(frozen=True)
@@ -22,12 +27,14 @@ class JointLimits:
         lower, upper: rad; None where the setup leaves limits and collisions out.
         velocity: rad/s.
         acceleration: rad/s²; None where the setup has none.
+        tool_speed: of the tip in contact, m/s, no array; infinite where the setup has none.
     """
 
     lower: Array | None
     upper: Array | None
     velocity: Array
     acceleration: Array | None
+    tool_speed: float
 
 
 def judge_joints(
@@ -36,9 +43,7 @@ def judge_joints(
     """Note what is wrong with times and joints.
 
     Between two samples each joint moves in proportion to time, so its velocity is its step per
-    time. Three neighboring samples of a smooth motion have an acceleration between them: the
-    second divided difference, twice, is a mean of the accelerations there, so it keeps a limit if
-    the motion does.
+    time. Accelerations are those of a smooth motion through the samples.
 
     Args:
         tips: (k, 3) where the tool's tip is, m.
@@ -86,7 +91,8 @@ def judge_joints(
     )
     if limits.acceleration is not None and len(passed) > 1:
         known = ascending & ~jumps.any(axis=1)
-        _judge_accelerations(velocity, passed, known, tips, limits.acceleration, faults)
+        _judge_accelerations(trajectory, known, tips, limits.acceleration, faults)
+    _judge_tool_speed(tips, safe[:, 0], together & ~jumps.any(axis=1), limits.tool_speed, faults)
     return np.asarray(jumps.any(axis=1))
 
 
@@ -117,24 +123,111 @@ def _note_jumps(
         faults.add("jump", text, sample, sample + 1, joint, place=tips[sample])
 
 
-def _judge_accelerations(
-    velocity: Array, passed: Array, known: Mask, tips: Array, most: Array, faults: FaultList
+def _judge_tool_speed(
+    tips: Array, passed: Array, together: Mask, most: float, faults: FaultList
 ) -> None:
-    """Note samples whose two neighbors show too great an acceleration; ``known`` steps only."""
-    both = known[1:] & known[:-1]
-    before, after = passed[:-1], passed[1:]
-    between = np.where(both, (before + after) / 2, np.inf)[:, None]
-    acceleration = np.abs(np.diff(velocity, axis=0)) / between
-    shorter = np.where(both, np.minimum(before, after), np.inf)[:, None]
-    rounding = 2 * ANGLE_ROUNDING / (shorter * between)
-    over = acceleration > most * (1 + SHARE_OVER_LIMIT) + rounding
-    none = np.zeros((1, over.shape[1]))
+    """Note where the tip is too fast in contact."""
+    speed = np.where(together, np.linalg.norm(np.diff(tips, axis=0), axis=1) / passed, 0.0)
+    over = speed > most * (1 + SHARE_OVER_LIMIT) + POSE_ROUNDING / passed
+    faults.add_stretches(
+        "velocity",
+        over,
+        speed,
+        lambda k: f"the tool moves at {speed[k]:.4g} m/s in contact, allowed are {most:.4g}",
+        tips,
+    )
+
+
+def _judge_accelerations(
+    trajectory: Trajectory, known: Mask, tips: Array, most: Array, faults: FaultList
+) -> None:
+    """Note samples where no smooth motion through the samples keeps the accelerations.
+
+    Whatever moves on a straight line from sample to sample says no more than the ends of that line
+    do, so only these are asked: the verdict is the same however densely lines are sampled. Three
+    samples of a motion that keeps a limit keep it as well: twice their second divided difference
+    is a mean of the accelerations between them. So do four. If the middle step has the velocity v
+    and lasts t, those before and after it have u and w and last r and s, the motion has a velocity
+    within ar/2 of u where the middle step begins and within as/2 of w where it ends, and between
+    two velocities the mean is at most at/4 off the middle of both: v is at most
+    a(r + t + s)/4 off (u + w)/2. The arm rests before the first sample and after the last.
+
+    Args:
+        known: (k - 1,) steps that are motions.
+    """
+    times, joints = trajectory.times, trajectory.joints
+    for first, after in stretches(known):
+        rows = first + corners(times[first : after + 1], joints[first : after + 1])
+        passed = np.diff(times[rows])
+        velocity = np.diff(joints[rows], axis=0) / passed[:, None]
+        rest = np.zeros((1, joints.shape[1]))
+        if first == 0:
+            passed, velocity = np.insert(passed, 0, 0.0), np.concatenate([rest, velocity])
+            rows = np.insert(rows, 0, 0)
+        if after == len(known):
+            passed, velocity = np.append(passed, 0.0), np.concatenate([velocity, rest])
+            rows = np.append(rows, len(times) - 1)
+        _note_accelerations(trajectory, rows, passed, velocity, tips, most, faults)
+
+
+def _note_accelerations(
+    trajectory: Trajectory,
+    rows: Index,
+    passed: Array,
+    velocity: Array,
+    tips: Array,
+    most: Array,
+    faults: FaultList,
+) -> None:
+    """The same for steps (s,) between ``rows`` (s + 1,); those of no time are rest."""
+    if len(passed) < 2:
+        return
+    # What a rounding of angles makes of a velocity; rest has none.
+    rounding = np.divide(ANGLE_ROUNDING, passed, where=passed > 0, out=np.zeros_like(passed))
+    between = (passed[1:] + passed[:-1]) / 2
+    found = np.abs(np.diff(velocity, axis=0)) / between[:, None]
+    over = (
+        found > most * (1 + SHARE_OVER_LIMIT) + ((rounding[1:] + rounding[:-1]) / between)[:, None]
+    )
+    if len(passed) > 2:
+        mean = (passed[2:] + passed[1:-1] + passed[:-2]) / 4
+        off = np.abs(velocity[1:-1] - (velocity[2:] + velocity[:-2]) / 2) / mean[:, None]
+        slack = (rounding[1:-1] + (rounding[2:] + rounding[:-2]) / 2) / mean
+        # Both ends of the middle step are at fault; it is noted where it begins.
+        over[:-1] |= off > most * (1 + SHARE_OVER_LIMIT) + slack[:, None]
+        found[:-1] = np.maximum(found[:-1], off)
+    at_fault = np.zeros(trajectory.joints.shape, dtype=bool)
+    excess = np.zeros(trajectory.joints.shape)
+    at = rows[1:-1]
+    at_fault[at], excess[at] = over, found
     faults.add_joint_stretches(
         "acceleration",
-        np.concatenate([none.astype(bool), over]),
-        np.concatenate([none, acceleration]),
+        at_fault,
+        excess,
         lambda k, joint: (
-            f"accelerates by {acceleration[k - 1, joint]:.4g} rad/s², allowed are {most[joint]:.4g}"
+            f"accelerates by {excess[k, joint]:.4g} rad/s², allowed are {most[joint]:.4g}"
         ),
         tips,
     )
+
+
+def corners(times: Array, joints: Array) -> Index:
+    """The samples (c,) between which all joints move in proportion to time, up to rounding.
+
+    A sample is left out if the line from the last corner to some later sample passes it, and all
+    that lie between, within a rounding of angles: many samples of a slow bend keep some of them.
+    """
+    kept = [0]
+    low, high = np.full(joints.shape[1], -np.inf), np.full(joints.shape[1], np.inf)
+    for k in range(1, len(times)):
+        begin = kept[-1]
+        slope = (joints[k] - joints[begin]) / (times[k] - times[begin])
+        if k > begin + 1 and ((slope < low).any() or (slope > high).any()):
+            kept.append(k - 1)
+            begin = k - 1
+            low, high = np.full(len(low), -np.inf), np.full(len(low), np.inf)
+        passed = times[k] - times[begin]
+        low = np.maximum(low, (joints[k] - ANGLE_ROUNDING - joints[begin]) / passed)
+        high = np.minimum(high, (joints[k] + ANGLE_ROUNDING - joints[begin]) / passed)
+    kept.append(len(times) - 1)
+    return np.array(kept)

@@ -6,26 +6,30 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory_verdict import FaultKind
+from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.dense import Dense
-from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
-from cellcolor.trajectory_checker.tolerances import BRANCH, OFF_SURFACE, TILT
+from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT
 from cellcolor.trajectory_checker.tool_turn import nearest_turns
 
-__all__ = ["branches_of", "judge_contact", "judge_cracks"]
+__all__ = ["branches_of", "judge_contact", "judge_cracks", "judge_dragged"]
 
 _AT_ONCE = 20_000  # configurations; a matter of memory: half a kilobyte each
 _PARTS = 16  # of a step that seems to cross a crack, to see whether it passes by its end
 
 
-def judge_contact(dense: Dense, rows: Index, located: Located, faults: FaultList) -> None:
+def judge_contact(dense: Dense, rows: Index, located: Located, faults: FaultList) -> Mask:
     """Note where the tip is off the surface or the tool is tilted.
 
     Args:
         rows: (c,) those of ``dense`` in contact; ``located`` says where they are on the surface.
+
+    Returns:
+        (c,) where the tip is on the surface.
     """
     apart = np.linalg.norm(dense.tips[rows] - located.points, axis=1)
     chord = np.linalg.norm(dense.outward[rows] - located.normals, axis=1)
@@ -48,6 +52,38 @@ def judge_contact(dense: Dense, rows: Index, located: Located, faults: FaultList
         "the tool is {:.4g} degrees off the surface's normal, allowed are {:.4g}",
         faults,
     )
+    return np.asarray(apart <= OFF_SURFACE)
+
+
+def judge_dragged(dense: Dense, fine: FineMesh, deadline: Deadline, faults: FaultList) -> None:
+    """Note where the tip touches the surface and the trajectory says that it does not.
+
+    What counts as contact, up to a millimeter off, is a touch. Beside a stroke the tip has to
+    come and go: there it may stay so near for a way of 3 mm.
+    """
+    away = np.flatnonzero(~dense.contact)
+    if not len(away):
+        return
+    touches = np.zeros(len(dense), dtype=bool)
+    at = fine.locate(dense.tips[away], dense.outward[away], deadline).points
+    touches[away] = np.linalg.norm(dense.tips[away] - at, axis=1) <= OFF_SURFACE
+    steps = np.linalg.norm(np.diff(dense.tips, axis=0), axis=1)
+    for first, after in stretches(touches):
+        # From the contact before, or to the one after it, if there is one.
+        begin = max(first - 1, 0) if dense.contact[max(first - 1, 0)] else first
+        end = min(after, len(dense) - 1) if dense.contact[min(after, len(dense) - 1)] else after - 1
+        beside = begin < first or end >= after
+        way = float(steps[begin:end].sum())
+        if beside and way <= LEAVING:
+            continue
+        text = (
+            f"touches the surface for {1000 * way:.3g} mm where the trajectory says that it does "
+            f"not{dense.where(first)}"
+        )
+        faults.add(
+            "dragged", text, int(dense.sample[first]), int(dense.sample[after - 1]),
+            place=dense.tips[first],
+        )  # fmt: skip
 
 
 def _note(

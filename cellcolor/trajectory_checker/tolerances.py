@@ -10,9 +10,11 @@ __all__ = [
     "AT_VERTEX",
     "BRANCH",
     "JUMP",
+    "LEAVING",
     "OFF_SURFACE",
     "POSE_ANGLE",
     "POSE_DISTANCE",
+    "POSE_ROUNDING",
     "SHARE_OVER_LIMIT",
     "STEP",
     "STEP_ANGLE",
@@ -25,11 +27,13 @@ STEP = 0.001  # m; between samples whose tips are farther apart, others are put 
 STEP_ANGLE = math.radians(1.0)  # the same for the turn of the tool and of each joint
 
 ANGLE_ROUNDING = 1e-6  # rad; files with six decimals are off by half of that
+POSE_ROUNDING = 2e-6  # m; what a rounding of all angles moves a tip by, at a meter's reach
 SHARE_OVER_LIMIT = 0.01  # of a velocity or acceleration; for planners that keep a limit just so
 JUMP = 0.5  # rad; farther between neighbors nothing says any more which way a joint goes
 POSE_DISTANCE = 1e-4  # m; the file's point against the one that the joints give
 POSE_ANGLE = math.radians(0.1)  # the same for the normal
 OFF_SURFACE = 0.001  # m; a mesh leaves the curved object it stands for by up to 0.6 mm as shipped
+LEAVING = 0.003  # m; so far the tip may go on within OFF_SURFACE, off contact, beside a stroke
 TILT = math.radians(1.0)  # the tool's axis against the interpolated normal
 TURN = math.radians(1.0)  # the tool's x axis against the turn that the setup gives
 BRANCH = 0.01  # rad; configurations nearer than this to a branch's are its

@@ -1,0 +1,70 @@
+"""How many forged drives the judge of trajectories refuses, by kind.
+
+    python benchmarks/forged_drives.py [COUNT] [SEED]
+
+plans four shipped scenes, checks that every plan stays valid in ways that change nothing, drops
+each stroke in turn, and forges COUNT drives (1,000 without it), the sorts of
+``tests/support/forged_drives.py`` in turn.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
+
+import numpy as np
+from forged_drives import FORGERS, HONEST, Honest, dropped_stroke
+
+import cellcolor
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.door.planning import PlannedScene
+from cellcolor.trajectory_checker.check import check_trajectory
+
+SCENES = ("wok", "wok_obstacle", "half_pipe", "hemisphere_tilted")
+
+
+def main(count: int, seed: int) -> None:
+    """Plan, forge, judge and print."""
+    begun = time.process_time()
+    plans = [cellcolor.plan(name) for name in SCENES]
+    drives = [Honest(made.prepared, made.trajectory, made.solution.lift_offs) for made in plans]
+    honest = sum(judged(m, forge(d)).valid for m, d in zip(plans, drives, strict=True)
+                 for forge in HONEST.values())  # fmt: skip
+    print(f"honest: {honest} of {len(HONEST) * len(plans)} accepted", flush=True)
+    strokes = [
+        judged(made, dropped_stroke(drive, number)).valid
+        for made, drive in zip(plans, drives, strict=True)
+        for number in range(len(drive.trajectory.strokes))
+    ]
+    print(f"a stroke dropped: {strokes.count(False)} of {len(strokes)} refused", flush=True)
+    forged, refused = Counter[str](), Counter[str]()
+    names = list(FORGERS)
+    for number in range(count):
+        name, place = names[number % len(names)], number // len(names) % len(plans)
+        random = np.random.default_rng([seed, number])
+        forged[name] += 1
+        if judged(plans[place], FORGERS[name](drives[place], random)).valid:
+            print(f"accepted: {name}, {SCENES[place]}, draw {number}", flush=True)
+        else:
+            refused[name] += 1
+    print("\n| forged | times | refused |\n|---|--:|--:|")
+    for name in names:
+        print(f"| {name} | {forged[name]} | {refused[name]} |")
+    seconds = time.process_time() - begun
+    print(f"\n{sum(refused.values())} of {count} of {len(names)} sorts, {seconds:.0f} s")
+
+
+def judged(made: PlannedScene, trajectory: Trajectory) -> TrajectoryVerdict:
+    """The verdict, with the proved minimum beside it."""
+    least = made.solution.lift_offs
+    return check_trajectory(made.prepared, made.built, trajectory, minimum_lift_offs=least)
+
+
+if __name__ == "__main__":
+    given = [int(word) for word in sys.argv[1:]]
+    main(*given, *(1000, 0)[len(given) :])

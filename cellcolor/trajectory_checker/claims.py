@@ -1,0 +1,78 @@
+"""What a trajectory states of itself: its lift-offs, and the places that it leaves out."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array, Mask
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.wording import count
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.fine_mesh import FineMesh
+
+__all__ = ["judge_left_out", "judge_lift_offs"]
+
+_AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh than the judge
+
+
+def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultList) -> None:
+    """Note lift-offs that are stated but not there, and a number that the proof contradicts."""
+    ends = {after - 1 for _, after in trajectory.strokes[:-1]}
+    stated = {extra.sample for extra in trajectory.extra_lift_offs}
+    for extra in trajectory.extra_lift_offs:
+        if extra.sample not in ends:
+            text = "an extra lift-off is stated after this sample, and there is none"
+            faults.add("claim", text, extra.sample, place=np.array(extra.place))
+    if minimum is None:
+        return
+    found = count(trajectory.lift_offs, "lift-off")
+    said = f"{count(len(stated), 'extra lift-off')} stated" if stated else "none stated as extra"
+    needed = trajectory.lift_offs - len(stated & ends)
+    if needed < minimum:
+        text = (
+            f"{found}, {said}: that contradicts the proved minimum of {minimum}, so something is "
+            "left out, or a place is covered twice in different branches"
+        )
+        faults.add("lift-offs", text)
+    elif needed > minimum:
+        faults.add("lift-offs", f"{found}, {said}, and {minimum} are proved to be enough")
+
+
+def judge_left_out(
+    trajectory: Trajectory,
+    fine: FineMesh,
+    areas: Array,
+    reached: Mask,
+    right: Mask,
+    asked: Mask,
+    spacing: float,
+    faults: FaultList,
+) -> None:
+    """Note stated places that could have been covered, and stated areas that are not true.
+
+    Args:
+        areas: (n,) reachable area of each vertex of the fine mesh, m².
+        reached: (n,) what is covered.
+        right: (n,) what is rightly left out.
+        asked: (n,) what was asked whether it is; the rest is closely covered.
+    """
+    if not trajectory.left_out:
+        return
+    total, out = float(areas.sum()), float(areas[right].sum())
+    stated = sum(part.area_m2 for part in trajectory.left_out)
+    if out > _AREA_SHARE * stated + np.pi * spacing**2:
+        text = f"{stated:.6f} m² are stated to be left out, and {out:.6f} m² are"
+        faults.add("claim", text)
+    for part in trajectory.left_out:
+        place = np.array(part.place)
+        if not 0 <= part.area_m2 <= total:
+            text = f"segment {part.segment}: {part.area_m2:.6f} m² left out of {total:.6f} m²"
+            faults.add("claim", text, place=place)
+        apart = np.linalg.norm(fine.vertices - place, axis=1)
+        at = int(np.argmin(apart))
+        if apart[at] > spacing:
+            text = f"segment {part.segment}: a place left out is stated that is not on the surface"
+            faults.add("claim", text, place=place)
+        elif asked[at] and not right[at] and not reached[at] and areas[at] > 0:
+            text = f"segment {part.segment}: stated as left out ({part.reason}), but reachable"
+            faults.add("claim", text, place=place)

@@ -1,0 +1,156 @@
+"""Forged drives are refused, and what only looks different is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+pytest.importorskip("coal")
+
+import rasters
+from examples import examples
+from forged_drives import FORGERS, HONEST, Honest, dropped_stroke, resampled
+from hypothesis import given
+from hypothesis import strategies as st
+from motions import planned
+
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.trajectory_checker.check import check_trajectory
+from cellcolor.trajectory_checker.joint_motion import corners
+
+NOT_HERE = (
+    "begins in motion",  # the raster has no way to the part
+    "ends in motion",
+    "a row doubled 0.1 s later at full speed",  # it is so slow that the arm can stop
+    "10% of a stroke dropped",  # a line straight to the next pass may still cover all
+)
+
+
+@cache
+def cap() -> Honest:
+    """A raster in two strokes; that it needs them is only said here."""
+    prepared, _, trajectory = rasters.cap()
+    return Honest(prepared, trajectory, 1)
+
+
+def judged(trajectory: Trajectory) -> TrajectoryVerdict:
+    prepared, built, _ = rasters.cap()
+    return check_trajectory(prepared, built, trajectory, minimum_lift_offs=1)
+
+
+@pytest.mark.parametrize("name", HONEST)
+def test_honest_drives_stay_valid(name: str) -> None:
+    assert judged(HONEST[name](cap())).faults == ()
+
+
+@pytest.mark.parametrize("name", [name for name in FORGERS if name not in NOT_HERE])
+def test_forged_drives_are_refused(name: str) -> None:
+    assert not judged(FORGERS[name](cap(), np.random.default_rng(3))).valid
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", FORGERS)
+def test_forged_plans_are_refused(name: str) -> None:
+    made = planned("wok_obstacle", 1000)
+    honest = Honest(made.prepared, made.plan.trajectory, made.lift_offs)
+    for seed in range(3):
+        forged = FORGERS[name](honest, np.random.default_rng(seed))
+        verdict = check_trajectory(
+            made.prepared, made.built, forged, minimum_lift_offs=made.lift_offs
+        )
+        assert not verdict.valid, seed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "scene", ["wok", "wok_obstacle", "hemisphere_flat", "hemisphere_tilted", "half_pipe", "square"]
+)
+def test_every_stroke_of_a_plan_is_missed(scene: str) -> None:
+    made = planned(scene, 1000)
+    honest = Honest(made.prepared, made.plan.trajectory, made.lift_offs)
+    strokes = len(honest.trajectory.strokes)
+    assert check_trajectory(
+        made.prepared, made.built, honest.trajectory, minimum_lift_offs=made.lift_offs
+    ).valid
+    for number in range(strokes):
+        # The number of lift-offs is not what tells it: without a known minimum it is refused, too.
+        verdict = check_trajectory(made.prepared, made.built, dropped_stroke(honest, number))
+        assert verdict.of_kind("uncovered"), number
+
+
+def test_a_stroke_that_is_not_there_is_area_that_is_not_covered() -> None:
+    for number in range(2):
+        verdict = judged(dropped_stroke(cap(), number))
+        assert {"uncovered", "lift-offs"} <= set(verdict.fault_counts)
+
+
+def test_the_proved_minimum_is_held_against_the_drive() -> None:
+    """One lift-off fewer contradicts the proof; one more is a fault unless it is stated."""
+    prepared, built, trajectory = rasters.cap()
+    for minimum, said in ((0, "proved to be enough"), (2, "contradicts the proved minimum of 2")):
+        verdict = check_trajectory(prepared, built, trajectory, minimum_lift_offs=minimum)
+        (fault,) = verdict.faults
+        assert fault.kind == "lift-offs"
+        assert said in fault.text
+
+
+def test_a_dragged_tip_is_found_and_covers_nothing() -> None:
+    trajectory = rasters.cap()[2]
+    none = np.zeros(len(trajectory.times), dtype=bool)
+    verdict = judged(replace(trajectory, contact=none))
+    assert len(verdict.of_kind("dragged")) == 2
+    assert verdict.covered is not None
+    assert verdict.covered.covered_share == 0.0
+
+
+def test_what_only_says_that_it_touches_covers_nothing() -> None:
+    above = FORGERS["20 mm above, 100% of a stroke"](cap(), np.random.default_rng(0))
+    verdict, whole = judged(above), judged(cap().trajectory)
+    assert verdict.covered is not None
+    assert whole.covered is not None
+    assert verdict.covered.covered_share < 0.75 * whole.covered.covered_share
+
+
+@pytest.mark.parametrize("most", [0.02, 0.005])
+def test_denser_samples_change_no_verdict(most: float) -> None:
+    assert judged(resampled(cap().trajectory, most)).faults == ()
+    fast = FORGERS["all 10 times as fast"](cap(), np.random.default_rng(0))
+    coarse, dense = judged(fast), judged(resampled(fast, most / 10))
+    assert set(coarse.fault_counts) == set(dense.fault_counts)
+
+
+def test_the_tool_keeps_the_speed_of_the_setup() -> None:
+    prepared, built, trajectory = rasters.cap()
+    points = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
+    together = trajectory.contact[1:] & trajectory.contact[:-1]
+    fastest = float((points / np.diff(trajectory.times))[together].max())
+    for share, valid in ((1.02, True), (0.97, False)):
+        setup = prepared.setup.varied(motion={"speed_m_per_s": share * fastest})
+        scene = replace(prepared, scene=prepared.scene.with_setup(setup))
+        verdict = check_trajectory(scene, built, trajectory)
+        assert verdict.valid == valid
+        if not valid:
+            assert "the tool moves at" in verdict.faults[0].text
+
+
+@examples(30)
+@given(seed=st.integers(0, 10_000), pieces=st.integers(1, 30))
+def test_corners_are_those_of_the_line(seed: int, pieces: int) -> None:
+    """Points put into a polygon's sides are left out again, and none of its corners is."""
+    random = np.random.default_rng(seed)
+    count = int(random.integers(2, 12))
+    times = np.cumsum(random.uniform(0.01, 0.2, count))
+    joints = np.cumsum(random.choice([-1.0, 1.0], (count, 2)) * random.uniform(0.01, 1, (count, 2)),
+                       axis=0)  # fmt: skip
+    at = np.unique(np.concatenate([times, random.uniform(times[0], times[-1], pieces)]))
+    dense = np.stack([np.interp(at, times, column) for column in joints.T], axis=1)
+    found = at[corners(at, dense)]
+    slopes = np.diff(joints, axis=0) / np.diff(times)[:, None]
+    bends = np.abs(np.diff(slopes, axis=0)).max(axis=1, initial=0.0) > 0.1
+    assert set(times[1:-1][bends]) <= set(found)
+    assert set(found) <= set(times)
