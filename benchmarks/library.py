@@ -144,7 +144,7 @@ def better(stored: Solution, found: Solution) -> Solution:
     status: Status = "feasible" if fewest.segments is not None else "unknown"
     if proved or (fewest.search_space == "paper" and fewest.segments == lower):
         status = "optimal"
-    if _worth(bounds) == _worth(stored.bounds or ()):
+    if set(map(_worth, bounds)) == set(map(_worth, needed(stored.bounds or ()))):
         bounds = stored.bounds or ()
     merged = replace(
         fewest,
@@ -157,25 +157,27 @@ def better(stored: Solution, found: Solution) -> Solution:
     return stored if replace(merged, seconds=stored.seconds) == stored else merged
 
 
-def _worth(bounds: Sequence[Bound]) -> set[tuple[str, int, bool]]:
-    """What bounds say, and whether each has a certificate."""
-    return {(bound.holds_for, bound.value, bound.certificate is not None) for bound in bounds}
-
-
 def segments_of(solution: Solution) -> float:
     """Its segments; of no division infinitely many."""
     return math.inf if solution.segments is None else solution.segments
 
 
 def needed(bounds: Sequence[Bound]) -> tuple[Bound, ...]:
-    """The bounds without those that another says as much as; certified ones first."""
+    """For each extent the best bound, and the best one with a certificate if that is less."""
     kept: list[Bound] = []
     for extent in ("surface", "strands"):
         of_extent = [bound for bound in bounds if bound.holds_for == extent]
-        for bound in sorted(of_extent, key=lambda b: (-b.value, b.certificate is None)):
-            if bound.value > max((b.value for b in kept), default=0):
-                kept.append(bound)
+        best = max(of_extent, key=_worth, default=None)
+        certified = [bound for bound in of_extent if bound.certificate is not None]
+        if best is not None and best.certificate is None and certified:
+            kept.append(max(certified, key=_worth))
+        if best is not None and best.value > max((b.value for b in kept), default=0):
+            kept.append(best)
     return tuple(kept)
+
+
+def _worth(bound: Bound) -> tuple[int, bool]:
+    return bound.value, bound.certificate is not None
 
 
 def main() -> None:
