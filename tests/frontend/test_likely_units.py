@@ -65,6 +65,12 @@ def test_millimeters(
             "robot.locked_joint_6_rad",
             "90 looks like degrees: 1.5708 rad?",
         ),
+        (
+            {"fixed_joints": {"wrist_1_joint": 90.0}},
+            {},
+            "robot.fixed_joints.wrist_1_joint",
+            "90 looks like degrees: 1.5708 rad?",
+        ),
         ({"mount_rpy_rad": (-45.0, 0, 0)}, {}, "robot.mount_rpy_rad[0]", "degrees: -0.7854 rad?"),
         ({"base_step_rad": 10.0}, {}, "continuity.base_step_rad", "degrees: 0.17453 rad?"),
         (
