@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import runpy
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 from library import INSTANCES
 
 from cellcolor.checker.division import check_solution
+from cellcolor.data.bound import Bound, Extent
 from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex, UpperBound
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
@@ -141,6 +143,25 @@ def test_what_beats_an_entry() -> None:
     assert beaten("paper", 5, ("surface", 3, True)) == [paper + certified, surface + certified]
     plain = surface + "at least 3 segments, without certificate"
     assert beaten("paper", 5, ("surface", 3, False)) == [plain]
+
+
+def test_no_bound_is_lost_when_a_graph_is_solved_again() -> None:
+    """A weaker bound that can be verified stays beside a greater one that cannot."""
+    needed = runpy.run_path(str(INSTANCES.parent / "benchmarks" / "library.py"))["needed"]
+    ring = Solution.read(INSTANCES / SOLUTIONS / "ring.solution.json")
+    certificate = next(b.certificate for b in ring.bounds or () if b.certificate is not None)
+
+    def bound(value: int, certified: bool, extent: Extent = "surface") -> Bound:
+        return Bound("cover", value, extent, certificate if certified else None)
+
+    weak, strong = bound(4, True), bound(7, False)
+    assert needed([strong, weak]) == (weak, strong)
+    assert needed([weak, strong, bound(7, True), bound(3, True)]) == (bound(7, True),)
+    assert needed([strong, bound(6, False)]) == (strong,)
+    strands = bound(8, False, "strands")
+    assert needed([strands, weak, strong]) == (weak, strong, strands)
+    assert needed([bound(7, False, "strands"), strong]) == (strong,)
+    assert needed([]) == ()
 
 
 @pytest.fixture
