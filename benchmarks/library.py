@@ -1,14 +1,13 @@
-"""Solve the graphs of the instance library, and make its index anew.
+"""Solve the open graphs of the instance library, and make its index anew.
 
-    python benchmarks/library.py solve [NAME …] [--time-limit S] [--solver NAME]
-    python benchmarks/library.py index
+    python benchmarks/library.py [NAME …] [--time-limit S] [--solver NAME]
 
-``solve`` looks for better divisions and bounds than ``instances/solutions`` has, of all graphs
-whose minimum is not proved, or of those named; what gets better is written there. ``index`` writes
-``instances/index.json`` from all graphs and solutions; a bound that stays keeps its version and
-date. A better solution from elsewhere is put into that folder as ``NAME.solution.json`` (of the
-search space surface: ``NAME.surface.solution.json``) before ``index``. Graphs are made by
-``benchmarks/library_graphs.py``.
+Looks for better divisions and bounds than ``instances/solutions`` has, for all graphs whose minimum
+is open, or for those named, so many seconds in each search space; what gets better is written
+there. Then ``instances/index.json`` is written from all graphs and solutions; a bound that stays
+keeps its version and date. ``--time-limit 0`` solves nothing: for a better solution from elsewhere,
+put into that folder as ``NAME.solution.json`` (of the search space surface:
+``NAME.surface.solution.json``). Graphs are made by ``benchmarks/library_graphs.py``.
 """
 
 from __future__ import annotations
@@ -56,7 +55,7 @@ ORIGINS = {
     "*/thin_*": ("thin bands", ""),
     "*/hub_grid_*": ("hub grids", ""),
     "*/hub_loops_*": ("hubs with loops", ""),
-    "hard/large_blobs_*": ("blobs", ""),
+    "*/large_blobs_*": ("blobs", ""),
     "hard/large_*torus_*": ("handles", ""),
     "hard/large_part_*": ("parts at random", ""),
     "*/hub_*": ("hubs", ""),
@@ -145,7 +144,7 @@ def better(stored: Solution, found: Solution) -> Solution:
     status: Status = "feasible" if fewest.segments is not None else "unknown"
     if proved or (fewest.search_space == "paper" and fewest.segments == lower):
         status = "optimal"
-    if lower == stored.lower_bound and surface == stored.surface_lower_bound:
+    if set(map(_worth, bounds)) == set(map(_worth, needed(stored.bounds or ()))):
         bounds = stored.bounds or ()
     merged = replace(
         fewest,
@@ -164,14 +163,21 @@ def segments_of(solution: Solution) -> float:
 
 
 def needed(bounds: Sequence[Bound]) -> tuple[Bound, ...]:
-    """The bounds without those that another says as much as; certified ones first."""
+    """For each extent the best bound, and the best one with a certificate if that is less."""
     kept: list[Bound] = []
     for extent in ("surface", "strands"):
         of_extent = [bound for bound in bounds if bound.holds_for == extent]
-        for bound in sorted(of_extent, key=lambda b: (-b.value, b.certificate is None)):
-            if bound.value > max((b.value for b in kept), default=0):
-                kept.append(bound)
+        best = max(of_extent, key=_worth, default=None)
+        certified = [bound for bound in of_extent if bound.certificate is not None]
+        if best is not None and best.certificate is None and certified:
+            kept.append(max(certified, key=_worth))
+        if best is not None and best.value > max((b.value for b in kept), default=0):
+            kept.append(best)
     return tuple(kept)
+
+
+def _worth(bound: Bound) -> tuple[int, bool]:
+    return bound.value, bound.certificate is not None
 
 
 def main() -> None:
@@ -179,20 +185,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
-    parser.add_argument("task", choices=["solve", "index"])
     parser.add_argument("names", nargs="*", metavar="NAME")
     parser.add_argument("--time-limit", type=float, default=60.0)
     parser.add_argument("--solver", default="cp-sat")
     arguments = parser.parse_args()
-    if arguments.task == "index":
-        make_index()
-        return
-    files = graph_files(LIBRARY)
-    for name in arguments.names or files:
-        stored = LIBRARY / SOLUTIONS / f"{name}.solution.json"
-        if not arguments.names and stored.exists() and Solution.read(stored).proved_for_surface:
-            continue
-        improve(name, graph_of(files[name]), arguments.solver, arguments.time_limit)
+    if arguments.time_limit > 0:
+        files = graph_files(LIBRARY)
+        entries = LibraryIndex.read(LIBRARY / INDEX).entries
+        proved = {entry.name for entry in entries if not entry.is_open}
+        for name in arguments.names or [name for name in files if name not in proved]:
+            improve(name, graph_of(files[name]), arguments.solver, arguments.time_limit)
+    make_index()
 
 
 if __name__ == "__main__":

@@ -1,16 +1,17 @@
 """Make the graphs of the instance library that are neither drawn by hand nor given.
 
-    python benchmarks/library_graphs.py [NAME …]
+    python benchmarks/library_graphs.py [NAME …] [--surfaces FOLDER]
 
 Without names all of them: the six scenes at several resolutions and the real parts, which needs the
-extra ``frontend`` and takes minutes, and random ones, functions of a seed. Only graphs are written,
-no surfaces; areas and lengths have six digits, and random graphs none. ``meta.made_by`` of each is
-what made it.
+extra ``frontend`` and takes minutes, and random ones, functions of a seed. ``instances`` gets the
+graphs only; areas and lengths have six digits, and random graphs none. ``meta.made_by`` of each is
+what made it. With ``--surfaces`` nothing but the labelled surfaces behind random graphs is made, as
+``FOLDER/NAME.surface.json``: some graphs come from none.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
 from dataclasses import replace
 from pathlib import Path
 
@@ -60,6 +61,7 @@ RANDOM = {
         "disc_1": "LARGE['disc'](1)",
         "double_torus_2": "LARGE['double torus'](2)",
         "part_150": "part(0, 150, 40)",
+        "large_blobs_0": "blobs(0, 80, 10, waves=2.5)",
     },
     "hubs": {
         "hub_60": "hub(0, 60, 4)",
@@ -70,6 +72,7 @@ RANDOM = {
         "hub_grid_3x3x2": "hub_grid(0, 3, 3, 4, 2)",
         "hub_grid_4x4x2": "hub_grid(0, 4, 4, 4, 2)",
         "hub_grid_5x5x2": "hub_grid(0, 5, 5, 4, 2)",
+        "hub_grid_6x6x2": "hub_grid(0, 6, 6, 4, 2)",
         "hub_loops_2x6": "hub_with_loops(0, 2, 6, 4)",
         "hub_loops_2x10": "hub_with_loops(0, 2, 10, 4)",
         "hub_loops_3x3": "hub_with_loops(0, 3, 3, 4)",
@@ -82,14 +85,12 @@ RANDOM = {
     },
     "hard": {
         "hub_wide_80": "wide_hub(0, 80, 10, 2)",
-        "hub_grid_6x6x2": "hub_grid(0, 6, 6, 4, 2)",
         "hub_grid_10x10x2": "hub_grid(0, 10, 10, 4, 2)",
         "hub_grid_5x5x3": "hub_grid(0, 5, 5, 4, 3)",
         "hub_loops_4x6_8": "hub_with_loops(0, 4, 6, 8)",
         "large_torus_2": "LARGE['torus'](2)",
         "large_double_torus_1": "LARGE['double torus'](1)",
         "large_part_1": "LARGE['parts'](1)",
-        "large_blobs_0": "blobs(0, 80, 10, waves=2.5)",
         "large_blobs_96_0": "blobs(0, 96, 12, waves=3.0)",
         "large_blobs_96_2": "blobs(2, 96, 12, waves=3.0)",
         "large_blobs_96_4": "blobs(4, 96, 12, waves=3.0)",
@@ -105,7 +106,20 @@ RANDOM = {
 """The random graphs by folder and name, each as what makes it."""
 
 
-def main(names: list[str]) -> None:
+def write_surfaces(names: list[str], folder: Path) -> None:
+    """Write the surfaces of the random graphs that are asked for and come from one."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for recipes in RANDOM.values():
+        for name, recipe in recipes.items():
+            if not names or name in names:
+                made = made_by(recipe)
+                if isinstance(made, LabelledSurface):
+                    path = folder / f"{name}.surface.json"
+                    path.write_text(replace(made, name=name).to_json(), encoding="utf-8")
+                    print(f"{path}: {made}", flush=True)
+
+
+def write_graphs(names: list[str]) -> None:
     """Write the graphs that are asked for."""
     for scene in SCENES:
         for vertices in RESOLUTIONS:
@@ -140,9 +154,15 @@ def built(path: Path, policy: str, vertices: int | None = None) -> Instance:
     return replace(decompose(surface), meta={"made_by": made_by})
 
 
+def made_by(recipe: str) -> Instance | LabelledSurface:
+    """What a recipe makes."""
+    made: Instance | LabelledSurface = eval(recipe, {"__builtins__": {}}, vars(families))
+    return made
+
+
 def random_graph(recipe: str) -> Instance:
     """The graph that a recipe makes."""
-    made = eval(recipe, {"__builtins__": {}}, vars(families))
+    made = made_by(recipe)
     graph = decompose(made) if isinstance(made, LabelledSurface) else made
     return replace(graph, meta={"made_by": f"cellcolor.lab.families.{recipe}"})
 
@@ -163,5 +183,19 @@ def rounded(number: float | None, folder: str) -> float | None:
     return None if number is None or folder in RANDOM else float(f"{number:.6g}")
 
 
+def main() -> None:
+    """Do what is asked for."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("names", nargs="*", metavar="NAME")
+    parser.add_argument("--surfaces", type=Path, metavar="FOLDER")
+    arguments = parser.parse_args()
+    if arguments.surfaces is not None:
+        write_surfaces(arguments.names, arguments.surfaces)
+    else:
+        write_graphs(arguments.names)
+
+
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    main()

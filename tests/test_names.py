@@ -38,6 +38,26 @@ def test_nothing_says_to_install_somebody_elses(path: Path) -> None:
     assert not re.search(r"\bcellcolor\[", text)
 
 
+@pytest.mark.parametrize(
+    "path", [p for p in TEXTS if p.suffix == ".md"], ids=lambda path: path.name
+)
+def test_no_page_installs_what_no_index_has(path: Path) -> None:
+    """Until it is published: a name that an index lacks can become anybody's.
+
+    Messages may name it: they are printed where it is installed, and pip asks no index then.
+    """
+    assert not re.search(rf"pip\s+install\s+\S*\b{DISTRIBUTION}\b", path.read_text("utf-8"))
+
+
+def test_the_readme_installs_what_its_commands_need() -> None:
+    """The site's reference imports the test helpers, its tutorials the front end and pictures."""
+    text = (ROOT / "README.md").read_text("utf-8")
+    (site,) = re.findall(r"pip install -e '\.\[(.*?)\]' && sphinx-build", text)
+    assert set(site.split(",")) == {"all", "test", "docs"}
+    before, _, _ = text.partition("def test_my_planner")
+    assert "pip install pytest" in before
+
+
 def test_messages_name_it(tmp_path: Path) -> None:
     for package, extra in (("plotly", "viz"), ("pinocchio", "frontend")):
         with pytest.raises(Exception, match=f"pip install '{re.escape(DISTRIBUTION)}.{extra}.'"):  # noqa: SIM117

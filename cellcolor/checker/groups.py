@@ -1,4 +1,4 @@
-"""Disjoint sets, for the checker alone: it shares no code with the solvers."""
+"""Disjoint sets, for the checker alone: it shares nothing with the solvers but the data classes."""
 
 from __future__ import annotations
 

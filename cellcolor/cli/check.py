@@ -10,6 +10,7 @@ from cellcolor.cli.check_plan import PlanDemands, check_plan_file
 from cellcolor.cli.check_solution import check_solution_file
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_subject
+from cellcolor.cli.library import say_better
 from cellcolor.cli.progress import judge_progress_of
 from cellcolor.cli.standard_input import STANDARD_INPUT, input_file, name_of
 from cellcolor.cli.terminal import complain, print_json
@@ -17,6 +18,7 @@ from cellcolor.cli.verdict_lines import say_plan, say_solution, say_trajectory
 from cellcolor.data import plan as plan_file
 from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.check_error import CheckError
+from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.claims import format_of_claim
 from cellcolor.door.shipped import find_claim, find_file
@@ -85,6 +87,8 @@ def _check(request: Request, claim: Path) -> Exit:
         print_json(solution_verdict.to_document())
     else:
         say_solution(name_of(request.claim), solution_verdict)
+        if solution_verdict.valid:
+            say_better(subject.graph(), Solution.read(claim), solution_verdict)
     return Exit.DONE if solution_verdict.valid else Exit.INVALID
 
 

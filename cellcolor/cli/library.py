@@ -14,13 +14,16 @@ from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import apart_from, print_json, say
 from cellcolor.data import instance as instance_file
 from cellcolor.data.imcgs import read_imcgs
+from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryEntry
+from cellcolor.data.solution import Solution
+from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.wording import count, listed
 from cellcolor.door.shipped import library
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
-__all__ = ["import_graph", "list_library"]
+__all__ = ["import_graph", "list_library", "say_better"]
 
 _INSTANCE = kind_of_format(instance_file.FORMAT)
 
@@ -34,8 +37,7 @@ def list_library(family: str | None, only_open: bool, as_json: bool) -> Exit:
     chosen = [
         entry
         for entry in entries
-        if family in (None, entry.family)
-        and not (only_open and entry.paper.proved and entry.surface.proved)
+        if family in (None, entry.family) and (entry.is_open or not only_open)
     ]
     if as_json:
         for entry in chosen:
@@ -81,3 +83,17 @@ def import_graph(source: Path, output: Path, corrections: Sequence[str]) -> Exit
             if entry.fingerprint == instance.sha256:
                 say(f"This is {entry.name} of the library: {entry.paper} segments.")
     return Exit.DONE
+
+
+def say_better(instance: Instance, solution: Solution, verdict: SolutionVerdict) -> None:
+    """Say where a valid solution is better than the index, and how to send it.
+
+    A bound counts if its certificate was verified, so that nothing is taken on trust.
+    """
+    bounds = [(b.holds_for, b.value, True) for b in verdict.bounds if b.outcome == "verified"]
+    for entry in library().index.entries:
+        if entry.fingerprint == instance.sha256 and (found := entry.beaten_by(solution, bounds)):
+            for line in found:
+                say(f"  better than the library's index: {line}")
+            name = f"{entry.name}.{'surface.' * (solution.search_space == 'surface')}solution.json"
+            say(f"  please send it as {name} (docs/library.md, How to contribute a better bound)")

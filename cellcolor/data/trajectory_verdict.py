@@ -123,8 +123,8 @@ class CoveredArea:
         again += f", {self.stated_repeated_m:.3f} m of it stated"
         return (
             f"covered {self.covered_share:.2%}, closely {self.closely_covered_share:.2%}, rightly "
-            f"left out {self.left_out_share:.2%} of {self.reachable_m2:.4f} m²; visits "
-            f"{self.mean_visits:.2f} on average, {self.most_visits} at most, again "
+            f"left out {self.left_out_share:.2%} of the {self.reachable_m2:.4f} m² with a color; "
+            f"visits {self.mean_visits:.2f} on average, {self.most_visits} at most, again "
             f"on {self.visited_again_share:.1%}; {again}"
         )
 

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 
-__all__ = ["count", "listed", "span"]
+__all__ = [
+    "count",
+    "in_meters",
+    "listed",
+    "looks_like_degrees",
+    "looks_like_millimeters",
+    "span",
+]
 
 
 def count(number: int, thing: str, things: str | None = None) -> str:
@@ -23,3 +31,20 @@ def span(least: int, most: int | None) -> str:
     if most is None:
         return f"{least} or more"
     return str(least) if least == most else f"{least} to {most}"
+
+
+def in_meters(lengths: Iterable[float], between: str = ", ") -> str:
+    """``0.4 x 0.4 x 0.12 m``: lengths in three digits."""
+    return f"{between.join(f'{length:.3g}' for length in lengths)} m"
+
+
+def looks_like_millimeters(*lengths: float) -> str:
+    """``15 looks like millimeters: 0.015 m?``, of one number given in meters or of several."""
+    given = ", ".join(f"{length:g}" for length in lengths)
+    meant = ", ".join(f"{length / 1000:g}" for length in lengths)
+    return f"{given} look{'' if len(lengths) > 1 else 's'} like millimeters: {meant} m?"
+
+
+def looks_like_degrees(angle: float) -> str:
+    """``180 looks like degrees: 3.1416 rad?``, of a number given in radians."""
+    return f"{angle:g} looks like degrees: {math.radians(angle):.5g} rad?"

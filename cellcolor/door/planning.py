@@ -126,6 +126,9 @@ class PlannedScene:
             said.append(f"{moves} between strokes not planned: the arm must not drive there")
         covered = self.verdict.covered
         said.append(f"judge: {self.verdict}" + ("" if covered is None else f"; {covered}"))
+        coverage = self.instance.coverage
+        if coverage is not None and coverage.given_up:
+            said.append(f"slivers: {coverage}")
         return "\n".join(said)
 
     def __repr__(self) -> str:

@@ -26,6 +26,7 @@ from cellcolor.frontend.contact.collision import body_ends
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.contact.wider import wider
+from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.frontend.reach.coarse import too_coarse
@@ -174,8 +175,10 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
         robot = _robot(setup)
         kinematics = _kinematics(setup, robot)
     surface = scene.covered(deadline)
+    check_part(surface, scene, kinematics.reach)
     lengths = surface.lengths(surface.edges())
     with in_file(setup.file):
+        check_setup(setup, surface, scene, kinematics.reach)
         _check_spacings(setup, lengths)
     obstacles, target = _solids(robot, scene, surface, deadline)
     ground = None if scene.ground is None else scene.ground.half_space
@@ -184,7 +187,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
         limits = conditioning(setup, kinematics.reach, robot)
     workplace = Workplace(robot, setup, limits, ground, tuple(obstacles), target, tip)
     judge = Judge(workplace, scene.validity_test, deadline)
-    notes = robot.warnings
+    notes = robot.warnings + notes_on_units(scene, kinematics.reach)
     if setup.constraints.collision:
         notes += _notes_on_contacts(workplace, float(lengths.max()))
     return PreparedScene(scene, workplace, kinematics, surface, judge, notes, deadline)

@@ -16,7 +16,10 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from cellcolor.frontend.tables import (
+    IN_RADIANS,
+    Angles,
     FileTable,
+    JointAngle,
     NotNegative,
     Position,
     Positive,
@@ -73,11 +76,11 @@ class RobotFiles(Table):
     tool_urdf: str
     tip_link: str
     kinematics: str = "ur"
-    locked_joint_6_rad: FiniteFloat | None = None
+    locked_joint_6_rad: JointAngle | None = None
     may_touch_ground: tuple[str, ...] = ()
     may_touch: tuple[tuple[str, str], ...] = ()
     mount_position_m: Vector = (0.0, 0.0, 0.0)
-    mount_rpy_rad: Vector = (0.0, 0.0, 0.0)
+    mount_rpy_rad: Angles = (0.0, 0.0, 0.0)
     fixed_joints: dict[str, FiniteFloat] = Field(default_factory=dict)
     package_folders: tuple[str, ...] = ()
     mesh_collision: MeshCollision = "hull"
@@ -198,7 +201,7 @@ class Continuity(Table):
     With ``border_length_m`` longer mesh edges are bisected where colors end or have a crack.
     """
 
-    base_step_rad: Positive
+    base_step_rad: Annotated[FiniteFloat, Field(gt=0), IN_RADIANS]
     step_per_length_rad_per_m: NotNegative
     near_singular_determinant: NotNegative | None = None
     near_singular_determinant_m3: NotNegative | None = None
@@ -267,7 +270,7 @@ class Motion(Table):
     joint_accelerations_rad_per_s2: tuple[Positive, ...]
     retract_m: Positive = 0.05
     clearance_m: NotNegative = 0.005
-    home_rad: tuple[FiniteFloat, ...] | None = None
+    home_rad: tuple[JointAngle, ...] | None = None
 
 
 class Setup(FileTable):

@@ -6,6 +6,7 @@ in the names, and what a file may not say cannot be said in Python either.
 
 from __future__ import annotations
 
+import math
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
@@ -15,15 +16,27 @@ from pathlib import Path
 from typing import Annotated, Any, Self
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, FiniteFloat, ValidationError
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    FiniteFloat,
+    ValidationError,
+)
 
+from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 from cellcolor.files.paths import path_of
 
 __all__ = [
+    "IN_RADIANS",
+    "Angle",
+    "Angles",
     "Coordinate",
     "FileTable",
+    "JointAngle",
     "Length",
     "NotNegative",
     "Position",
@@ -36,6 +49,26 @@ __all__ = [
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
+
+
+def _within_turns(turns: int) -> BeforeValidator:
+    """Refuses angles beyond so many full circles: they are degrees."""
+
+    def check(angle: Any) -> Any:
+        most = 2 * math.pi * turns + 0.01  # 6.2832 is a full circle as well
+        if isinstance(angle, (int, float)) and most < abs(angle) < math.inf:
+            raise ValueError(looks_like_degrees(angle))
+        return angle
+
+    return BeforeValidator(check)
+
+
+IN_RADIANS = _within_turns(1)
+"""The last mark of a field with an angle: before its own range, degrees are named as such."""
+Angle = Annotated[FiniteFloat, IN_RADIANS]
+Angles = tuple[Angle, Angle, Angle]
+# There are joints that turn by more than a full circle either way.
+JointAngle = Annotated[FiniteFloat, _within_turns(2)]
 # Far beyond what an arm covers, well within what distances can be computed of.
 Length = Annotated[FiniteFloat, Field(ge=1e-6, le=1e6)]
 Coordinate = Annotated[FiniteFloat, Field(ge=-1e6, le=1e6)]

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from cellcolor.arrays import Array
+from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.likely_units import check_motion
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.frontend.tables import in_file
@@ -20,8 +24,9 @@ def motion_of(prepared: PreparedScene) -> Motion:
 
     Raises:
         InputError: there is none, or a list has another number of joints than the arm, the home
-            position is outside the limits, the tool retracts less than it has to keep clear, the
-            arm's solutions have no names, or the arm is planar or has a prismatic joint.
+            position is outside the limits, a length is larger than the part or the arm's reach, the
+            tool retracts less than it has to keep clear, the arm's solutions have no names, or the
+            arm is planar or has a prismatic joint.
     """
     setup, robot = prepared.setup, prepared.robot
     with in_file(setup.file):
@@ -47,7 +52,10 @@ def motion_of(prepared: PreparedScene) -> Motion:
         for joint, angle in enumerate(motion.home_rad or ()):
             if not robot.lower[joint] <= angle <= robot.upper[joint]:
                 message = f"outside the limits of {robot.joint_names[joint]!r}"
+                if abs(angle) > 2 * math.pi:
+                    message += f": {looks_like_degrees(angle)}"
                 raise InputError(None, f"motion.home_rad[{joint}]", message)
+        check_motion(motion, prepared.surface, prepared.scene, prepared.kinematics.reach)
         least = setup.task.contact_radius_m + motion.clearance_m
         if motion.retract_m <= least:
             message = f"must be above {least:g} m, contact radius and clearance together"

@@ -11,6 +11,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath, ToolPaths
+from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.interface import Laid
@@ -83,14 +84,16 @@ def cover(
         progress: told in a few words what is being done.
 
     Raises:
-        InputError: there is no such pattern, a length is not positive, or the spacing is so small
-            that the meshes would not fit into memory.
+        InputError: there is no such pattern, a length is not positive, the tool's radius is larger
+            than the part or the spacing than every segment, or the spacing is so small that the
+            meshes would not fit into memory.
         OutOfTime: the deadline came first.
     """
     lay = find_pattern(pattern)
     _check_lengths(surface, spacing_m, tool_radius_m)
     paths, measures, uncovered = [], [], []
     regions = regions_of(surface, segment_of, colors, normals, walls, left_out)
+    _check_spacing(regions, spacing_m)
     for number, region in enumerate(regions):
         deadline.check()
         if progress is not None:
@@ -120,11 +123,30 @@ def _check_lengths(surface: LabelledSurface, spacing_m: float, tool_radius_m: fl
     for name, length in (("spacing_m", spacing_m), ("tool_radius_m", tool_radius_m)):
         if not (math.isfinite(length) and length > 0):
             raise InputError(None, name, f"must be positive and finite, is {length}")
+    size = np.ptp(surface.vertices, axis=0)
+    if tool_radius_m > float(np.linalg.norm(size)):
+        message = (
+            f"larger than the part ({in_meters(size.tolist(), ' x ')}): "
+            f"{looks_like_millimeters(tool_radius_m)}"
+        )
+        raise InputError(None, "tool_radius_m", message)
     area = float(surface.vertex_areas.sum())
     needed = area / spacing_m**2 * _TRIANGLES
     if needed > _MOST_TRIANGLES:
         text = f"needs about {needed:.2g} triangles, at most {_MOST_TRIANGLES:,} fit"
         raise InputError(None, "spacing_m", text)
+
+
+def _check_spacing(regions: Sequence[Region], spacing_m: float) -> None:
+    """Refuse a spacing that is larger than every segment; small segments may be among them."""
+    sizes = [np.ptp(region.mesh.points, axis=0) for region in regions]
+    largest = max(sizes, key=lambda size: float(np.linalg.norm(size)), default=None)
+    if largest is not None and spacing_m > float(np.linalg.norm(largest)):
+        message = (
+            f"larger than the largest segment ({in_meters(largest.tolist(), ' x ')}): "
+            f"{looks_like_millimeters(spacing_m)}"
+        )
+        raise InputError(None, "spacing_m", message)
 
 
 def _path(region: Region, laid: Laid) -> ToolPath:

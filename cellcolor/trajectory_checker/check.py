@@ -105,7 +105,20 @@ def check_trajectory(
             prepared, built, trajectory, dense, rows, located, branches, touching, fine,
             motion.spacing_m, limits or Limits(), faults,
         )  # fmt: skip
+        notes += _given_up(built)
     return _verdict(trajectory, dense, timed, minimum_lift_offs, faults, covered, notes)
+
+
+def _given_up(built: BuildResult) -> list[str]:
+    """What the shares covered do not speak of."""
+    areas, given_up = built.surface.vertex_areas, list(built.surface.given_up)
+    share = areas[given_up].sum() / areas.sum()
+    if not share:
+        return []
+    return [
+        f"Shares covered are of the area with a color; {share:.1%} of the surface has none because "
+        "the sliver policy gave it up."
+    ]
 
 
 def _verdict(

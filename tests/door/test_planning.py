@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("pinocchio")
@@ -37,6 +38,22 @@ def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     again = cellcolor.check(scene, tmp_path / "folder" / "trajectory.json")
     assert again.valid
     assert again.covered == planned.verdict.covered
+
+
+def test_what_was_given_up_is_said_beside_what_is_covered() -> None:
+    """The share of the surface that slivers had, added up face by face."""
+    planned = cellcolor.plan(shipped("square", 300), spacing_m=0.03)
+    surface = planned.built.surface
+    assert surface.given_up
+    corners = surface.vertices[surface.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    areas = np.linalg.norm(normals, axis=1) / 2
+    lost = np.isin(surface.faces, surface.given_up).sum(axis=1) @ areas / 3
+    share = f"{lost / areas.sum():.1%}"
+    assert share != "0.0%"
+    assert any(share in note and "sliver policy" in note for note in planned.verdict.notes)
+    assert f"slivers: {planned.instance.coverage}" in str(planned)
+    assert f"{share} of the surface given up as slivers" in planned.page().decode()
 
 
 def test_what_is_wrong_is_said_at_once() -> None:

@@ -38,7 +38,7 @@ MESH = '[object]\nkind = "mesh"\nfile = "none.stl"\nmeters_per_unit = 1.0\n[plac
         (SCENE, r"radius_m = 0.20", "radius_m = -0.2", SCENE, "object.radius_m", "greater"),
         (SCENE, r"radius_m = 0.20", 'radius_m = "0.2"', SCENE, "object.radius_m", "number"),
         (SCENE, r"half_angle_rad = 1\.", "half_angle_rad = 65.", SCENE, "object.half_angle_rad",
-         "less"),
+         "65.1345 looks like degrees: 1.1368 rad"),
         (SCENE, r"jitter = 0.15", "jitter = 0.6", SCENE, "object.jitter", "less"),
         (SCENE, r"target_vertices = 1000", "target_vertices = 20.5", SCENE,
          "object.target_vertices", "integer"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import runpy
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -12,12 +13,18 @@ from typing import Any
 import pytest
 from library import INSTANCES
 
+from cellcolor.checker.division import check_solution
+from cellcolor.data.bound import Bound, Extent
 from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex, UpperBound
+from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab import families
 from cellcolor.lab.library import INDEX, SOLUTIONS, Origin, entry_of, graph_of, problems
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import STRANDS, Options
 
 LIBRARY = LibraryIndex.read(INSTANCES / INDEX)
 
@@ -73,13 +80,88 @@ def test_stored_solutions_are_of_the_graphs_that_they_are_named_after() -> None:
                 assert len(segments) == upper.value
 
 
-@pytest.mark.parametrize("name", ["hub_60", "hub_loops_3x3", "planar_0", "rim_26", "thin_11"])
+HARD = [entry.name for entry in LIBRARY.entries if (entry.file or "").startswith("hard/")]
+
+
+@pytest.mark.parametrize(
+    "name", ["hub_60", "hub_loops_3x3", "planar_0", "rim_26", "thin_11", *HARD]
+)
 def test_random_graphs_are_made_again(name: str) -> None:
+    """Those of the hard set all, so that each has its surface where it came from one."""
     entry = LIBRARY[name]
     recipe = entry.source.removeprefix("cellcolor.lab.families.")
     made = eval(recipe, vars(families))
     graph = decompose(made) if isinstance(made, LabelledSurface) else made
     assert graph.sha256 == entry.fingerprint
+
+
+OPEN = [entry.name for entry in LIBRARY.entries if entry.is_open and entry.file is not None]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", OPEN)
+def test_ten_seconds_do_not_beat_the_index(name: str) -> None:
+    """Else it is stale: run  python benchmarks/library.py"""
+    entry = LIBRARY[name]
+    graph = graph_of(INSTANCES / (entry.file or ""))
+    for space in ("paper", "surface"):
+        if not entry.range_in(space).proved:
+            solution = solve(graph, Options(space, STRANDS[space], deadline=Deadline.after(10)))
+            report = check_solution(graph, solution)
+            assert report.valid
+            bounds = [
+                (v.bound.holds_for, v.bound.value, v.outcome == "verified") for v in report.bounds
+            ]
+            assert entry.beaten_by(solution, bounds) == []
+
+
+def test_what_beats_an_entry() -> None:
+    """Of the range 3 to 5 in the search space paper, and 2 to 4 on the surface."""
+    ring = LIBRARY["ring"]
+    assert ring.paper.upper is not None
+    lower, upper = replace(ring.paper.lower, verified=False), ring.paper.upper
+    entry = replace(
+        ring,
+        paper=KnownRange(replace(lower, value=3), replace(upper, value=5)),
+        surface=KnownRange(replace(lower, value=2), replace(upper, value=4)),
+    )
+    solution = Solution.read(INSTANCES / SOLUTIONS / "ring.solution.json")
+
+    def beaten(space: SearchSpace, segments: int | None, *bounds: Any) -> list[str]:
+        found = replace(solution, search_space=space)
+        object.__setattr__(found, "segments", segments)
+        return [line.partition(";")[0] for line in entry.beaten_by(found, bounds)]
+
+    paper, surface = "search space paper: ", "any division of the surface: "
+    assert beaten("paper", 5) == beaten("surface", 4) == beaten("paper", None) == []
+    assert beaten("paper", 4) == [paper + "4 segments"]
+    assert beaten("paper", 3) == [paper + "3 segments", surface + "3 segments"]
+    assert beaten("surface", 3) == [surface + "3 segments"]
+    assert beaten("paper", 5, ("strands", 3, False), ("surface", 2, False)) == []
+    certified = "at least 3 segments, with certificate"
+    assert beaten("paper", 5, ("strands", 3, True)) == [paper + certified]
+    assert beaten("paper", 5, ("surface", 3, True)) == [paper + certified, surface + certified]
+    plain = surface + "at least 3 segments, without certificate"
+    assert beaten("paper", 5, ("surface", 3, False)) == [plain]
+
+
+def test_no_bound_is_lost_when_a_graph_is_solved_again() -> None:
+    """A weaker bound that can be verified stays beside a greater one that cannot."""
+    needed = runpy.run_path(str(INSTANCES.parent / "benchmarks" / "library.py"))["needed"]
+    ring = Solution.read(INSTANCES / SOLUTIONS / "ring.solution.json")
+    certificate = next(b.certificate for b in ring.bounds or () if b.certificate is not None)
+
+    def bound(value: int, certified: bool, extent: Extent = "surface") -> Bound:
+        return Bound("cover", value, extent, certificate if certified else None)
+
+    weak, strong = bound(4, True), bound(7, False)
+    assert needed([strong, weak]) == (weak, strong)
+    assert needed([weak, strong, bound(7, True), bound(3, True)]) == (bound(7, True),)
+    assert needed([strong, bound(6, False)]) == (strong,)
+    strands = bound(8, False, "strands")
+    assert needed([strands, weak, strong]) == (weak, strong, strands)
+    assert needed([bound(7, False, "strands"), strong]) == (strong,)
+    assert needed([]) == ()
 
 
 @pytest.fixture

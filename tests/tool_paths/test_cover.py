@@ -104,6 +104,30 @@ def test_walls_and_what_is_left_out_are_kept_off(
     assert len(small) == len(regions) - len(large)
 
 
+@pytest.mark.parametrize("key", ["spacing_m", "tool_radius_m"])
+def test_lengths_in_millimeters(key: str) -> None:
+    """On a square of 1 m: as wide as its diagonal is allowed, 15 mm given in meters are not."""
+    painting = square(8)
+    usual = {"spacing_m": 0.2, "tool_radius_m": 0.2}
+    cover(*painting, **usual | {key: 1.41})
+    with pytest.raises(InputError, match=r"15 looks like millimeters: 0\.015 m\?") as caught:
+        cover(*painting, **usual | {key: 15.0})
+    assert caught.value.field == key
+
+
+def test_a_small_segment_beside_a_large_one_is_no_fault_of_the_spacing() -> None:
+    """It is listed as uncovered, and the large one has its path."""
+    painting = square(16)
+    segment_of = painting.segment_of.copy()
+    segment_of[0] = 1  # a corner of the square
+    both = painting._replace(segment_of=segment_of, colors=[0, 0])
+    found = covered(both, "contour", 0.3)
+    assert [path.segment for path in found.paths.paths] == [0]
+    assert [place.segment for place in found.uncovered] == [1]
+    with pytest.raises(InputError, match="larger than the largest segment"):
+        cover(*both, spacing_m=1.42, tool_radius_m=0.3)
+
+
 def test_the_checker_finds_what_is_wrong() -> None:
     """A path moved off the surface, into another triangle, over a crack, out of its segment."""
     painting = square(8)

@@ -9,6 +9,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Urdf, check_urdf
 
@@ -93,6 +94,8 @@ def _check_limits(joint: ET.Element, kind: str, name: str, position: float) -> N
     lower, upper = (float(limit.get(end, "nan")) for end in ("lower", "upper"))
     if not lower <= position <= upper:
         message = f"{position:g} is outside the joint's limits, {lower:g} to {upper:g}"
+        if kind != PRISMATIC and abs(position) > 2 * np.pi:
+            message += f": {looks_like_degrees(position)}"
         raise InputError(None, f"robot.fixed_joints.{name}", message)
 
 

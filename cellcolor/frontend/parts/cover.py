@@ -16,11 +16,11 @@ from cellcolor.files.documents import read_text
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.surface import Surface, face_normals
 from cellcolor.frontend.parts.topology import edge_table, face_areas, parts_of
-from cellcolor.frontend.tables import Position, Table, Vector
+from cellcolor.frontend.tables import IN_RADIANS, Position, Table, Vector
 
 __all__ = ["Cover"]
 
-Angle = Annotated[FiniteFloat, Field(gt=0, le=float(np.pi))]
+Angle = Annotated[FiniteFloat, Field(gt=0, le=float(np.pi)), IN_RADIANS]
 
 
 class NormalCone(Table):

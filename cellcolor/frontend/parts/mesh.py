@@ -7,6 +7,7 @@ import trimesh
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import in_meters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.remesh import refine, repair
@@ -68,7 +69,12 @@ def mesh_surface(
         if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
             raise InputError(None, "faces", "closed mesh inside out: its volume is negative")
     if max_edge_m is not None:
-        vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit, deadline)
+        size = in_meters((np.ptp(vertices, axis=0) * meters_per_unit).tolist(), " x ")
+        try:
+            vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit, deadline)
+        except InputError as error:
+            message = f"the part is {size}: {error.message}"
+            raise InputError(error.file, error.field, message) from error
     deadline.check()
     normals = summed_normals(vertices, faces)
     size = np.linalg.norm(normals, axis=1, keepdims=True)

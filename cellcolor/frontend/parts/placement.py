@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.tables import Position, Table, Vector
+from cellcolor.frontend.tables import Angles, Position, Table
 
 __all__ = ["Placement", "rotation_from_rpy"]
 
@@ -14,7 +14,7 @@ class Placement(Table):
     """Pose of a thing in the world; angles extrinsic x, y, z."""
 
     position_m: Position
-    rpy_rad: Vector = (0.0, 0.0, 0.0)
+    rpy_rad: Angles = (0.0, 0.0, 0.0)
 
     def placed(self, points: Array) -> Array:
         """Points (n, 3) of the thing's own frame in the world, m."""

@@ -13,7 +13,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.part import Part
 from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import MOST_VERTICES, check_vertices
-from cellcolor.frontend.tables import Length
+from cellcolor.frontend.tables import IN_RADIANS, Length
 
 __all__ = [
     "CapObject",
@@ -46,7 +46,7 @@ class CapObject(_Sampled):
 
     kind: Literal["spherical-cap"] = "spherical-cap"
     radius_m: Length
-    half_angle_rad: Annotated[FiniteFloat, Field(gt=0, lt=3.1)]
+    half_angle_rad: Annotated[FiniteFloat, Field(gt=0, lt=3.1), IN_RADIANS]
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
         """The cap as rings of vertices about its pole."""
@@ -59,7 +59,7 @@ class PipeObject(_Sampled):
     kind: Literal["pipe"] = "pipe"
     radius_m: Length
     length_m: Length
-    arc_rad: Annotated[FiniteFloat, Field(gt=0, lt=6.2)]
+    arc_rad: Annotated[FiniteFloat, Field(gt=0, lt=6.2), IN_RADIANS]
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
         """The pipe as a grid that is bent."""

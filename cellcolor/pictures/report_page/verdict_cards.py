@@ -20,7 +20,10 @@ def badges_of(report: MotionReport) -> list[tuple[str, bool | None]]:
         badges.append((f"{count(len(trajectory.unplanned), 'move')} not planned", False))
     if verdict.covered is not None:
         share = _percent(verdict.covered.covered_share)
-        badges.append((f"{share} of the reachable area covered", None))
+        coverage = report.solution.coverage
+        given_up = 0.0 if coverage is None else coverage.given_up
+        more = f", {given_up:.1%} of the surface given up as slivers" if given_up else ""
+        badges.append((f"{share} of the area with a color covered{more}", None))
     return badges
 
 
@@ -68,7 +71,7 @@ def coverage_card(report: MotionReport) -> Card | None:
         f"a visit is a pass within half the spacing of {spacing:g} mm."
     )
     rows = [
-        ("of the reachable area", f"{1e4 * covered.reachable_m2:.0f} cm²"),
+        ("of the area with a color", f"{1e4 * covered.reachable_m2:.0f} cm²"),
         (f"within {1.5 * spacing:g} mm of a pass", _percent(covered.covered_share)),
         (f"within {0.75 * spacing:g} mm of a pass", _percent(covered.closely_covered_share)),
         ("left out, rightly", _percent(covered.left_out_share)),

@@ -1,0 +1,153 @@
+"""Millimeters taken for meters: found by holding lengths against the arm and the part.
+
+Every length of a scene and its setup is in meters. One that only makes sense in millimeters is
+refused, with the value that was probably meant, before anything is computed with it. Angles in
+degrees are refused where a table is read (:mod:`cellcolor.frontend.tables`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from cellcolor.data.wording import in_meters, looks_like_millimeters
+from cellcolor.errors import InputError
+from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.setup import Motion, Setup
+
+__all__ = ["check_motion", "check_part", "check_setup", "notes_on_units"]
+
+_REACHES = 20  # a wing of 10 m is a part; what is larger than this, or as far away, is none
+_PLAUSIBLE = 0.2  # of the reach: a tool of that radius is a large one
+
+
+def check_part(part: Surface, scene: Scene, reach: float, key: str = "object") -> None:
+    """Refuse a part that is far too large for an arm, or far too far away.
+
+    Args:
+        part: in the world, m.
+        scene: that it is from.
+        reach: of the arm, m.
+        key: of the scene that describes the part.
+
+    Raises:
+        InputError: names the key, the size or distance, and what was probably meant.
+    """
+    largest = float(np.ptp(part.vertices, axis=0).max())
+    if largest > _REACHES * reach:
+        field, meant = _unit_of(scene, key)
+        message = (
+            f"the part is {size_of(part)}, {largest / reach:.0f} times the arm's reach "
+            f"({reach:.3g} m): {meant}"
+        )
+        raise InputError(None, field, message)
+    away = float(np.linalg.norm(part.vertices, axis=1).min())
+    if away > _REACHES * reach:
+        place = np.array(scene.placement.position_m)
+        far = f"the part is {away:.3g} m from the robot's base, {away / reach:.0f} times the arm's "
+        far += f"reach ({reach:.3g} m)"
+        if np.linalg.norm(place) > away / 2:
+            message = f"{far}: {looks_like_millimeters(*place)}"
+            raise InputError(None, "placement.position_m", message)
+        raise InputError(None, key, f"{far}: its own coordinates are that far from its origin")
+
+
+def _unit_of(scene: Scene, key: str) -> tuple[str, str]:
+    """The key that gives a part its size, and what it was probably meant to be."""
+    part = getattr(scene, key)
+    unit = getattr(part, "meters_per_unit", None)
+    if unit is not None:
+        return f"{key}.meters_per_unit", f"{unit / 1000:g} if the file is in millimeters"
+    given = {name: getattr(part, name) for name in type(part).model_fields if name.endswith("_m")}
+    sizes = {name: size for name, size in given.items() if isinstance(size, (int, float))}
+    if not sizes:
+        return key, "are its coordinates in millimeters?"
+    largest = max(sizes, key=lambda name: sizes[name])
+    return f"{key}.{largest}", looks_like_millimeters(sizes[largest])
+
+
+def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None:
+    """Refuse lengths of a setup that are larger than the part, or margins beyond the arm's reach.
+
+    Raises:
+        InputError: names the key, and what was probably meant.
+    """
+    _no_larger_than_part(
+        {
+            "task.contact_radius_m": setup.task.contact_radius_m,
+            "continuity.probe_spacing_m": setup.continuity.probe_spacing_m,
+            "continuity.validity_spacing_m": setup.continuity.validity_spacing_m,
+            "continuity.border_length_m": setup.continuity.border_length_m,
+        },
+        part,
+        scene,
+        reach,
+    )
+    margins = {f"margins.{name}": value for name, value in setup.margins.model_dump().items()}
+    _within_reach(margins, reach)
+
+
+def check_motion(motion: Motion, part: Surface, scene: Scene, reach: float) -> None:
+    """Refuse lengths of the table ``[motion]`` in the same way.
+
+    Raises:
+        InputError: names the key, and what was probably meant.
+    """
+    _no_larger_than_part(
+        {"motion.tool_radius_m": motion.tool_radius_m, "motion.spacing_m": motion.spacing_m},
+        part,
+        scene,
+        reach,
+    )
+    lengths = {"motion.retract_m": motion.retract_m, "motion.clearance_m": motion.clearance_m}
+    _within_reach(lengths, reach)
+
+
+def _no_larger_than_part(
+    lengths: dict[str, float | None], part: Surface, scene: Scene, reach: float
+) -> None:
+    largest = float(np.linalg.norm(np.ptp(part.vertices, axis=0)))
+    for field, length in lengths.items():
+        if length is not None and length > largest:
+            size = size_of(part)
+            if length < _PLAUSIBLE * reach:  # then it is the part that is too small
+                unit = getattr(scene.object, "meters_per_unit", None)
+                key = "object" if unit is None else "object.meters_per_unit"
+                meant = "in meters already" if unit is None else f"{1000 * unit:g}"
+                message = f"the part is {size}, less than {field} ({length:g} m): {meant}?"
+                raise InputError(None if scene.file is None else str(scene.file), key, message)
+            message = f"larger than the part ({size}): {looks_like_millimeters(length)}"
+            raise InputError(None, field, message)
+
+
+def _within_reach(lengths: dict[str, float], reach: float) -> None:
+    for field, length in lengths.items():
+        if length > reach:
+            message = f"is more than the arm's reach ({reach:.3g} m)"
+            raise InputError(None, field, f"{message}: {looks_like_millimeters(length)}")
+
+
+def notes_on_units(scene: Scene, reach: float) -> tuple[str, ...]:
+    """What stands so far away that it may have been given in millimeters, a sentence each."""
+    return tuple(_far_things(scene, reach))
+
+
+def _far_things(scene: Scene, reach: float) -> Iterator[str]:
+    if scene.ground is not None and abs(scene.ground.height_m) > _REACHES * reach:
+        yield f"ground.height_m: {looks_like_millimeters(scene.ground.height_m)}"
+    for number, obstacle in enumerate(scene.obstacle):
+        if isinstance(obstacle, HalfSpaceObstacle):
+            continue  # which has no place: a wall goes through any point of it
+        vertices, _ = obstacle.shell(scene.folder)
+        nearest = float(np.linalg.norm(obstacle.placed(vertices), axis=1).min())
+        if nearest > _REACHES * reach:
+            meant = looks_like_millimeters(*obstacle.position_m)
+            yield f"obstacle[{number}].position_m: {meant}"
+
+
+def size_of(part: Surface) -> str:
+    """The part's extents along the axes of the world, ``0.4 x 0.4 x 0.12 m``."""
+    return in_meters(np.ptp(part.vertices, axis=0).tolist(), " x ")

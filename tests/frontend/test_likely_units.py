@@ -1,0 +1,198 @@
+"""Lengths in millimeters and angles in degrees are named, with what was probably meant."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from box import BOX, OUTWARD, obj
+from shipped import ROBOTS, SCENES
+
+from cellcolor.cli import main
+from cellcolor.errors import InputError
+from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.likely_units import check_part, notes_on_units
+from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.scene import Scene
+from cellcolor.motion.limits import motion_of
+
+Varied = Callable[..., Scene]
+SceneFile = Callable[..., Path]
+
+
+def refusal(scene: Scene) -> InputError:
+    with pytest.raises(InputError) as caught:
+        motion_of(prepare(scene))
+    return caught.value
+
+
+@pytest.mark.parametrize(
+    ("setup", "keys", "field", "meant"),
+    [
+        ({}, {"radius_m": 200.0}, "object.radius_m", "0.2 m?"),
+        ({}, {"position_m": (465.0, -150.0, -40.0)}, "placement.position_m", "0.465, -0.15, -0.04"),
+        ({"contact_radius_m": 5.0}, {}, "task.contact_radius_m", "0.005 m?"),
+        ({"probe_spacing_m": 2.0}, {}, "continuity.probe_spacing_m", "0.002 m?"),
+        ({"validity_spacing_m": 2.0}, {}, "continuity.validity_spacing_m", "0.002 m?"),
+        ({"border_length_m": 5.0}, {}, "continuity.border_length_m", "0.005 m?"),
+        ({"to_ground_m": 10.0}, {}, "margins.to_ground_m", "0.01 m?"),
+        ({"tool_radius_m": 15.0}, {}, "motion.tool_radius_m", "0.015 m?"),
+        ({"spacing_m": 10.0}, {}, "motion.spacing_m", "0.01 m?"),
+        ({"retract_m": 50.0}, {}, "motion.retract_m", "0.05 m?"),
+        ({"clearance_m": 5.0, "retract_m": 0.05}, {}, "motion.clearance_m", "0.005 m?"),
+    ],
+)
+def test_millimeters(
+    scene: Varied, setup: dict[str, object], keys: dict[str, object], field: str, meant: str
+) -> None:
+    error = refusal(scene(setup=setup, **keys))
+    assert error.field == field
+    assert "like millimeters" in error.message and meant in error.message
+
+
+@pytest.mark.parametrize(
+    ("setup", "keys", "field", "meant"),
+    [
+        ({}, {"half_angle_rad": 65.0}, "object.half_angle_rad", "65 looks like degrees: 1.1345"),
+        ({}, {"rpy_rad": (0.0, 180.0, 0.0)}, "placement.rpy_rad[1]", "degrees: 3.1416 rad?"),
+        (
+            {"locked_joint_6_rad": 90.0},
+            {},
+            "robot.locked_joint_6_rad",
+            "90 looks like degrees: 1.5708 rad?",
+        ),
+        (
+            {"fixed_joints": {"wrist_1_joint": 90.0}},
+            {},
+            "robot.fixed_joints.wrist_1_joint",
+            "90 looks like degrees: 1.5708 rad?",
+        ),
+        ({"mount_rpy_rad": (-45.0, 0, 0)}, {}, "robot.mount_rpy_rad[0]", "degrees: -0.7854 rad?"),
+        ({"base_step_rad": 10.0}, {}, "continuity.base_step_rad", "degrees: 0.17453 rad?"),
+        (
+            {"home_rad": (0.0, -90.0, 90.0, 0.0, 0.0, 0.0)},
+            {},
+            "motion.home_rad[1]",
+            "-90 looks like degrees: -1.5708 rad?",
+        ),
+        (
+            {"home_rad": (0.0, 0.0, 8.0, 0.0, 0.0, 0.0)},
+            {},
+            "motion.home_rad[2]",
+            "8 looks like degrees",
+        ),
+    ],
+)
+def test_degrees(
+    scene: Varied, setup: dict[str, object], keys: dict[str, object], field: str, meant: str
+) -> None:
+    with pytest.raises(InputError) as caught:
+        motion_of(prepare(scene(setup=setup, **keys)))
+    assert (caught.value.field or "").endswith(field.partition(".")[2])
+    assert meant in caught.value.message
+
+
+def mesh_scene(file: Path, meters_per_unit: float, more: str = "") -> Path:
+    """The scene with a box of 0.2 m that a file has in millimeters."""
+    (file.parent / "box.obj").write_text(obj(200 * BOX, OUTWARD))
+    table = f'[object]\nkind = "mesh"\nfile = "box.obj"\nmeters_per_unit = {meters_per_unit}\n'
+    text = file.read_text()
+    start, end = text.index("[object]"), text.index("[placement]")
+    file.write_text(text[:start] + table + more + "\n" + text[end:])
+    return file
+
+
+@pytest.mark.parametrize(
+    ("meters_per_unit", "more", "words"),
+    [
+        (1.0, "", ["object.meters_per_unit", "200 x 200 x 200 m", "0.001"]),
+        # What would refine or test a part of that size says its size first.
+        (1.0, "max_edge_m = 0.005\n", ["max_edge_m: ", "200 x 200 x 200 m"]),
+        (1e-6, "", ["object.meters_per_unit", "0.0002 x 0.0002 x 0.0002 m", "0.001"]),
+    ],
+)
+def test_a_mesh_in_another_unit_is_one_line(
+    scene_file: SceneFile,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    meters_per_unit: float,
+    more: str,
+    words: list[str],
+) -> None:
+    file = mesh_scene(scene_file(), meters_per_unit, more)
+    assert main(["build", str(file), "-o", str(tmp_path / "out.json")]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith(f"cellcolor: {file}: ")
+    assert all(word in line for word in words), line
+    assert not (tmp_path / "out.json").exists()
+
+
+def test_a_spacing_in_millimeters_does_not_hide_the_part(scene: Varied) -> None:
+    """A part of 400 m has more points on its edges than fit: the part is named nevertheless."""
+    error = refusal(scene(setup={"validity_spacing_m": 1e-5}, radius_m=200.0))
+    assert error.field == "object.radius_m"
+
+
+def test_a_wrong_obstacle_or_ground_is_said(scene: Varied) -> None:
+    """They may be there, and do no harm: they are a warning."""
+    box = BoxObstacle(position_m=(500.0, 0.0, 0.0), size_m=(0.1, 0.1, 0.1))
+    near = BoxObstacle(position_m=(0.9, 0.9, 0.0), size_m=(0.1, 0.1, 0.1))
+    there = scene(height_m=-40.0).with_obstacle(near, box)
+    notes = [note for note in prepare(there).notes if "millimeters" in note]
+    assert len(notes) == 2
+    assert "ground.height_m" in notes[0] and "-0.04 m" in notes[0]
+    assert "obstacle[1].position_m" in notes[1] and "0.5, 0, 0" in notes[1]
+    assert notes_on_units(scene().with_obstacle(near), 1.0) == ()
+
+
+def test_what_is_large_but_may_be_meant(scene: Varied) -> None:
+    """A wing of 10 m before an arm of 1 m, and its far end."""
+    wing = scene(radius_m=5.5, position_m=(5.0, 0.0, 0.0))
+    surface = wing.covered()
+    assert np.ptp(surface.vertices, axis=0).max() > 9.9
+    check_part(surface, wing, 1.0)
+
+
+@pytest.mark.parametrize("times", [19.9, 20.1])
+def test_the_limit_is_twenty_reaches(scene: Varied, times: float) -> None:
+    """Of size, and of distance: of a cap the widest extent is 2 r sin(half angle)."""
+    reach = 0.7
+    radius = times * reach / 2 / math.sin(1.1344640137963142)
+    large = scene(radius_m=radius, position_m=(0.0, 0.0, 0.0))
+    far = scene(position_m=(0.0, 0.0, -times * reach - 0.2))
+    for varied in (large, far):
+        if times < 20:
+            check_part(varied.covered(), varied, reach)
+        else:
+            with pytest.raises(InputError, match="times"):
+                check_part(varied.covered(), varied, reach)
+
+
+def test_no_shipped_scene_is_refused() -> None:
+    files = [*SCENES.glob("*.toml"), *(SCENES.parent / "arms").glob("*.toml")]
+    files += [*(SCENES.parent / "planar").glob("*.toml"), *(SCENES.parent / "parts").glob("*.toml")]
+    assert len(files) > 25
+    for file in files:
+        prepared = prepare(file)
+        assert not [note for note in prepared.notes if "looks like" in note], file
+
+
+def test_joint_limits_of_a_full_turn_and_more(scene: Varied) -> None:
+    """Joints turn by a full circle either way, some by more: such homes are no degrees."""
+    home = (2 * math.pi - 1e-9, -1.5, 1.5, 0.0, 0.0, 0.0)
+    assert motion_of(prepare(scene(setup={"home_rad": home}))).home_rad == home
+    full = scene(rpy_rad=(6.2832, -6.2832, 0.0))
+    assert full.placement.rpy_rad[0] == 6.2832
+
+
+def test_options_of_a_motion(scene_file: SceneFile, capsys: pytest.CaptureFixture[str]) -> None:
+    file = scene_file()
+    assert main(["plan", str(file), "-o", str(file.parent / "p"), "--tool-radius-m", "15"]) == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert re.search(r"motion\.tool_radius_m: .*15 looks like millimeters: 0\.015 m\?", line)
+    assert not (file.parent / "p").exists()
+    assert str(ROBOTS) not in line
