@@ -8,6 +8,7 @@ it cannot lose any more exceed what is asked for.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import chain, islice
 
 from cellcolor.data.darts import DartName, twin
@@ -18,6 +19,21 @@ from cellcolor.solvers.dfs.segment_counts import SegmentCounts
 from cellcolor.solvers.dfs.zero_darts import zeros_fit
 
 __all__ = ["Search"]
+
+@dataclass(frozen=True, slots=True)
+class _Level:
+    """A cell on the way down: its schemes, and what was known before any of them.
+
+    Attributes:
+        branches: the schemes that are left.
+        mark: of the segments before the cell.
+        bound: no completion has fewer segments.
+    """
+
+    branches: Iterator[CellScheme]
+    mark: int
+    bound: int
+
 
 _REMEMBERED = 5000
 """Longer lists of cell schemes are enumerated anew each time, so that memory stays small."""
@@ -86,28 +102,33 @@ class Search:
         Raises:
             OutOfTime: the deadline has passed.
         """
-        return self._solve(0)
-
-    def _solve(self, depth: int) -> Iterator[tuple[int, list[CellScheme]]]:
-        self._deadline.check()
-        bound = self._bound(depth)
-        if bound > self.budget:
-            return
-        if depth == len(self._cells):
-            if zeros_fit(self._cells, self._chosen):
-                yield self._segments.cost, list(self._chosen)
-            return
         mark = self._segments.mark()
-        for scheme in self._branches(depth):
-            self._paint(depth, scheme)
+        trail: list[_Level] = []
+        while True:
+            self._deadline.check()
+            depth, bound = len(trail), self._bound(len(trail))
+            if bound <= self.budget and depth < len(self._cells):
+                trail.append(_Level(iter(self._branches(depth)), mark, bound))
+            elif bound <= self.budget and zeros_fit(self._cells, self._chosen):
+                yield self._segments.cost, list(self._chosen)
+            while trail and (scheme := self._next_branch(trail[-1], len(trail) - 1)) is None:
+                trail.pop()
+            if not trail or scheme is None:
+                return
+            self._paint(len(trail) - 1, scheme)
             self._chosen.append(scheme)
-            yield from self._solve(depth + 1)
+            mark = self._segments.mark()
+
+    def _next_branch(self, level: _Level, depth: int) -> CellScheme | None:
+        """The next scheme of a cell, as it was before the last one; None if there is none left."""
+        if len(self._chosen) > depth:
             self._chosen.pop()
-            self._segments.undo(mark)
-            if bound > self.budget:
-                break
-        for number in self._numbers[depth]:
-            self._side[number] = None
+            self._segments.undo(level.mark)
+        scheme = None if level.bound > self.budget else next(level.branches, None)
+        if scheme is None:
+            for number in self._numbers[depth]:
+                self._side[number] = None
+        return scheme
 
     def _branches(self, depth: int) -> Iterable[CellScheme]:
         """The schemes of a cell under its solved neighbours, the least divided ones first."""
@@ -185,15 +206,25 @@ def _hitting(sets: frozenset[int], deadline: Deadline) -> int:
     Raises:
         OutOfTime: the deadline has passed.
     """
-    deadline.check()
-    if not sets:
-        return 0
+    best = len(sets)
+    trail = [iter([(sets, 0)])]
+    while trail:
+        deadline.check()
+        left, bits = next(trail[-1], (None, 0))
+        if left is None:
+            trail.pop()
+        elif not left:
+            best = min(best, bits)
+        elif bits + 1 < best:
+            trail.append(_hits(left, bits + 1))
+    return best
+
+
+def _hits(sets: frozenset[int], bits: int) -> Iterator[tuple[frozenset[int], int]]:
+    """What each bit of the smallest set leaves to be hit, with the number of bits by then."""
     sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
     smallest = min(sets, key=lambda s: (s.bit_count(), s))
-    best = len(sets)
-    bits = smallest
-    while bits:
-        bit = bits & -bits
-        bits ^= bit
-        best = min(best, 1 + _hitting(frozenset(s for s in sets if not s & bit), deadline))
-    return best
+    while smallest:
+        bit = smallest & -smallest
+        smallest ^= bit
+        yield frozenset(s for s in sets if not s & bit), bits
