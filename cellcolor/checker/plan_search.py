@@ -5,8 +5,8 @@ conflict cannot both touch all that the conflict names. Each cell has to be touc
 so a cell that is not touched yet is given to each segment that can still touch it, and to a new one
 in each of its color regions. With no conflicts that is a search for a set cover.
 
-Cells that neither color regions nor conflicts connect, not even by way of other cells, are touched by
-different segments that do not mind each other. So each such group is searched by itself, and the
+Cells that neither color regions nor conflicts connect, not even by way of other cells, are touched
+by different segments that do not mind each other. So each such group is searched by itself, and the
 numbers add up.
 """
 
@@ -152,34 +152,46 @@ class PlanSearch:
         return False
 
     def _choices(self, state: _State) -> Iterator[_State]:
-        """Each way to touch one more cell: the one that leaves the fewest."""
+        """Each way to touch one more cell; a state without cells if nothing is left to choose."""
         found, more = state.found, state.more
-        connected = [segment.connects for segment in found]
+        able = self._able_to_touch(state)
+        # What a segment can touch without being any nearer to a conflict costs nothing.
+        left = [c for c in state.left if not any(grown == found[n] for n, grown in able[c])]
+        if self._need_segments_of_their_own([c for c in left if not able[c]]) > more:
+            return iter(())
+        if not left:
+            return iter([_State(found, (), more)])
+        regions_of = self._regions if more > 0 else dict.fromkeys(left, frozenset[ColorRegion]())
+        cell = min(left, key=lambda c: (len(able[c]) + len(regions_of[c]), c))
+        rest = tuple([c for c in left if c != cell])
+        return self._touching(cell, able[cell], sorted(regions_of[cell]), _State(found, rest, more))
+
+    def _touching(
+        self,
+        cell: int,
+        able: Sequence[tuple[int, _Segment]],
+        regions: Sequence[ColorRegion],
+        state: _State,
+    ) -> Iterator[_State]:
+        """A state with a cell touched: by each segment that is able to, or a new one."""
+        found, rest, more = state.found, state.left, state.more
+        for number, grown in able:
+            self._count(len(rest))
+            yield _State((*found[:number], grown, *found[number + 1 :]), rest, more)
+        for region in regions:
+            self._count(len(rest))
+            opening = _Segment(region, self._ends.get((region, cell), (0, 0, 0, 0)))
+            yield _State((*found, opening), rest, more - 1)
+
+    def _able_to_touch(self, state: _State) -> dict[int, list[tuple[int, _Segment]]]:
+        """For each cell the numbers of the segments that can touch it, and each as it is then."""
+        connected = [segment.connects for segment in state.found]
         first = reduce(or_, (bits for bits, _ in connected), 0)
         second = reduce(or_, (bits for _, bits in connected), 0)
         numbers: dict[ColorRegion, list[int]] = defaultdict(list)
-        for number, segment in enumerate(found):
+        for number, segment in enumerate(state.found):
             numbers[segment.region].append(number)
-        able = {c: self._able(found, numbers, (first, second), c) for c in state.left}
-        # What a segment can touch without being any nearer to a conflict costs nothing.
-        left = [c for c in state.left if not any(grown == found[n] for n, grown in able[c])]
-        if not left:
-            yield _State(found, (), more)
-            return
-        if self._need_segments_of_their_own([c for c in left if not able[c]]) > more:
-            return
-        options = {c: len(able[c]) + (len(self._regions[c]) if more > 0 else 0) for c in left}
-        cell = min(left, key=lambda c: (options[c], c))
-        rest = tuple([c for c in left if c != cell])
-        own, size = able[cell], len(left)
-        del able, left, options, connected, numbers  # a suspended search keeps what it needs only
-        for number, grown in own:
-            self._count(size)
-            yield _State((*found[:number], grown, *found[number + 1 :]), rest, more)
-        for region in sorted(self._regions[cell]) if more > 0 else ():
-            self._count(size)
-            opening = _Segment(region, self._ends.get((region, cell), (0, 0, 0, 0)))
-            yield _State((*found, opening), rest, more - 1)
+        return {c: self._able(state.found, numbers, (first, second), c) for c in state.left}
 
     def _count(self, cells: int) -> None:
         """Count a choice among so many cells; every hundred of them count as one more."""

@@ -104,7 +104,7 @@ def set_cover(
     regions = color_regions(instance, colors)
     touching = _touching(regions, len(instance.cells))
     greedy = _greedy(regions, touching)
-    found = _smallest(regions, touching, EFFORT, deadline, greedy)
+    found = _smallest(touching, EFFORT, deadline, greedy)
     numbers = greedy if found.chosen is None else found.chosen
     return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
 
@@ -113,8 +113,8 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     """A few cells that fewer than ``value`` color regions do not touch: why a cover is not smaller.
 
     With as many cells as ``value`` no two of them lie in one color region: they are strangers,
-    which can be seen by eye. Where there are no such cells, cells are added that a smallest cover
-    of those before leaves out.
+    which can be seen by eye. Where there are no such cells, each group of cells that color regions
+    connect has its own: cells are added that a smallest cover of those before leaves out.
 
     Args:
         instance: the topological graph.
@@ -127,14 +127,13 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     cells = greedy_strangers(instance)
     if len(cells) >= value:
         return sorted(cells)[:value]
-    regions = color_regions(instance)
-    touching = _touching(regions, len(instance.cells))
+    touching = _touching(color_regions(instance), len(instance.cells))
     found: list[int] = []
     for group in sorted(_groups(touching), key=len):
         if value > 0 and not deadline.over:
             demands = [touching[cell] for cell in group]
-            need = min(value, _smallest(regions, demands, CERTIFICATE_EFFORT, deadline).bound)
-            hard = _hard_cells_of(group, need, regions, touching, deadline)
+            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline).bound)
+            hard = _hard_cells_of(group, need, touching, deadline)
             if hard is None:
                 return None
             found += hard
@@ -145,7 +144,6 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
 def _hard_cells_of(
     group: Sequence[int],
     value: int,
-    regions: Sequence[Region],
     touching: Sequence[set[int]],
     deadline: Deadline,
 ) -> list[int] | None:
@@ -157,7 +155,7 @@ def _hard_cells_of(
         return cells[:value]
     hardest_first = sorted(group, key=lambda cell: len(touching[cell]))
     while not deadline.over:
-        found = _smallest(regions, (touching[cell] for cell in cells), CERTIFICATE_EFFORT, deadline)
+        found = _smallest((touching[cell] for cell in cells), CERTIFICATE_EFFORT, deadline)
         if found.bound >= value:
             return cells
         missed = (c for c in hardest_first if touching[c].isdisjoint(found.chosen or ()))
@@ -167,9 +165,7 @@ def _hard_cells_of(
     return None
 
 
-def _strangers(
-    group: Sequence[int], touching: Sequence[set[int]], deadline: Deadline
-) -> list[int]:
+def _strangers(group: Sequence[int], touching: Sequence[set[int]], deadline: Deadline) -> list[int]:
     """Many cells of which no two lie in one color region, the most if there is time to prove it."""
     from ortools.sat.python import cp_model
 
@@ -230,7 +226,6 @@ def _touching(regions: Sequence[Region], cells: int) -> list[set[int]]:
 
 
 def _smallest(
-    regions: Sequence[Region],
     demands: Iterable[set[int]],
     effort: float,
     deadline: Deadline,

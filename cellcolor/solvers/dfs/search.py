@@ -8,7 +8,6 @@ it cannot lose any more exceed what is asked for.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain, islice
 
 from cellcolor.data.darts import DartName, twin
@@ -19,21 +18,6 @@ from cellcolor.solvers.dfs.segment_counts import SegmentCounts
 from cellcolor.solvers.dfs.zero_darts import zeros_fit
 
 __all__ = ["Search"]
-
-@dataclass(frozen=True, slots=True)
-class _Level:
-    """A cell on the way down: its schemes, and what was known before any of them.
-
-    Attributes:
-        branches: the schemes that are left.
-        mark: of the segments before the cell.
-        bound: no completion has fewer segments.
-    """
-
-    branches: Iterator[CellScheme]
-    mark: int
-    bound: int
-
 
 _REMEMBERED = 5000
 """Longer lists of cell schemes are enumerated anew each time, so that memory stays small."""
@@ -102,33 +86,33 @@ class Search:
         Raises:
             OutOfTime: the deadline has passed.
         """
-        mark = self._segments.mark()
-        trail: list[_Level] = []
-        while True:
+        trail = [self._ways(0)]
+        while trail:
             self._deadline.check()
-            depth, bound = len(trail), self._bound(len(trail))
-            if bound <= self.budget and depth < len(self._cells):
-                trail.append(_Level(iter(self._branches(depth)), mark, bound))
-            elif bound <= self.budget and zeros_fit(self._cells, self._chosen):
-                yield self._segments.cost, list(self._chosen)
-            while trail and (scheme := self._next_branch(trail[-1], len(trail) - 1)) is None:
+            depth = len(trail)
+            if not next(trail[-1], False):
                 trail.pop()
-            if not trail or scheme is None:
-                return
-            self._paint(len(trail) - 1, scheme)
-            self._chosen.append(scheme)
-            mark = self._segments.mark()
+            elif depth < len(self._cells):
+                trail.append(self._ways(depth))
+            elif self._bound(depth) <= self.budget and zeros_fit(self._cells, self._chosen):
+                yield self._segments.cost, list(self._chosen)
 
-    def _next_branch(self, level: _Level, depth: int) -> CellScheme | None:
-        """The next scheme of a cell, as it was before the last one; None if there is none left."""
-        if len(self._chosen) > depth:
+    def _ways(self, depth: int) -> Iterator[bool]:
+        """Solve a cell in every way within the budget, one after the other, and take it back."""
+        bound = self._bound(depth)
+        if bound > self.budget:
+            return
+        mark = self._segments.mark()
+        for scheme in self._branches(depth):
+            self._paint(depth, scheme)
+            self._chosen.append(scheme)
+            yield True
             self._chosen.pop()
-            self._segments.undo(level.mark)
-        scheme = None if level.bound > self.budget else next(level.branches, None)
-        if scheme is None:
-            for number in self._numbers[depth]:
-                self._side[number] = None
-        return scheme
+            self._segments.undo(mark)
+            if bound > self.budget:
+                break
+        for number in self._numbers[depth]:
+            self._side[number] = None
 
     def _branches(self, depth: int) -> Iterable[CellScheme]:
         """The schemes of a cell under its solved neighbours, the least divided ones first."""
