@@ -177,12 +177,12 @@ def hub_minimum(petal_colors: Sequence[int]) -> int:
     size = len(petal_colors)
     joined = [[0] * (size + 1) for _ in range(size + 1)]  # of the petals before the second index
     for first in reversed(range(size)):
-        for end in range(first + 1, size + 1):
-            joined[first][end] = joined[first + 1][end]
-            for k in range(first + 1, end):
-                if petal_colors[k] == petal_colors[first]:
-                    found = joined[first + 1][k] + 1 + joined[k][end]
-                    joined[first][end] = max(joined[first][end], found)
+        own = joined[first] = joined[first + 1][:]
+        for k in range(first + 1, size):
+            if petal_colors[k] == petal_colors[first]:
+                between = joined[first + 1][k] + 1
+                for end in range(k + 1, size + 1):
+                    own[end] = max(own[end], between + joined[k][end])
     return size - joined[0][size]
 
 
