@@ -19,6 +19,7 @@ from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
 from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver
 from cellcolor.solvers.registry import DEFAULT, make_solver
+from cellcolor.solvers.seamed import Seamed
 
 __all__ = [
     "check_able",
@@ -93,8 +94,9 @@ def solve(
     """
     check_able(solver, options)
     chosen = make_solver(solver)
-    if not chosen.abilities.several_loops:
-        _check_loops(solver, instance, "divides cells")
+    seamed = None
+    if not chosen.abilities.several_loops and instance.most_live_loops > 1:
+        seamed = Seamed(instance)
     live = len(instance.live_edges)
     if 2 * live * options.strands > MOST_DARTS:
         raise InputError(
@@ -104,7 +106,10 @@ def solve(
             f"they may have {MOST_DARTS} darts together",
         )
     start = time.monotonic()
-    answer = chosen.minimize(instance, options, progress)
+    if seamed is None:
+        answer = chosen.minimize(instance, options, progress)
+    else:
+        answer = seamed.answer(chosen.minimize(seamed.instance, options, progress))
     if instance.nothing_to_cover:
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
