@@ -94,9 +94,6 @@ def solve(
     """
     check_able(solver, options)
     chosen = make_solver(solver)
-    seamed = None
-    if not chosen.abilities.several_loops and instance.most_live_loops > 1:
-        seamed = Seamed(instance)
     live = len(instance.live_edges)
     if 2 * live * options.strands > MOST_DARTS:
         raise InputError(
@@ -106,10 +103,14 @@ def solve(
             f"they may have {MOST_DARTS} darts together",
         )
     start = time.monotonic()
-    if seamed is None:
+    if chosen.abilities.several_loops:
         answer = chosen.minimize(instance, options, progress)
     else:
-        answer = seamed.answer(chosen.minimize(seamed.instance, options, progress))
+        seamed = Seamed(instance)
+        answer = chosen.minimize(seamed.instance, options, progress)
+        if answer.division is not None and seamed.seams:
+            division = seamed.division(answer.division)
+            answer = replace(answer, division=division, seams=seamed.seams)
     if instance.nothing_to_cover:
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."

@@ -11,18 +11,24 @@ from dataclasses import replace
 
 from cellcolor.data.darts import DartName, Strand
 from cellcolor.data.instance import Cell, Edge, Instance
-from cellcolor.data.solution import Seam, number_segments
+from cellcolor.data.solution import Division, Seam, number_segments
+from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
-from cellcolor.solvers.interface import Answer
 
 __all__ = ["Seamed"]
 
+MOST_STRANDS = 10_000
+"""The models grow with the square of the darts of a cell, so that none would have more."""
+
 
 class Seamed:
-    """An instance with the strands of its seams as edges.
+    """An instance with the strands of its seams as edges; as it is if it needs no seams.
 
     Args:
         instance: the one to be solved.
+
+    Raises:
+        TooLarge: the seams would have too many strands: each may need twice those before it.
 
     Attributes:
         instance: the one with a single live loop in each cell.
@@ -30,24 +36,33 @@ class Seamed:
     """
 
     def __init__(self, instance: Instance) -> None:
+        self.instance = instance
+        self.seams: tuple[Seam, ...] = ()
+        self._name: dict[int, Strand] = {}
+        if instance.most_live_loops < 2:
+            return
         colors = [frozenset(cell.colors) for cell in instance.cells]
         once = dict.fromkeys(instance.live_edges, 1)
-        self.seams: tuple[Seam, ...] = seams_of(instance, colors, once, None)
+        self.seams = seams_of(instance, colors, once, None)
+        strands = sum(seam.strands for seam in self.seams)
+        if strands > MOST_STRANDS:
+            message = f"the seams need {strands} strands, {MOST_STRANDS} at most are made edges"
+            raise TooLarge(message)
         graph = dart_graph(instance, colors, once, self.seams)
         virtual = {seam.id for seam in self.seams}
         edges = {
             edge: replace(instance.edge(edge), colors=tuple(instance.joinable(edge)))
             for edge in instance.live_edges
         }
-        self._name: dict[int, Strand] = {}
+        last = max(edges)
         number = {(edge, 1): edge for edge in edges}
         for dart in graph.darts:
             edge, strand = dart.name
-            if edge in virtual:
-                new = max([*edges, 0]) + 1
-                edges[new] = Edge(new, dart.cell, dart.cell, instance.cells[dart.cell].colors)
-                number[edge, strand] = new
-                self._name[new] = dart.name
+            if edge in virtual:  # and not the other side of it
+                last += 1
+                edges[last] = Edge(last, dart.cell, dart.cell)
+                number[edge, strand] = last
+                self._name[last] = dart.name
         cells = []
         for cell, darts in zip(instance.cells, graph.lists, strict=True):
             names = [graph.darts[dart].name for dart in darts]
@@ -56,15 +71,14 @@ class Seamed:
         ordered = tuple(edges[edge] for edge in sorted(edges))
         self.instance = replace(instance, cells=tuple(cells), edges=ordered, known=None)
 
-    def answer(self, found: Answer) -> Answer:
-        """What a solver answers to the instance with seams as edges, for the one without."""
-        if found.division is None:
-            return found
-        blocks = [
-            [(own.color, [self._named(dart) for dart in own.darts]) for own in cell.subcells]
-            for cell in found.division
-        ]
-        return replace(found, division=number_segments(blocks), seams=self.seams)
+    def division(self, found: Division) -> Division:
+        """A division of the instance with seams as edges, for the one without."""
+        return number_segments(
+            [
+                [(own.color, [self._named(dart) for dart in own.darts]) for own in cell.subcells]
+                for cell in found
+            ]
+        )
 
     def _named(self, dart: DartName) -> DartName:
         assert isinstance(dart, int)  # one strand an edge
