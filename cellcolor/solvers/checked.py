@@ -90,6 +90,7 @@ def solve(
     Raises:
         InputError: there is no such solver, or it is not able to do what is asked; or there are
             too many strands.
+        TooLarge: the seams of cells with several loops would need too many strands.
         RefusedResult: the checker refuses what the solver found.
     """
     check_able(solver, options)
