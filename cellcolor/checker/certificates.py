@@ -10,7 +10,7 @@ regions that another color can stand in for are left out before. What crosses is
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -33,6 +33,7 @@ BUDGET = 200_000
 """Choices that are tried before a certificate is given up; some seconds."""
 
 Outcome = Literal["verified", "refused", "budget exceeded", "no certificate"]
+_NAMED = 20
 _STRICT = ConfigDict(extra="forbid", strict=True)
 
 
@@ -127,6 +128,13 @@ class _Certificate:
 
 _CERTIFICATE = TypeAdapter(_Certificate)
 _CELLS = TypeAdapter(_Part)
+
+
+def _few(cells: Iterable[int]) -> str:
+    """Cells as a list, which is cut off where nobody would read on."""
+    named = sorted(set(cells))
+    further = len(named) - _NAMED
+    return str(named) if further <= 0 else f"{named[:_NAMED]} and {further} more"
 
 
 class _Refused(Exception):
@@ -243,7 +251,7 @@ class _Proof:
             if possible:
                 least = f"fewer than {pieces}"
                 what = "segments" if part.conflicts else "color regions"
-                raise _Refused(f"{least} {what} touch all of the cells {sorted(set(part.cells))}")
+                raise _Refused(f"{least} {what} touch all of the cells {_few(part.cells)}")
 
     def _beside_hubs(self, part: _Part) -> dict[int, frozenset[ColorRegion]]:
         """The color regions that are left of each cell to be touched when hubs are taken away."""
@@ -310,7 +318,7 @@ class _Proof:
                 if within and region[0] in self._instance.joinable(abs(dart)):
                     together.join(edge.left, edge.right)
         if len(together.sets()) > 1:
-            raise _Refused(f"the cells {sorted(cells)} are not connected in color {region[0]}")
+            raise _Refused(f"the cells {_few(cells)} are not connected in color {region[0]}")
 
     def _region(self, color: int, cell: int) -> ColorRegion:
         for region in self._regions_of(cell):

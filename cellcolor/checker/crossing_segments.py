@@ -60,6 +60,8 @@ class TwoRegions:
         first, second = self.cells
         if not set(one) <= first - second or not set(other) <= second - first:
             return False
+        if not all(self._lists[cell] for cell in (*one, *other)):
+            return False  # a cell without loops is a surface by itself: nothing leads out of it
         walls = self._same_wall(other, 0) and self._same_wall(one, 1)
         if not walls or not self._on_a_sphere[one[0]]:
             return False

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import product
 
 
@@ -18,27 +18,35 @@ def can_be_drawn(loops: Sequence[Sequence[int]]) -> bool:
     Args:
         loops: for each loop of the cell the sub-cells of its darts in state 1, in cyclic order.
     """
-    rest = _reduced([list(loop) for loop in loops])
-    if not rest:
-        return True
+    trail = [iter([[list(loop) for loop in loops]])]
+    while trail:
+        rest = next(trail[-1], None)
+        if rest is None:
+            trail.pop()
+        elif rest := _reduced(rest):
+            trail.append(_cut_open(rest))
+        else:
+            return True
+    return False
+
+
+def _cut_open(rest: list[list[int]]) -> Iterator[list[list[int]]]:
+    """The loops with one less, for each way to part a sub-cell's darts; none if there is none."""
     where = {(label, number) for number, loop in enumerate(rest) for label in loop}
     on_loops = Counter(label for label, _ in where)
     shared = next((label for label, count in on_loops.items() if count > 1), None)
     if shared is None:
-        return False  # sub-cells that interleave on one loop
+        return  # sub-cells that interleave on one loop
     one, other, *more = sorted(rest, key=lambda loop: shared not in loop)
     left, right = max(on_loops) + 1, max(on_loops) + 2
     merged = [left, *_after(one, shared), right, *_after(other, shared)]
     count = sum(loop.count(shared) for loop in [merged, *more])
     for chosen in product((left, right), repeat=count):
         sides = iter(chosen)
-        relabelled = [
+        yield [
             [next(sides) if label == shared else label for label in loop]
             for loop in [merged, *more]
         ]
-        if can_be_drawn(relabelled):
-            return True
-    return False
 
 
 def _after(loop: list[int], label: int) -> list[int]:

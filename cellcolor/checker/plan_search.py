@@ -4,16 +4,22 @@ A segment lies in one color region, and touches some of its cells. Two segments 
 conflict cannot both touch all that the conflict names. Each cell has to be touched by some segment,
 so a cell that is not touched yet is given to each segment that can still touch it, and to a new one
 in each of its color regions. With no conflicts that is a search for a set cover.
+
+Cells that neither color regions nor conflicts connect, not even by way of other cells, are touched
+by different segments that do not mind each other. So each such group is searched by itself, and the
+numbers add up.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
 from operator import or_
 
 from cellcolor.checker.color_regions import ColorRegion
+from cellcolor.checker.groups import Groups
 from cellcolor.deadline import NEVER, Deadline
 
 __all__ = ["BudgetExceeded", "Conflict", "PlanSearch"]
@@ -57,6 +63,15 @@ class _Segment:
         return _Segment(self.region, (a | more[0], b | more[1], c | more[2], d | more[3]))
 
 
+@dataclass(frozen=True, slots=True)
+class _State:
+    """Some segments, the cells that are left to be touched, and how many more segments may be."""
+
+    found: tuple[_Segment, ...]
+    left: tuple[int, ...]
+    more: int
+
+
 class PlanSearch:
     """Every way to touch some cells with a number of segments.
 
@@ -82,6 +97,7 @@ class PlanSearch:
         self._regions = regions
         self._budget = budget
         self._deadline = deadline
+        self._in_conflict = {conflict.regions for conflict in conflicts}
         ends: dict[tuple[ColorRegion, int], list[int]] = {}
         for number, conflict in enumerate(conflicts):
             for end, cells in enumerate(conflict.cells):
@@ -98,61 +114,120 @@ class PlanSearch:
         Raises:
             BudgetExceeded: too many choices have been tried.
         """
-        return self._extends([], set(self._regions), segments)
+        groups = sorted(self._groups(), key=len)
+        fewest = [self._need_segments_of_their_own(cells) for cells in groups]
+        spare = segments - sum(fewest)
+        for cells, number in zip(groups, fewest, strict=True):
+            while spare >= 0 and not self._can_touch(cells, number):
+                number += 1
+                spare -= 1
+        return spare >= 0
 
-    def _extends(self, found: list[_Segment], left: set[int], more: int) -> bool:
-        """Whether some segments and ``more`` new ones can touch the cells that are left, too."""
-        if not left:
-            return True
-        connected = [segment.connects for segment in found]
-        first = reduce(or_, (bits for bits, _ in connected), 0)
-        second = reduce(or_, (bits for _, bits in connected), 0)
-        able = {cell: self._able(found, (first, second), cell) for cell in left}
-        if self._need_segments_of_their_own([c for c in left if not able[c]]) > more:
-            return False
-        opened = {cell: len(self._regions[cell]) if more > 0 else 0 for cell in left}
-        cell = min(left, key=lambda cell: (len(able[cell]) + opened[cell], cell))
-        rest = left - {cell}
-        for number, grown in able[cell]:
-            self._count()
-            if self._extends([*found[:number], grown, *found[number + 1 :]], rest, more):
+    def _groups(self) -> list[tuple[int, ...]]:
+        """The cells, apart where neither color regions nor conflicts connect them."""
+        together: Groups[ColorRegion] = Groups()
+        for regions in self._regions.values():
+            first, *others = regions
+            together.find(first)
+            for other in others:
+                together.join(first, other)
+        for one, other in self._in_conflict:
+            together.join(one, other)
+        groups: dict[ColorRegion, list[int]] = defaultdict(list)
+        for cell in sorted(self._regions):
+            groups[together.find(min(self._regions[cell]))].append(cell)
+        return [tuple(cells) for cells in groups.values()]
+
+    def _can_touch(self, cells: tuple[int, ...], segments: int) -> bool:
+        """Whether so many segments can touch some cells, by depth first search."""
+        trail = [iter([_State((), cells, segments)])]
+        while trail:
+            state = next(trail[-1], None)
+            if state is None:
+                trail.pop()
+                continue
+            if not state.left:
                 return True
-        for region in sorted(self._regions[cell]) if more > 0 else ():
-            self._count()
-            opening = _Segment(region, self._ends.get((region, cell), (0, 0, 0, 0)))
-            if self._extends([*found, opening], rest, more - 1):
-                return True
+            trail.append(self._choices(state))
         return False
 
-    def _count(self) -> None:
-        self.tried += 1
+    def _choices(self, state: _State) -> Iterator[_State]:
+        """Each way to touch one more cell; a state without cells if nothing is left to choose."""
+        found, more = state.found, state.more
+        able = self._able_to_touch(state)
+        # What a segment can touch without being any nearer to a conflict costs nothing.
+        left = [c for c in state.left if not any(grown == found[n] for n, grown in able[c])]
+        if self._need_segments_of_their_own([c for c in left if not able[c]]) > more:
+            return iter(())
+        if not left:
+            return iter([_State(found, (), more)])
+        regions_of = self._regions if more > 0 else dict.fromkeys(left, frozenset[ColorRegion]())
+        cell = min(left, key=lambda c: (len(able[c]) + len(regions_of[c]), c))
+        rest = tuple([c for c in left if c != cell])
+        return self._touching(cell, able[cell], sorted(regions_of[cell]), _State(found, rest, more))
+
+    def _touching(
+        self,
+        cell: int,
+        able: Sequence[tuple[int, _Segment]],
+        regions: Sequence[ColorRegion],
+        state: _State,
+    ) -> Iterator[_State]:
+        """A state with a cell touched: by each segment that is able to, or a new one."""
+        found, rest, more = state.found, state.left, state.more
+        for number, grown in able:
+            self._count(len(rest))
+            yield _State((*found[:number], grown, *found[number + 1 :]), rest, more)
+        for region in regions:
+            self._count(len(rest))
+            opening = _Segment(region, self._ends.get((region, cell), (0, 0, 0, 0)))
+            yield _State((*found, opening), rest, more - 1)
+
+    def _able_to_touch(self, state: _State) -> dict[int, list[tuple[int, _Segment]]]:
+        """For each cell the numbers of the segments that can touch it, and each as it is then."""
+        connected = [segment.connects for segment in state.found]
+        first = reduce(or_, (bits for bits, _ in connected), 0)
+        second = reduce(or_, (bits for _, bits in connected), 0)
+        numbers: dict[ColorRegion, list[int]] = defaultdict(list)
+        for number, segment in enumerate(state.found):
+            numbers[segment.region].append(number)
+        return {c: self._able(state.found, numbers, (first, second), c) for c in state.left}
+
+    def _count(self, cells: int) -> None:
+        """Count a choice among so many cells; every fifty of them count as one more."""
+        self.tried += 1 + cells // 50
         if self.tried > self._budget or self._deadline.over:
             raise BudgetExceeded
 
     def _able(
-        self, found: Sequence[_Segment], connected: tuple[int, int], cell: int
+        self,
+        found: Sequence[_Segment],
+        numbers: Mapping[ColorRegion, list[int]],
+        connected: tuple[int, int],
+        cell: int,
     ) -> list[tuple[int, _Segment]]:
         """The numbers of the segments that can touch a cell too, and each as it is then.
 
         Args:
             found: the segments.
+            numbers: those of the segments in each color region.
             connected: the conflicts of which some segment is the first, and the second, as bits.
             cell: the cell.
         """
         able = []
-        for number, segment in enumerate(found):
-            if segment.region not in self._regions[cell]:
-                continue
-            more = self._ends.get((segment.region, cell))
-            if more is None:
-                able.append((number, segment))
-                continue
-            grown = segment.grown(more)
-            # A segment is of one region, so that it never is both segments of a conflict.
-            first, second = grown.connects
-            if not (first & connected[1] or second & connected[0]):
-                able.append((number, grown))
-        return able
+        for region in self._regions[cell]:
+            more = self._ends.get((region, cell))
+            for number in numbers.get(region, ()):
+                segment = found[number]
+                if more is None:
+                    able.append((number, segment))
+                    continue
+                grown = segment.grown(more)
+                # A segment is of one region, so that it never is both segments of a conflict.
+                first, second = grown.connects
+                if not (first & connected[1] or second & connected[0]):
+                    able.append((number, grown))
+        return sorted(able, key=lambda choice: choice[0])
 
     def _need_segments_of_their_own(self, cells: Sequence[int]) -> int:
         """Of cells that no segment can touch: so many are in different color regions altogether."""

@@ -95,17 +95,22 @@ def unavoidable_join_on_loops(cells: Sequence[PaintedLoops], joinable: Joinable)
                 open_loops.append((loop, colors))
     open_loops.sort(key=lambda item: len(item[1]))
 
-    def stuck(number: int) -> Strand | None:
-        found = unavoidable_join(settled, joinable)
-        if found is not None or number == len(open_loops):
-            return found
-        loop, colors = open_loops[number]
-        for color in colors:
-            settled.append(PaintedCell(loop.darts, {}, [color]))
-            found = stuck(number + 1)
-            settled.pop()
-            if found is None:
-                return None
+    found = unavoidable_join(settled, joinable)
+    if found is not None or not open_loops:
         return found
-
-    return stuck(0)
+    known = len(settled)
+    trail = [iter(open_loops[0][1])]
+    while trail:
+        loop, _ = open_loops[len(trail) - 1]
+        color = next(trail[-1], None)
+        del settled[known + len(trail) - 1 :]  # the color before
+        if color is None:
+            trail.pop()
+            continue
+        settled.append(PaintedCell(loop.darts, {}, [color]))
+        found = unavoidable_join(settled, joinable)
+        if found is None and len(trail) == len(open_loops):
+            return None
+        if found is None:
+            trail.append(iter(open_loops[len(trail)][1]))
+    return found

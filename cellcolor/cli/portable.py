@@ -75,7 +75,7 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
         lower_bound=0,
         surface_lower_bound=0,
         proved_for_surface=segments == 0,
-        seams=(),
+        seams=found.seams,
         cells=found.division,
         seconds=0.0,
         bounds=(),

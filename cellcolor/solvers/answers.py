@@ -7,11 +7,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division
+from cellcolor.data.solution import Division, Seam
 from cellcolor.errors import InputError
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.linear.coloring import Coloring
 from cellcolor.solvers.linear.reading import joined_and_linked, require_solution
+from cellcolor.solvers.seamed import Seamed
 
 __all__ = ["ANSWERS", "OutsideAnswer", "read_answer"]
 
@@ -22,11 +23,13 @@ class OutsideAnswer:
 
     Attributes:
         division: the one that it describes.
+        seams: what its darts refer to.
         segments: how many the answer says there are; None if it does not.
         claims_optimum: it says that there are no fewer. Nothing here has verified that.
     """
 
     division: Division
+    seams: tuple[Seam, ...]
     segments: int | None
     claims_optimum: bool
 
@@ -43,7 +46,7 @@ def read_answer(instance: Instance, text: str, kind: str) -> OutsideAnswer:
     """The best division of an answer.
 
     Args:
-        instance: the one that was exported; cells with one live loop.
+        instance: the one that was exported.
         text: what the solver printed, or the file of its solution.
         kind: one of ``ANSWERS``.
 
@@ -51,10 +54,13 @@ def read_answer(instance: Instance, text: str, kind: str) -> OutsideAnswer:
         InputError: there is no solution in it, or it is not one of this instance's model.
         TooLarge: the instance's model is too large to be held against the answer.
     """
-    parsed = ANSWERS[kind](instance, text)
-    _require_chains(instance, parsed)
-    division = division_of_chains(instance, parsed.color, parsed.after)
-    return OutsideAnswer(division, parsed.segments, parsed.claims_optimum)
+    seamed = Seamed(instance)
+    parsed = ANSWERS[kind](seamed.instance, text)
+    _require_chains(seamed.instance, parsed)
+    division = division_of_chains(seamed.instance, parsed.color, parsed.after)
+    if seamed.seams:
+        division = seamed.division(division)
+    return OutsideAnswer(division, seamed.seams, parsed.segments, parsed.claims_optimum)
 
 
 def _opb(instance: Instance, text: str) -> _Parsed:

@@ -19,6 +19,7 @@ from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
 from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver
 from cellcolor.solvers.registry import DEFAULT, make_solver
+from cellcolor.solvers.seamed import Seamed
 
 __all__ = [
     "check_able",
@@ -89,12 +90,11 @@ def solve(
     Raises:
         InputError: there is no such solver, or it is not able to do what is asked; or there are
             too many strands.
+        TooLarge: the seams of cells with several loops would need too many strands.
         RefusedResult: the checker refuses what the solver found.
     """
     check_able(solver, options)
     chosen = make_solver(solver)
-    if not chosen.abilities.several_loops:
-        _check_loops(solver, instance, "divides cells")
     live = len(instance.live_edges)
     if 2 * live * options.strands > MOST_DARTS:
         raise InputError(
@@ -104,7 +104,14 @@ def solve(
             f"they may have {MOST_DARTS} darts together",
         )
     start = time.monotonic()
-    answer = chosen.minimize(instance, options, progress)
+    if chosen.abilities.several_loops:
+        answer = chosen.minimize(instance, options, progress)
+    else:
+        seamed = Seamed(instance)
+        answer = chosen.minimize(seamed.instance, options, progress)
+        if answer.division is not None and seamed.seams:
+            division = seamed.division(answer.division)
+            answer = replace(answer, division=division, seams=seamed.seams)
     if instance.nothing_to_cover:
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."

@@ -108,7 +108,8 @@ class Abilities:
     """What a solver declares that it can do; it is asked for nothing else.
 
     A live loop is a border loop with edges that can be joined. Every solver divides cells with one
-    live loop in the search space ``paper``.
+    live loop in the search space ``paper``. One that divides no others is given the strands of
+    seams as edges (:mod:`cellcolor.solvers.seamed`).
 
     Attributes:
         search_spaces: those that it can search.

@@ -13,6 +13,7 @@ from cellcolor.solvers.linear.coloring import Coloring
 from cellcolor.solvers.linear.constraints import Model
 from cellcolor.solvers.linear.formats import mps, opb, wcnf
 from cellcolor.solvers.minizinc.data import minizinc_data
+from cellcolor.solvers.seamed import Seamed
 
 __all__ = ["PORTABLE", "Portable"]
 
@@ -39,14 +40,14 @@ def _title(instance: Instance) -> str:
 
 def _linear(lines: Callable[[Model, str], Iterator[str]]) -> Callable[[Instance], Iterator[str]]:
     def write(instance: Instance) -> Iterator[str]:
-        return lines(Coloring(instance).model, _title(instance))
+        return lines(Coloring(Seamed(instance).instance).model, _title(instance))
 
     return write
 
 
 def _text(mark: str, text: Callable[[Instance], str]) -> Callable[[Instance], Iterator[str]]:
     def write(instance: Instance) -> Iterator[str]:
-        body = text(instance)
+        body = text(Seamed(instance).instance)
         return iter([f"{mark} cellcolor: {_title(instance)}", *body.splitlines()])
 
     return write

@@ -21,7 +21,7 @@ from cellcolor.checker.certificates import BoundVerdict, verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.crossing_segments import TwoRegions
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs, planar_graph
@@ -230,3 +230,14 @@ def test_one_region_in_two_parts_is_refused() -> None:
     twice = bound.certificate | {"parts": bound.certificate["parts"] * 2}
     claim = Bound("conflicts", 2 * bound.value, "surface", twice)
     assert verdict(instance, claim).reason == "one color region lies in two parts"
+
+
+def test_a_conflict_of_cells_without_loops_is_refused() -> None:
+    """Each is a closed surface by itself: no segment connects it with anything."""
+    cells = tuple(Cell(number, own, ()) for number, own in enumerate([(0,), (1,), (0, 1)]))
+    instance = Instance("no loops", ("a", "b"), cells, ())
+    conflict = {"colors": [0, 1], "one": [[0], [0]], "other": [[1], [1]]}
+    part = {"value": 4, "cells": [0, 1, 2], "conflicts": [conflict]}
+    bound = Bound("conflicts", 4, "surface", {"left_out": [], "parts": [part]})
+    verdict = verify_bound(instance, bound, regions_of_cells(instance))
+    assert (verdict.outcome, "need not cross" in verdict.reason) == ("refused", True)

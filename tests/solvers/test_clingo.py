@@ -11,7 +11,7 @@ from petals import four_colors_in_turn
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.deadline import Deadline
-from cellcolor.errors import InputError, TooLarge
+from cellcolor.errors import TooLarge
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, planar_graph
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.clingo import asp_facts
@@ -55,11 +55,6 @@ def test_facts_are_the_live_graph() -> None:
         *("cell(0).", "at(0,0,7).", "cell(1).", "at(1,0,-7)."),
         *("side(7,7).", "side(7,-7).", "joinable(7,2)."),
     ]
-
-
-def test_cells_with_several_loops_are_refused() -> None:
-    with pytest.raises(InputError, match="one live loop only, this one has 2"):
-        solve(Instance.read(PAPER / "annulus.json"), Options(), "clingo")
 
 
 def test_models_that_would_not_be_written_in_time_are_refused() -> None:

@@ -74,12 +74,8 @@ class TestAbilities:
             self.found(name, options)
 
     def test_several_loops(self, name: str) -> None:
-        if make_solver(name).abilities.several_loops:
-            expected = solve(ANNULUS, Options(), REFERENCE).segments
-            assert self.found(name, Options(), ANNULUS) == expected
-            return
-        with pytest.raises(InputError, match=f"the solver {name} divides cells with one live"):
-            self.found(name, Options(), ANNULUS)
+        expected = solve(ANNULUS, Options(), REFERENCE).segments
+        assert self.found(name, Options(), ANNULUS) == expected
 
     def test_start(self, name: str) -> None:
         best = solve(INSTANCE, Options(), REFERENCE)

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import itertools
+import json
 import random
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -20,16 +21,26 @@ from meshes import drawn
 
 import cellcolor
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
-from cellcolor.lab.families import MEDIUM, blobs
+from cellcolor.lab.families import LARGE, MEDIUM, blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
-__all__ = ["FORGERIES", "Original", "claims_truth", "forge", "large", "small"]
+__all__ = [
+    "FORGERIES",
+    "Original",
+    "cells_without_loops",
+    "claims_truth",
+    "forge",
+    "large",
+    "small",
+]
 
 MOST_COLORINGS = 2_000
+SECONDS = 5
 SHAPES: tuple[tuple[str, dict[str, list[int]]], ...] = (
     ("RRBBM", {"R": [0], "B": [1], "M": [0, 1]}),
     ("RRBBGM", {"R": [0], "B": [1], "G": [2], "M": [0, 1, 2]}),
@@ -84,17 +95,29 @@ def large() -> Iterator[Original]:
         yield from _originals(file.name, cellcolor.decompose(file))
     for seed in range(6):
         yield from _originals(f"blobs {seed}", cellcolor.decompose(blobs(seed)))
+    yield from _originals("cells without loops", cells_without_loops())
+    for seed in range(3):
+        torus = LARGE["torus"](seed)
+        graph = torus if isinstance(torus, Instance) else cellcolor.decompose(torus)
+        yield from _originals(f"torus {seed}", graph)
     for seed in (5, 22):
         thin = cellcolor.decompose(blobs(seed, size=20, thin=True))
         yield from _originals(f"thin bands {seed}", thin)
     yield from _originals("rim 1", cellcolor.decompose(MEDIUM["rim"](1)))
 
 
+def cells_without_loops() -> Instance:
+    """Closed surfaces of one cell each, beside two cells that share an edge."""
+    alone = tuple(Cell(n, (n % 2, 2), ()) for n in range(6))
+    pair = Cell(6, (0, 1), ((1,),)), Cell(7, (1, 2), ((-1,),))
+    return Instance("cells without loops", ("a", "b", "c"), (*alone, *pair), (Edge(1, 6, 7),))
+
+
 def _originals(
     name: str, instance: Instance, surface: LabelledSurface | None = None
 ) -> Iterator[Original]:
     """The bounds of an instance that meet its minimum, with parts in their certificates."""
-    solution = solve(instance, Options(workers=1))
+    solution = solve(instance, Options(workers=1, deadline=Deadline.after(SECONDS)))
     for bound in solution.bounds or ():
         certificate = bound.certificate
         if certificate is None or bound.value != solution.segments:
@@ -102,7 +125,7 @@ def _originals(
         if bound.kind == "cover":
             part = {"value": bound.value, "cells": certificate["cells"], "conflicts": []}
             certificate = {"left_out": [], "parts": [part]}
-        proved = Bound("conflicts", bound.value, "surface", certificate)
+        proved = Bound("conflicts", bound.value, "surface", json.loads(json.dumps(certificate)))
         yield Original(name, instance, proved, surface)
 
 
@@ -178,6 +201,80 @@ def _wrong_hub(chance: random.Random, original: Original, forged: Certificate) -
     return 0
 
 
+def _long_list(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """One cell, conflict or step is there thousands of times, or every cell is named."""
+    part = chance.choice(forged["parts"])
+    name = chance.choice(["cells", "conflicts", "left_out"])
+    listed = forged["left_out"] if name == "left_out" else part[name]
+    if name == "cells":
+        part["cells"] = [cell.id for cell in original.instance.cells] * 40
+    else:
+        listed.extend(listed[:1] * 3_000)
+    part["value"] += 1
+    return 1
+
+
+def _many_parts(_: random.Random, original: Original, forged: Certificate) -> int:
+    """A part for every cell, as if no color region lay in two."""
+    cells = original.instance.cells
+    forged["parts"] = [{"value": 1, "cells": [cell.id], "conflicts": []} for cell in cells]
+    return 1 + original.bound.value
+
+
+def _wrong_type(chance: random.Random, _: Original, forged: Certificate) -> int:
+    """Something that no certificate has, at any place of it."""
+    nonsense = [None, True, 1.5, "0", [], {}, [[]], -1, 10**30, {"cells": [0]}]
+    places = list(_places(forged))
+    holder, key = chance.choice(places)
+    holder[key] = copy.deepcopy(chance.choice(nonsense))
+    return 1
+
+
+def _wrong_member(chance: random.Random, _: Original, forged: Certificate) -> int:
+    """A member is missing, is one too many, or has another name."""
+    holder = chance.choice([forged, *forged["parts"]])
+    member = chance.choice(sorted(holder))
+    content = holder.pop(member)
+    if chance.random() < 0.5:
+        holder[chance.choice(["Cells", "", "of", "value "])] = content
+    return 1
+
+
+def _wrong_id(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A cell or color that does not exist."""
+    size = len(original.instance.cells)
+    wrong = chance.choice([-1, -size, size, size + 1, 2**31, 2**63, -(2**64)])
+    places = [(holder, key) for holder, key in _places(forged) if type(holder[key]) is int]
+    holder, key = chance.choice([place for place in places if place[1] != "value"] or places)
+    holder[key] = wrong
+    return 1
+
+
+def _duplicates(chance: random.Random, _: Original, forged: Certificate) -> int:
+    """A part twice, or its cells, conflicts and hubs as hubs of another one."""
+    part = copy.deepcopy(chance.choice(forged["parts"]))
+    kind = chance.randrange(3)
+    if kind == 1:
+        part["hubs"] = [*part["cells"], *part["cells"]]
+    elif kind == 2:
+        part["cells"] = part["cells"] * 2
+        part["conflicts"] = part["conflicts"] * 2
+    forged["parts"].append(part)
+    return max(1, part["value"]) if kind == 0 else 1
+
+
+def _places(holder: Any) -> Iterator[tuple[Any, Any]]:
+    """Every place in some nested lists and objects: what holds it, and the key or index there."""
+    todo = [holder]
+    while todo:
+        inner = todo.pop()
+        keys = sorted(inner) if isinstance(inner, dict) else range(len(inner))
+        for key in keys:
+            yield inner, key
+            if isinstance(inner[key], (dict, list)):
+                todo.append(inner[key])
+
+
 FORGERIES: dict[str, Callable[[random.Random, Original, Certificate], int]] = {
     "a swapped cell": _swapped_cell,
     "a shortened list": _shortened_list,
@@ -186,6 +283,12 @@ FORGERIES: dict[str, Callable[[random.Random, Original, Certificate], int]] = {
     "a wrong number": _wrong_number,
     "a color left out wrongly": _left_out_wrongly,
     "a wrong hub": _wrong_hub,
+    "a long list": _long_list,
+    "a part for every cell": _many_parts,
+    "a wrong type": _wrong_type,
+    "a wrong member": _wrong_member,
+    "a cell that is not there": _wrong_id,
+    "something twice": _duplicates,
 }
 """Each changes a certificate and says how many segments more the bound claims."""
 
@@ -243,8 +346,8 @@ def claims_truth(original: Original, forged: Bound) -> bool:
     On a large instance never: a division has fewer segments than it claims.
     """
     certificate = forged.certificate
-    if original.surface is None or certificate is None:
-        return False
+    if original.surface is None or certificate is None or forged.value > original.bound.value:
+        return False  # a division exists that has fewer segments
     colorings: Sequence[tuple[_Segment, ...]] = _colorings(original)
     fewest = min(map(len, colorings))
     for color, cell, _ in certificate["left_out"]:

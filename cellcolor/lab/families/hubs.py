@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import random
 from collections.abc import Sequence
-from functools import cache
 
 from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, KnownResult, KnownResults
 from cellcolor.errors import InputError
@@ -175,18 +174,16 @@ def hub_minimum(petal_colors: Sequence[int]) -> int:
     The corridors join petals of one color without crossing. A petal is the first of its interval
     and stays alone, or is joined to a later one, which leaves what lies between and beyond.
     """
-
-    @cache
-    def joined(first: int, last: int) -> int:
-        if first >= last:
-            return 0
-        best = joined(first + 1, last)
-        for k in range(first + 1, last + 1):
+    size = len(petal_colors)
+    joined = [[0] * (size + 1) for _ in range(size + 1)]  # of the petals before the second index
+    for first in reversed(range(size)):
+        own = joined[first] = joined[first + 1][:]
+        for k in range(first + 1, size):
             if petal_colors[k] == petal_colors[first]:
-                best = max(best, joined(first + 1, k - 1) + 1 + joined(k, last))
-        return best
-
-    return len(petal_colors) - joined(0, len(petal_colors) - 1)
+                between = joined[first + 1][k] + 1
+                for end in range(k + 1, size + 1):
+                    own[end] = max(own[end], between + joined[k][end])
+    return size - joined[0][size]
 
 
 def hub_grid(seed: int, rows: int, columns: int, colors: int, side: int = 2) -> Instance:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.union_find import UnionFind
 
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
@@ -103,7 +104,7 @@ def set_cover(
     regions = color_regions(instance, colors)
     touching = _touching(regions, len(instance.cells))
     greedy = _greedy(regions, touching)
-    found = _smallest(regions, touching, EFFORT, deadline, greedy)
+    found = _smallest(touching, EFFORT, deadline, greedy)
     numbers = greedy if found.chosen is None else found.chosen
     return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
 
@@ -112,8 +113,8 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     """A few cells that fewer than ``value`` color regions do not touch: why a cover is not smaller.
 
     With as many cells as ``value`` no two of them lie in one color region: they are strangers,
-    which can be seen by eye. Where there are no such cells, cells are added that a smallest cover
-    of those before leaves out.
+    which can be seen by eye. Where there are no such cells, each group of cells that color regions
+    connect has its own: cells are added that a smallest cover of those before leaves out.
 
     Args:
         instance: the topological graph.
@@ -124,17 +125,39 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
         The cells, ascending; None if none were found in time.
     """
     cells = greedy_strangers(instance)
-    if len(cells) < value and not deadline.over:
-        cells = max(cells, _strangers(instance, deadline), key=len)
     if len(cells) >= value:
         return sorted(cells)[:value]
-    regions = color_regions(instance)
-    touching = _touching(regions, len(instance.cells))
-    hardest_first = sorted(range(len(touching)), key=lambda cell: len(touching[cell]))
+    touching = _touching(color_regions(instance), len(instance.cells))
+    found: list[int] = []
+    for group in sorted(_groups(touching), key=len):
+        if value > 0 and not deadline.over:
+            demands = [touching[cell] for cell in group]
+            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline).bound)
+            hard = _hard_cells_of(group, need, touching, deadline)
+            if hard is None:
+                return None
+            found += hard
+            value -= need
+    return sorted(found) if value == 0 else None
+
+
+def _hard_cells_of(
+    group: Sequence[int],
+    value: int,
+    touching: Sequence[set[int]],
+    deadline: Deadline,
+) -> list[int] | None:
+    """:func:`hard_cells` of cells that no color region connects with others."""
+    cells = _apart(group, touching)
+    if len(cells) < value:
+        cells = max(cells, _strangers(group, touching, deadline), key=len)
+    if len(cells) >= value:
+        return cells[:value]
+    hardest_first = sorted(group, key=lambda cell: len(touching[cell]))
     while not deadline.over:
-        found = _smallest(regions, (touching[cell] for cell in cells), CERTIFICATE_EFFORT, deadline)
+        found = _smallest((touching[cell] for cell in cells), CERTIFICATE_EFFORT, deadline)
         if found.bound >= value:
-            return sorted(cells)
+            return cells
         missed = (c for c in hardest_first if touching[c].isdisjoint(found.chosen or ()))
         if found.chosen is None or (cell := next(missed, None)) is None:
             return None
@@ -142,17 +165,22 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     return None
 
 
-def _strangers(instance: Instance, deadline: Deadline) -> list[int]:
+def _strangers(group: Sequence[int], touching: Sequence[set[int]], deadline: Deadline) -> list[int]:
     """Many cells of which no two lie in one color region, the most if there is time to prove it."""
     from ortools.sat.python import cp_model
 
     model = cp_model.CpModel()
-    chosen = [model.new_bool_var("") for _ in instance.cells]
-    for _, cells in color_regions(instance):
-        if len(cells) > 1:
-            model.add_at_most_one(chosen[cell] for cell in sorted(cells))
+    chosen = [model.new_bool_var("") for _ in group]
+    own: dict[int, list[cp_model.IntVar]] = {}
+    for cell, literal in zip(group, chosen, strict=True):
+        for number in sorted(touching[cell]):
+            own.setdefault(number, []).append(literal)
+    for literals in own.values():
+        if len(literals) > 1:
+            model.add_at_most_one(literals)
     model.maximize(sum(chosen))
-    return sorted(_solve(model, chosen, CERTIFICATE_EFFORT, deadline).chosen or ())
+    found = _solve(model, chosen, CERTIFICATE_EFFORT, deadline).chosen or ()
+    return [group[place] for place in sorted(found)]
 
 
 def greedy_strangers(instance: Instance, without: Collection[int] = ()) -> list[int]:
@@ -164,14 +192,28 @@ def greedy_strangers(instance: Instance, without: Collection[int] = ()) -> list[
     """
     colors = [frozenset(() if c.id in without else c.colors) for c in instance.cells]
     touching = _touching(color_regions(instance, colors), len(instance.cells))
+    return _apart((c for c in range(len(touching)) if c not in without), touching)
+
+
+def _apart(cells: Iterable[int], touching: Sequence[set[int]]) -> list[int]:
+    """Some of the cells, of which no two lie in one color region."""
     used: set[int] = set()
     found = []
-    left = (cell for cell in range(len(touching)) if cell not in without)
-    for cell in sorted(left, key=lambda cell: len(touching[cell])):
+    for cell in sorted(cells, key=lambda cell: len(touching[cell])):
         if used.isdisjoint(touching[cell]):
             found.append(cell)
             used.update(touching[cell])
     return found
+
+
+def _groups(demands: Sequence[Collection[int]]) -> list[list[int]]:
+    """The places of demands, apart where no region, by way of whichever others, meets two."""
+    first: dict[int, int] = {}
+    together = UnionFind(range(len(demands)))
+    for place, numbers in enumerate(demands):
+        for number in numbers:
+            together.union(first.setdefault(number, place), place)
+    return sorted(map(sorted, together.sets()))
 
 
 def _touching(regions: Sequence[Region], cells: int) -> list[set[int]]:
@@ -184,7 +226,6 @@ def _touching(regions: Sequence[Region], cells: int) -> list[set[int]]:
 
 
 def _smallest(
-    regions: Sequence[Region],
     demands: Iterable[set[int]],
     effort: float,
     deadline: Deadline,
@@ -193,16 +234,27 @@ def _smallest(
     """The fewest regions that meet all demands, sets of which one region at least is needed."""
     from ortools.sat.python import cp_model  # slow to import, so only where it is used
 
-    model = cp_model.CpModel()
-    chosen = [model.new_bool_var("") for _ in regions]
+    chosen: set[int] | None = set()
+    bound = 0
     # Cells that the same regions touch are one demand.
-    for demand in sorted({tuple(sorted(numbers)) for numbers in demands}):
-        model.add_bool_or(chosen[number] for number in demand)
-    if hint:
-        for number, literal in enumerate(chosen):
-            model.add_hint(literal, number in hint)
-    model.minimize(sum(chosen))
-    return _solve(model, chosen, effort, deadline)
+    different = sorted({tuple(sorted(numbers)) for numbers in demands})
+    # Demands that nothing connects are models of their own: together they would be a hard one.
+    for places in _groups(different):
+        model = cp_model.CpModel()
+        own = sorted({number for place in places for number in different[place]})
+        literal = {number: model.new_bool_var("") for number in own}
+        for place in places:
+            model.add_bool_or(literal[number] for number in different[place])
+        for number in own if hint else ():
+            model.add_hint(literal[number], number in hint)
+        model.minimize(sum(literal.values()))
+        found = _solve(model, list(literal.values()), effort, deadline)
+        bound += found.bound
+        if chosen is None or found.chosen is None:
+            chosen = None
+        else:
+            chosen |= {own[place] for place in found.chosen}
+    return _Found(chosen, bound)
 
 
 def _greedy(regions: Sequence[Region], touching: Sequence[set[int]]) -> set[int]:

@@ -104,6 +104,8 @@ class Planning:
             plan = planner.plan(self._part.bound, attempt, self._effort > PLAN_EFFORT)
             if plan is None:
                 self._part.raise_to(self._part.bound + 1, for_surface=True)
+                if not planner.heeds_conflicts:
+                    self._part.cover_bound = self._part.bound  # nothing but the cells was heeded
                 continue
             self._part.planned = [segment.region for segment in plan]
             # Looking for segments that cross takes longer than routing when none do. With 0 rings

@@ -3,7 +3,7 @@
 A cell is coded dart by dart: ``1`` where its painting continues across the edge, ``0`` where it
 does not. In a simple cell (section IV-B) all ``1`` belong to the one painted cell. A complex cell
 (section IV-C) may have sub-cells: a run of ``×`` stands for darts that another sub-cell takes,
-which is coded in turn, in brackets, inside that run. Here both are one recursion along the cyclic
+which is coded in turn, in brackets, inside that run. Here both are one search along the cyclic
 list. The sub-cells whose brackets are still open form a stack; every dart is a ``0``, goes on with
 a sub-cell of the stack (which closes the brackets above it) or opens a bracket. Since the first
 ``1`` always belongs to the outermost sub-cell, no division is coded twice.
@@ -22,6 +22,9 @@ __all__ = ["CellScheme", "DartKnowledge", "cell_schemes", "code", "divisions", "
 DartKnowledge = tuple[int, int | None] | None
 """What is known of an edge from the cell beyond it: ``(1, color)``, ``(0, color)`` when the other
 side certainly shows that color, ``(0, None)`` when it may show either of two, None if unsolved."""
+
+_Place = tuple[int, tuple[int, ...], int]
+"""The next dart, the open sub-cells, and the last dart in state 1, -1 before there is one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,7 +85,7 @@ def cell_schemes(
 
 
 class _CellSearch:
-    """The recursion of :func:`cell_schemes`."""
+    """The search of :func:`cell_schemes`."""
 
     def __init__(self, cell: GraphCell, known: Sequence[DartKnowledge], deadline: Deadline) -> None:
         self._cell = cell
@@ -101,13 +104,18 @@ class _CellSearch:
             self._room[i] = self._room[i + 1] + (side is None or side[0] == 1)
 
     def schemes(self) -> Iterator[CellScheme]:
-        return self._extend(0, (), -1)
+        trail: list[Iterator[_Place]] = [iter([(0, (), -1)])]
+        while trail:
+            place = next(trail[-1], None)
+            if place is None:
+                trail.pop()
+            elif place[0] == len(self._block):
+                yield from self._complete(place[2])
+            else:
+                trail.append(self._ways(*place))
 
-    def _extend(self, i: int, stack: tuple[int, ...], last: int) -> Iterator[CellScheme]:
-        """Codes of the darts from i on, given the open sub-cells and the last dart in state 1."""
-        if i == len(self._block):
-            yield from self._complete(last)
-            return
+    def _ways(self, i: int, stack: tuple[int, ...], last: int) -> Iterator[_Place]:
+        """Code dart i in every way, one after the other, and take it back: where that leads."""
         self._deadline.check()
         single = sum(self._members[b] == 1 for b in stack) if len(self._color) > 1 else 0
         if single > self._room[i]:
@@ -119,7 +127,7 @@ class _CellSearch:
             if color in colors and self._follows(i, last, block, color):
                 self._block[i] = block
                 self._members[block] += 1
-                yield from self._extend(i + 1, stack[: level + 1], i)
+                yield i + 1, stack[: level + 1], i
                 self._members[block] -= 1
             if self._members[block] == 1:
                 break  # closing this bracket would leave a single × behind
@@ -128,12 +136,12 @@ class _CellSearch:
                 self._block[i] = len(self._color)
                 self._color.append(color)
                 self._members.append(1)
-                yield from self._extend(i + 1, (*stack, self._block[i]), i)
+                yield i + 1, (*stack, self._block[i]), i
                 self._color.pop()
                 self._members.pop()
         self._block[i] = -1
         if self._may_be_zero(i):
-            yield from self._extend(i + 1, stack, last)
+            yield i + 1, stack, last
 
     def _state_one(self, i: int) -> list[int]:
         """The colors in which dart i may be in state 1."""

@@ -86,22 +86,27 @@ class Search:
         Raises:
             OutOfTime: the deadline has passed.
         """
-        return self._solve(0)
+        trail = [self._ways(0)]
+        while trail:
+            self._deadline.check()
+            depth = len(trail)
+            if not next(trail[-1], False):
+                trail.pop()
+            elif depth < len(self._cells):
+                trail.append(self._ways(depth))
+            elif self._bound(depth) <= self.budget and zeros_fit(self._cells, self._chosen):
+                yield self._segments.cost, list(self._chosen)
 
-    def _solve(self, depth: int) -> Iterator[tuple[int, list[CellScheme]]]:
-        self._deadline.check()
+    def _ways(self, depth: int) -> Iterator[bool]:
+        """Solve a cell in every way within the budget, one after the other, and take it back."""
         bound = self._bound(depth)
         if bound > self.budget:
-            return
-        if depth == len(self._cells):
-            if zeros_fit(self._cells, self._chosen):
-                yield self._segments.cost, list(self._chosen)
             return
         mark = self._segments.mark()
         for scheme in self._branches(depth):
             self._paint(depth, scheme)
             self._chosen.append(scheme)
-            yield from self._solve(depth + 1)
+            yield True
             self._chosen.pop()
             self._segments.undo(mark)
             if bound > self.budget:
@@ -185,15 +190,25 @@ def _hitting(sets: frozenset[int], deadline: Deadline) -> int:
     Raises:
         OutOfTime: the deadline has passed.
     """
-    deadline.check()
-    if not sets:
-        return 0
+    best = len(sets)
+    trail = [iter([(sets, 0)])]
+    while trail:
+        deadline.check()
+        left, bits = next(trail[-1], (None, 0))
+        if left is None:
+            trail.pop()
+        elif not left:
+            best = min(best, bits)
+        elif bits + 1 < best:
+            trail.append(_hits(left, bits + 1))
+    return best
+
+
+def _hits(sets: frozenset[int], bits: int) -> Iterator[tuple[frozenset[int], int]]:
+    """What each bit of the smallest set leaves to be hit, with the number of bits by then."""
     sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
     smallest = min(sets, key=lambda s: (s.bit_count(), s))
-    best = len(sets)
-    bits = smallest
-    while bits:
-        bit = bits & -bits
-        bits ^= bit
-        best = min(best, 1 + _hitting(frozenset(s for s in sets if not s & bit), deadline))
-    return best
+    while smallest:
+        bit = smallest & -smallest
+        smallest ^= bit
+        yield frozenset(s for s in sets if not s & bit), bits

@@ -24,9 +24,6 @@ _T = TypeVar("_T")
 _Blocks = list[tuple[int, list[DartName]]]
 _Repeatable = Callable[[], Iterator[_T]]
 
-_DEEPEST = 700
-"""Levels of the recursion over cells and darts that Python's stack has room for."""
-
 _KEPT = 200_000
 """The most painted cells that are kept, all schemes of all parts of the graph together, while the
 schemes of different parts are combined; they take some hundred megabytes at most."""
@@ -49,9 +46,6 @@ class ReferenceSolver:
 
         In the search space ``surface`` it has the fewest segments that ``options.strands``
         corridors across each edge allow, and the lower bound is one that any division obeys.
-
-        Raises:
-            InputError: the graph is far too large for a depth-first search.
         """
         graphs = Graphs(instance, options.strands)
         parts = [_Part(graphs, cells, options.deadline) for cells in graphs.parts()]
@@ -90,7 +84,7 @@ class ReferenceSolver:
 
         Raises:
             InputError: a cell has several live loops, or edges have strands: schemes are defined
-                for neither; or the graph is far too large.
+                for neither.
             ValueError: ``segments`` is not the minimum.
             OutOfTime: the deadline came first.
         """
@@ -201,14 +195,6 @@ class _Part:
     def _search(self, seam_strands: int) -> tuple[list[GraphCell], Search, list[Seam]]:
         built = [self._graphs.cell(cell, seam_strands) for cell in self._cells]
         graph = [cell for cell, _ in built]
-        depth = len(graph) + max(len(cell.darts) for cell in graph)
-        if depth > _DEEPEST:
-            raise InputError(
-                None,
-                "cells",
-                f"too many for a depth-first search: {depth} cells and darts in a row, "
-                f"at most {_DEEPEST}",
-            )
         search = Search(graph, self._graphs.region, self._deadline)
         return graph, search, [seam for _, seams in built for seam in seams]
 

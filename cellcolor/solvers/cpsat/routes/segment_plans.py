@@ -158,6 +158,11 @@ class Planner:
         return self._read(cells.kinds, seed)
 
     @property
+    def heeds_conflicts(self) -> bool:
+        """Whether plans have to heed anything but that every cell is touched."""
+        return bool(self._partings or self._tangles)
+
+    @property
     def partings(self) -> Iterator[tuple[Region, Region, Parting]]:
         """All partings found so far: of whose segments which two regions, and the parting."""
         for (one, other), partings in self._partings.items():

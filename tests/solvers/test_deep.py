@@ -1,0 +1,139 @@
+"""Rows of thousands of cells, and many parts: nothing falls, and what is proved can be verified."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+from itertools import pairwise
+
+import pytest
+
+from cellcolor.checker.certificates import verify_bound
+from cellcolor.checker.color_regions import regions_of_cells
+from cellcolor.checker.division import check_solution
+from cellcolor.checker.drawable import can_be_drawn
+from cellcolor.checker.scheme_rules import PaintedCell
+from cellcolor.checker.several_loops import PaintedLoops, unavoidable_join_on_loops
+from cellcolor.data.bound import Bound
+from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.lab.families.hubs import hub_minimum
+from cellcolor.solvers.bounds.cover import hard_cells
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.dfs.cell_schemes import cell_schemes
+from cellcolor.solvers.dfs.graph import Graphs
+from cellcolor.solvers.interface import Options
+
+DEEP = 1500
+"""Python's stack has room for a thousand calls."""
+
+
+def row(colors: list[tuple[int, ...]]) -> Instance:
+    """Cells in a row."""
+    edges = tuple(Edge(n + 1, n, n + 1) for n in range(len(colors) - 1))
+    cells = tuple(
+        Cell(n, own, ((*([-n] if n > 0 else []), *([n + 1] if n + 1 < len(colors) else [])),))
+        for n, own in enumerate(colors)
+    )
+    names = tuple(f"c{color}" for color in range(1 + max(map(max, colors))))
+    return Instance("row", names, cells, edges)
+
+
+def rings(number: int, size: int = 5) -> Instance:
+    """Rings of cells that share a color with each neighbor only, apart from each other.
+
+    Two neighbors can be one segment and no three cells: ⌈size / 2⌉ segments a ring. Of a ring of
+    odd size only ⌊size / 2⌋ cells are strangers.
+    """
+    cells, edges = [], []
+    for first in range(0, number * size, size):
+        ids = [first + n for n in range(size)]
+        for n, (one, other) in enumerate(pairwise([*ids, first])):
+            edges.append(Edge(one + 1, one, other))
+            before = first + (n - 1) % size + 1
+            own = tuple(sorted({n, (n - 1) % size}))
+            cells.append(Cell(one, own, ((one + 1, -before),)))
+    return Instance("rings", tuple(f"c{n}" for n in range(size)), tuple(cells), tuple(edges))
+
+
+@pytest.mark.parametrize("solver", ["cp-sat", "dfs"])
+def test_a_row_of_cells_in_one_color(solver: str) -> None:
+    instance = row([(0, 1) if n % 2 else (0,) for n in range(DEEP)])
+    solution = solve(instance, Options(workers=1), solver)
+    assert (solution.status, solution.segments) == ("optimal", 1)
+
+
+def test_a_row_of_strangers_and_a_cover_that_is_forged() -> None:
+    """Neighbors share no color, so that each cell is a segment of its own."""
+    instance = row([(n % 3,) for n in range(2 * DEEP)])
+    regions = regions_of_cells(instance)
+    everything = {"cells": [cell.id for cell in instance.cells]}
+    for value, outcome in ((2 * DEEP, "verified"), (2 * DEEP + 1, "refused")):
+        bound = Bound("cover", value, "surface", everything)
+        assert verify_bound(instance, bound, regions).outcome == outcome
+
+
+def test_a_cover_of_one_long_row_is_refused() -> None:
+    """Each region has two neighbors: half as many as cells are enough, and one more is claimed."""
+    size = 1200
+    instance = row([tuple(sorted({n % 4, (n + 1) % 4})) for n in range(size)])
+    bound = Bound("cover", size // 2 + 1, "surface", {"cells": list(range(size))})
+    verdict = verify_bound(instance, bound, regions_of_cells(instance))
+    assert verdict.outcome == "refused"
+    assert len(verdict.reason) < 300
+
+
+@pytest.mark.parametrize("number", [1, 7, 50])
+def test_rings_apart_have_a_certificate_and_the_reason_that_holds(number: int) -> None:
+    instance = rings(number)
+    solution = solve(instance, Options(workers=1))
+    (bound,) = solution.bounds or ()
+    assert (bound.kind, bound.value, solution.segments) == ("cover", 3 * number, 3 * number)
+    assert bound.certificate is not None
+    assert [str(verdict.outcome) for verdict in check_solution(instance, solution).bounds] == [
+        "verified"
+    ]
+    more = Bound("cover", 3 * number + 1, "surface", bound.certificate)
+    assert verify_bound(instance, more, regions_of_cells(instance)).outcome == "refused"
+
+
+def test_hard_cells_of_rings_apart_are_those_of_each_ring() -> None:
+    found = hard_cells(rings(20), 60)
+    assert found is not None
+    assert [sum(cell // 5 == ring for cell in found) for ring in range(20)] == [5] * 20
+
+
+def test_a_cell_with_many_darts_has_a_first_scheme() -> None:
+    petals = tuple(Cell(n + 1, (0,), ((-(n + 1),),)) for n in range(DEEP))
+    hub = Cell(0, (0,), (tuple(range(1, DEEP + 1)),))
+    edges = tuple(Edge(n + 1, 0, n + 1) for n in range(DEEP))
+    instance = Instance("hub", ("red",), (hub, *petals), edges)
+    cell, _ = Graphs(instance, 1).cell(instance.cells[0], 0)
+    first = next(cell_schemes(cell, [None] * DEEP))
+    assert first.subcells == ((0, tuple(range(DEEP))),)
+
+
+def test_a_cell_with_many_loops_can_be_drawn() -> None:
+    """Each loop shares two sub-cells with the next: cut open, they are one loop after the other."""
+    chain = [[2 * n, 2 * n + 1, 2 * n + 2, 2 * n + 3] for n in range(300)]
+    limit = sys.getrecursionlimit()
+    sys.setrecursionlimit(
+        len(inspect.stack()) + 100
+    )  # instead of a thousand loops, which take long
+    try:
+        assert can_be_drawn(chain)
+    finally:
+        sys.setrecursionlimit(limit)
+
+
+def test_loops_without_darts_in_state_1_are_tried_without_falling() -> None:
+    """Each of them faces the next and has one color only; none continues."""
+    loops = tuple(PaintedCell([(n, 1)], {}, [0]) for n in range(1, 1101))
+    cells = [PaintedLoops(n, (loop,)) for n, loop in enumerate(loops)]
+    assert unavoidable_join_on_loops(cells, lambda _: frozenset()) is None
+
+
+def test_the_minimum_of_a_hub_with_many_petals() -> None:
+    """Two colors in turn: of 2n petals n of one color are joined, or as many of both."""
+    assert hub_minimum([0] * 60) == 1
+    assert hub_minimum([0, 1] * 30) == 31
+    assert hub_minimum(range(1200)) == 1200

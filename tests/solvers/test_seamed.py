@@ -1,0 +1,49 @@
+"""Solvers that know cells with one live loop, on cells with several: the minimum is the same."""
+
+from __future__ import annotations
+
+import pytest
+from examples import examples
+from hypothesis import given
+from hypothesis import strategies as st
+from library import PAPER
+
+import cellcolor
+from cellcolor.data.instance import Instance
+from cellcolor.errors import SolverMissing, TooLarge
+from cellcolor.lab.families import hub_with_loops
+from cellcolor.lab.families.small import small_islands_and_holes
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.registry import make_solver
+from cellcolor.solvers.seamed import Seamed
+
+RIVALS = ("clingo", "highs", "maxsat", "cp-sat-pointers", "cp-sat-ranks", "cp-sat-contour")
+
+
+@pytest.mark.parametrize("solver", RIVALS)
+@examples(5)
+@given(seed=st.integers(0, 10**4))
+def test_a_rival_finds_what_the_depth_first_search_finds(solver: str, seed: int) -> None:
+    """``dfs`` puts its seams elsewhere, by code of its own; the checker sees both divisions."""
+    try:
+        make_solver(solver)
+    except SolverMissing:
+        pytest.skip(f"{solver} is not installed")
+    made = small_islands_and_holes(seed)
+    instance = made if isinstance(made, Instance) else cellcolor.decompose(made)
+    assert instance.most_live_loops > 1
+    expected = solve(instance, Options(), "dfs")
+    found = solve(instance, Options(workers=1), solver)
+    assert (expected.status, found.status) == ("optimal", "optimal")
+    assert found.segments == expected.segments
+
+
+def test_too_many_strands() -> None:
+    with pytest.raises(TooLarge, match="the seams need"):
+        Seamed(hub_with_loops(0, 30, 2, 2))
+
+
+def test_an_instance_without_seams_stays_as_it_is() -> None:
+    ring = Instance.read(PAPER / "ring.json")
+    assert Seamed(ring).instance is ring
