@@ -223,7 +223,8 @@ class Oracle:
         if segments is None:
             return Verdict(found.problems, None, self._known, found.violations, **about)
         deadline = deadline or deadline_after(self._time_limit)
-        bounds = self.prove(deadline).bounds
+        proof = self.prove(deadline)
+        bounds = proof.bounds
         if segments < bounds.lower:
             raise BeatenBound(self.surface.name, segments, bounds.lower)
         if segments == bounds.lower:
@@ -231,6 +232,7 @@ class Oracle:
         improvement, best = None, None if given is None else self._best(deadline)
         if best is not None:
             improvement = improvement_of(self.surface, found.segment_of, best)
+        about["kept_lower"] = proof.kept_lower
         late = best is None and given is not None and "_painting" not in self.__dict__
         return Verdict((), segments, bounds, improvement=improvement, late=late, **about)
 
@@ -254,6 +256,7 @@ class Oracle:
             of_colors.bounds,
             improvement=of_colors.improvement,
             late=of_colors.late,
+            kept_lower=of_colors.kept_lower,
             why=of_colors.why,
             runs=coloring.runs,
             **about,
