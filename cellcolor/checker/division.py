@@ -25,6 +25,7 @@ from cellcolor.data.darts import Strand, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam, Solution
 from cellcolor.data.wording import count
+from cellcolor.deadline import NEVER, Deadline
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,6 +155,7 @@ def check_solution(
     instance: Instance,
     solution: Solution,
     regions: Sequence[frozenset[ColorRegion]] | None = None,
+    deadline: Deadline = NEVER,
 ) -> Report:
     """Hold a solution against its instance: its division, and every number in it.
 
@@ -166,6 +168,10 @@ def check_solution(
         solution: a solution of it.
         regions: the color regions that each cell lies in, if they are not to be read off the
             graph; for certificates.
+        deadline: when certificates have to be verified.
+
+    Raises:
+        OutOfTime: the deadline came first.
     """
     problems: list[str] = []
     reference = solution.instance
@@ -175,7 +181,10 @@ def check_solution(
     if solution.search_space == "paper" and solution.strands != 1:
         problems.append("strands: must be 1 in search space 'paper'")
     regions = regions_of_cells(instance) if regions is None else regions
-    verdicts = tuple(verify_bound(instance, bound, regions) for bound in solution.bounds or ())
+    verdicts = tuple(
+        verify_bound(instance, bound, regions, deadline=deadline)
+        for bound in deadline.watch(solution.bounds or ())
+    )
     refused = [
         f"bounds[{number}].certificate: {verdict.reason}"
         for number, verdict in enumerate(verdicts)

@@ -97,6 +97,7 @@ def _described(name: str, verdict: Verdict) -> PlanVerdict:
         on_mesh=None if on_mesh is None else SegmentRange(on_mesh.lower, on_mesh.upper),
         improvement=_improved(verdict.improvement, segments),
         why=verdict.why,
+        kept_lower_bound=verdict.kept_lower,
     )
 
 

@@ -40,6 +40,8 @@ def say_plan(name: str, verdict: PlanVerdict) -> None:
     lower, upper = verdict.lower_bound, verdict.upper_bound
     least = f"exactly {lower}" if lower == upper else f"between {lower} and {upper}"
     say(f"  fewest segments on this surface: {least}")
+    if verdict.kept_lower_bound is not None:
+        say(f"  kept, not verified: at least {verdict.kept_lower_bound}")
     if verdict.optimal:
         say("  optimal" + ("" if verdict.why is None else f", because {verdict.why}"))
     elif verdict.beatable_by:

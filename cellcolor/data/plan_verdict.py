@@ -100,6 +100,8 @@ class PlanVerdict:
         improvement: how it can have fewer segments; null where no such painting is known.
         why: of an optimal plan why there cannot be fewer segments, a clause; null where nothing
             needs a reason or none is known.
+        kept_lower_bound: a greater lower bound that was kept without a certificate: it is not
+            verified, and nothing else here rests on it; null if there is none.
     """
 
     __pydantic_config__ = _STRICT
@@ -120,6 +122,7 @@ class PlanVerdict:
     on_mesh: SegmentRange | None
     improvement: PlanImprovement | None
     why: str | None
+    kept_lower_bound: _Count | None = None
 
     def __post_init__(self) -> None:
         settle(self)

@@ -19,7 +19,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.claims import color_numbers, read_claim
 from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
 from cellcolor.door.result import Result
@@ -95,6 +95,8 @@ class Oracle:
         self._subject = open_subject(source, deadline_after(time_limit))
         self._options: dict[str, Any] = {"strands": strands, "workers": workers, "seed": seed}
         self._known = bounds
+        self._without_painting = 0.0
+        """Seconds in which the better painting was not finished; 0 if that was not tried."""
         self.surface: LabelledSurface = self._subject.surface
 
     @property
@@ -124,17 +126,35 @@ class Oracle:
         proof: Proof = self.__dict__["_proof"]
         return proof
 
-    @cached_property
+    @property
     def best(self) -> BetterPainting | None:
         """A painting with the fewest segments found; None without time or memory for one."""
-        proof = self.prove(deadline_after(self._time_limit))
-        if proof.decomposition is None or proof.solution is None:
+        return self._best(deadline_after(self._time_limit))
+
+    def _best(self, deadline: Deadline) -> BetterPainting | None:
+        """The painting, made once; an attempt that ran out of time is repeated with twice that.
+
+        So a suite of plans does not pay the time limit again for every one of them.
+        """
+        if "_painting" in self.__dict__:
+            known: BetterPainting | None = self.__dict__["_painting"]
+            return known
+        proof = self.prove(deadline)
+        seconds = deadline.left
+        if self._without_painting and seconds < 2 * self._without_painting:
             return None
-        try:
-            painted = paint(self.surface, proof.decomposition, proof.solution)
-        except TooLarge:
-            return None
-        return better_painting(self.surface, painted)
+        found = None
+        if proof.decomposition is not None and proof.solution is not None:
+            try:
+                painted = paint(self.surface, proof.decomposition, proof.solution, deadline)
+                found = better_painting(self.surface, painted)
+            except OutOfTime:
+                self._without_painting = max(seconds, 1e-3)
+                return None
+            except TooLarge:
+                pass
+        self.__dict__["_painting"] = found
+        return found
 
     @overload
     def judge(self, plan: AnyPath, *, deadline: Deadline | None = None) -> PathVerdict: ...
@@ -156,7 +176,8 @@ class Oracle:
                 path with its joints
                 (:class:`cellcolor.ContactPath <cellcolor.data.joint_plan.ContactPath>`), a
                 trajectory, or the file of one, JSON or CSV.
-            deadline: for the proof, if nothing has been proved yet; None for the time limit.
+            deadline: for all of it; None for the time limit. Where it comes before a better
+                painting is finished, the verdict has no ``improvement``.
 
         Returns:
             Of a tool path a
@@ -201,15 +222,19 @@ class Oracle:
         segments = found.segments
         if segments is None:
             return Verdict(found.problems, None, self._known, found.violations, **about)
-        bounds = self.prove(deadline or deadline_after(self._time_limit)).bounds
+        deadline = deadline or deadline_after(self._time_limit)
+        proof = self.prove(deadline)
+        bounds = proof.bounds
         if segments < bounds.lower:
             raise BeatenBound(self.surface.name, segments, bounds.lower)
         if segments == bounds.lower:
             return Verdict((), segments, bounds, why=self._why, **about)
-        improvement = None
-        if given is not None and self.best is not None:
-            improvement = improvement_of(self.surface, found.segment_of, self.best)
-        return Verdict((), segments, bounds, improvement=improvement, **about)
+        improvement, best = None, None if given is None else self._best(deadline)
+        if best is not None:
+            improvement = improvement_of(self.surface, found.segment_of, best)
+        about["kept_lower"] = proof.kept_lower
+        late = best is None and given is not None and "_painting" not in self.__dict__
+        return Verdict((), segments, bounds, improvement=improvement, late=late, **about)
 
     def _of_path(self, found: PathColors, deadline: Deadline | None) -> PathVerdict:
         """The verdict on a tool path, by what it comes to in colors."""
@@ -230,6 +255,8 @@ class Oracle:
             of_colors.segments,
             of_colors.bounds,
             improvement=of_colors.improvement,
+            late=of_colors.late,
+            kept_lower=of_colors.kept_lower,
             why=of_colors.why,
             runs=coloring.runs,
             **about,

@@ -146,6 +146,8 @@ def validate(adapter: TypeAdapter[T], body: dict[str, Any]) -> T:
     try:
         # Through JSON again, since strict validation takes lists for tuples only there.
         return adapter.validate_json(json.dumps(body))
+    except RecursionError as error:
+        raise InputError(None, None, "not usable JSON: nested too deeply") from error
     except ValidationError as error:
         fault = error.errors(include_url=False)[0]
         raise InputError(None, field_name(fault["loc"]), fault["msg"]) from error

@@ -1,22 +1,27 @@
-"""Proofs kept on disk, by what they depend on."""
+"""Proofs kept on disk, by what they depend on; nothing that stands in a file is believed."""
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import tempfile
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
+import cellcolor
+from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
+from cellcolor.files.documents import read_document
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.oracle.ranges import Proof, ProvenRange
 from cellcolor.solvers.interface import STRANDS
-from cellcolor.version import __version__
 
 __all__ = ["ProofCache"]
 
@@ -25,8 +30,9 @@ __all__ = ["ProofCache"]
 class ProofCache:
     """A folder with a file for each surface, named by a fingerprint.
 
-    The fingerprint is that of the surface's content, the version of cellcolor and the search space,
-    so whatever changes one of them is proved anew.
+    The fingerprint is that of the surface's content, of cellcolor's own source and of the search
+    space, so whatever changes one of them is proved anew. A file holds solutions, and how many
+    seconds there were for them. What they prove is computed when they are read.
 
     Attributes:
         folder: where the files are.
@@ -34,41 +40,62 @@ class ProofCache:
 
     folder: Path
 
-    def get(self, surface: LabelledSurface, seconds: float) -> Proof | None:
-        """The proof that is kept, if there is any reason to be content with it.
+    def get(self, surface: LabelledSurface, seconds: float, deadline: Deadline) -> Proof | None:
+        """What the kept solutions prove, if there is any reason to be content with it.
 
-        One whose range is not exact was ended by a time limit: with more time than it had the
-        surface is proved anew. So it is where the file cannot be read, or the checker refuses the
-        solution in it.
+        The upper end of the range is counted by the checker, the lower end is the best bound whose
+        certificate it verifies. Bounds that nothing verifies stand in ``kept_lower``. A range that
+        is not exact was ended by a time limit: with more time than it had the surface is proved
+        anew. So it is where the file cannot be read, or the checker refuses a solution in it.
 
         Args:
             surface: the labelled surface.
             seconds: the time limit of now.
+            deadline: when there has to be an answer.
         """
         try:
-            kept = json.loads(self._file(surface).read_text(encoding="utf-8"))
-            bounds = ProvenRange(kept["lower"], kept["upper"])
-            if not bounds.exact and seconds > kept["seconds"]:
+            kept = read_document(self._file(surface))
+            solutions, had = kept.get("solutions"), kept.get("seconds")
+            if type(had) is not float or not isinstance(solutions, list) or not solutions:
                 return None
-            if kept["solution"] is None:
-                return Proof(bounds)
-            solution = Solution.from_document(kept["solution"])
-        except (OSError, ValueError, KeyError, TypeError, InputError):
+            found = [_solution(document) for document in solutions]
+            decomposition = decomposition_of(surface, None, deadline)
+            instance = decomposition.instance
+            regions = regions_on_surface(surface, decomposition.vertex_cell)
+            upper = len(instance.cells)
+            verified = claimed = min(upper, 1)
+            best: Solution | None = None
+            for solution in found:
+                report = check_solution(instance, solution, regions, deadline)
+                if not report.valid:
+                    return None
+                claimed = max(claimed, solution.surface_lower_bound)
+                for checked in report.bounds:
+                    if checked.bound.holds_for == "surface" and checked.outcome == "verified":
+                        verified = max(verified, checked.bound.value)
+                if report.segments is not None and (best is None or report.segments < upper):
+                    best, upper = solution, min(upper, report.segments)
+        except (InputError, OutOfTime):
             return None
-        decomposition = decomposition_of(surface)
-        if not check_solution(decomposition.instance, solution).valid:
+        if verified > upper or (max(verified, claimed) < upper and seconds > had):
             return None
-        return Proof(bounds, decomposition, solution)
+        bounds = ProvenRange(verified, upper)
+        kept_lower = min(claimed, upper) if claimed > verified else None
+        return Proof(bounds, decomposition, best, tuple(found), kept_lower)
 
     def put(self, surface: LabelledSurface, seconds: float, proof: Proof) -> None:
-        """Keep what was proved within a time limit; the folder is made if there is none.
+        """Keep what was found within a time limit; the folder is made if there is none.
 
         Raises:
             InputError: the folder cannot be written to.
         """
-        solution = None if proof.solution is None else proof.solution.to_document()
-        bounds = {"lower": proof.bounds.lower, "upper": proof.bounds.upper}
-        kept = bounds | {"seconds": seconds, "solution": solution}
+        if not proof.found:
+            return
+        kept = {
+            # JSON has no infinity; no clock goes on for longer than that.
+            "seconds": min(float(seconds), 1e300),
+            "solutions": [solution.to_document() for solution in proof.found],
+        }
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             # Several processes may write at once: each file is whole whoever is last.
@@ -83,8 +110,25 @@ class ProofCache:
     def _file(self, surface: LabelledSurface) -> Path:
         depends_on = {
             "surface": surface.sha256,
-            "version": __version__,
+            "code": _code(),
             "search_space": "surface",
             "strands": STRANDS["surface"],
         }
         return self.folder / f"{sha256_of(depends_on)}.json"
+
+
+def _solution(document: object) -> Solution:
+    if not isinstance(document, dict):
+        raise InputError(None, "solutions", "must be solutions")
+    return Solution.from_document(document)
+
+
+@cache
+def _code() -> str:
+    """The fingerprint of the package's source, which takes hundredths of a second."""
+    folder, digest = Path(cellcolor.__file__).parent, hashlib.sha256()
+    for file in sorted(folder.rglob("*.py")):
+        content = file.read_bytes()
+        digest.update(f"{file.relative_to(folder).as_posix()} {len(content)}\n".encode())
+        digest.update(content)
+    return digest.hexdigest()

@@ -63,11 +63,16 @@ class Proof:
         decomposition: the topological graph on the surface; None if there was no time for it.
         solution: of the divisions found the one with the fewest segments; None if there was no
             time to look for one.
+        found: all solutions that were found; their bounds are what the lower end rests on.
+        kept_lower: a greater lower bound that was kept on disk and that nothing has verified, so
+            that it is not in ``bounds``; None if there is none.
     """
 
     bounds: ProvenRange
     decomposition: Decomposition | None = None
     solution: Solution | None = None
+    found: tuple[Solution, ...] = ()
+    kept_lower: int | None = None
 
 
 def prove(
@@ -110,14 +115,16 @@ def prove(
     upper = len(instance.cells)
     lower = min(upper, 1)
     best: Solution | None = None
+    found: list[Solution] = []
     # A further search takes about as long as that for its first division alone.
     enough = deadline.earlier(time.monotonic() - started)
     for number, options in enumerate(searches if instance.cells else ()):
         if (enough if number else deadline).over or (number and lower == upper):
             break
         solution = solve(instance, options)
+        found.append(solution)
         lower = max(lower, solution.surface_lower_bound)
         if solution.segments is not None and (best is None or solution.segments < upper):
             best = solution
             upper = min(upper, solution.segments)
-    return Proof(ProvenRange(lower, upper), decomposition, best)
+    return Proof(ProvenRange(lower, upper), decomposition, best, tuple(found))

@@ -33,6 +33,9 @@ class Verdict:
         improvement: a plan with fewer segments, and what it joins; None where none is known.
         why: of an optimal plan why there cannot be fewer segments, a clause; None where nothing
             needs a reason or none is known.
+        late: whether the time limit came before it was known which segments can be joined.
+        kept_lower: a lower bound that was kept on disk without a certificate, greater than that in
+            ``bounds``: it is not verified, and nothing here rests on it. None if there is none.
         surface: what the plan is on.
         plan: what was judged, of a plan in joint angles the colors that it comes to, -1 where a
             configuration has none; None for a solution.
@@ -44,6 +47,8 @@ class Verdict:
     violations: tuple[Violation, ...] = field(default=(), compare=False)
     improvement: Improvement | None = field(default=None, compare=False)
     why: str | None = field(default=None, compare=False)
+    late: bool = field(default=False, compare=False)
+    kept_lower: int | None = field(default=None, compare=False)
     surface: LabelledSurface | None = field(default=None, compare=False)
     plan: Plan | None = field(default=None, compare=False)
 
@@ -123,9 +128,14 @@ class Verdict:
             because = "" if self.why is None else f", because {self.why}"
             return f"{found}, optimal: no division of the surface has fewer{because}"
         if self.beatable_by:
-            where = "" if self.improvement is None else f"; {self.improvement}"
+            where = "; which ones is not known in time" if self.late else ""
+            if self.improvement is not None:
+                where = f"; {self.improvement}"
             return f"{found}, {self.beatable_by} fewer are proved to be enough{where}"
-        return f"{found}, not known to be optimal; the fewest are {self.bounds}"
+        kept = (
+            "" if self.kept_lower is None else f"; kept, not verified: at least {self.kept_lower}"
+        )
+        return f"{found}, not known to be optimal; the fewest are {self.bounds}{kept}"
 
     def __repr__(self) -> str:
         # What pytest prints of ``assert verdict.optimal, verdict``.

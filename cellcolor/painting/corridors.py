@@ -16,6 +16,7 @@ from heapq import heapify, heappop, heappush
 import numpy as np
 
 from cellcolor.arrays import Array
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.painting.border_report import Corridor
 from cellcolor.painting.nearby import Nearby
 
@@ -25,18 +26,28 @@ _FAR = 3
 """In tool radii: how far clearances are followed."""
 
 
-def within(nearby: Nearby, starts: Iterable[tuple[float, int]], reach: float) -> dict[int, float]:
+def within(
+    nearby: Nearby,
+    starts: Iterable[tuple[float, int]],
+    reach: float,
+    deadline: Deadline = NEVER,
+) -> dict[int, float]:
     """The vertices within a distance of some, along the surface, and their distances in m.
 
     Args:
         nearby: the mesh.
         starts: distances to begin with, and vertices.
         reach: the largest distance, m.
+        deadline: when to give up.
+
+    Raises:
+        OutOfTime: the deadline came first.
     """
     queue = list(starts)
     heapify(queue)
     found: dict[int, float] = {}
     while queue:
+        deadline.check()
         far, vertex = heappop(queue)
         if vertex in found:
             continue
@@ -62,8 +73,10 @@ class Room:
         segment: list[int],
         joined: Callable[[int, int], bool],
         radius: float,
+        deadline: Deadline = NEVER,
     ) -> None:
         """``joined``: whether a mesh edge leads on in the segment that both ends are in."""
+        self._deadline = deadline
         self._nearby = nearby
         self._segment = segment
         self._joined = joined
@@ -75,7 +88,7 @@ class Room:
         segment, nearby = self._segment, self._nearby
         places = nearby.surface.vertices
         queue: list[tuple[float, int, int]] = []
-        for a, b in nearby.edges.tolist():
+        for a, b in self._deadline.watch(nearby.edges.tolist()):
             if segment[a] == segment[b]:
                 continue
             half = float(np.linalg.norm(places[a] - places[b])) / 2
@@ -86,6 +99,7 @@ class Room:
         reach = _FAR * self.radius
         found: dict[int, dict[int, float]] = {}
         while queue:
+            self._deadline.check()
             far, vertex, number = heappop(queue)
             known = found.setdefault(vertex, {})
             if number in known or len(known) == 2:
@@ -118,6 +132,7 @@ class Room:
         found = []
         # Parts of segments grow down from the vertices with most clearance, until they meet.
         for vertex in np.argsort(-self.clearance, kind="stable").tolist():
+            self._deadline.check()
             if self._segment[vertex] < 0:
                 continue
             above[vertex], peak[vertex], tree[vertex] = vertex, clearance[vertex], []
@@ -154,6 +169,7 @@ class Room:
         before = {first: first}
         queue = deque([first])
         while queue:
+            self._deadline.check()
             vertex = queue.popleft()
             if self.clearance[vertex] >= self.radius:
                 way = []
@@ -181,16 +197,16 @@ class Room:
             if clearance[vertex] >= self.radius:
                 inside.setdefault(segment[vertex], []).append((0.0, vertex))
         for own, starts in inside.items():
-            reached = within(self._nearby, starts, reach)
+            reached = within(self._nearby, starts, reach, self._deadline)
             left.difference_update(v for v in reached if segment[v] == own)
         centers = {vertex for corridor in narrow for vertex in corridor.way}
         for vertex in sorted(left, key=lambda v: (-clearance[v], v)):
             if vertex in left:
                 centers.add(vertex)
-                reached = within(self._nearby, [(0.0, vertex)], reach)
+                reached = within(self._nearby, [(0.0, vertex)], reach, self._deadline)
                 left.difference_update(v for v in reached if segment[v] == segment[vertex])
         passed: set[int] = set()
         for vertex in centers:
-            reached = within(self._nearby, [(0.0, vertex)], self.radius)
+            reached = within(self._nearby, [(0.0, vertex)], self.radius, self._deadline)
             passed.update(v for v in reached if segment[v] not in (-1, segment[vertex]))
         return float(self._nearby.areas[sorted(passed)].sum())

@@ -146,9 +146,10 @@ class _Moving:
     def _widen(self, corridor: Corridor) -> None:
         """Give all within the tool's radius of a corridor's middle to it, and hold it there."""
         labels, own = self._labels, corridor.segment
-        far = within(self._nearby, [(0.0, vertex) for vertex in corridor.way], self._radius)
+        far = within(self._nearby, [(0.0, v) for v in corridor.way], self._radius, self._deadline)
         left = [v for v in sorted(far, key=far.__getitem__) if labels.segment[v] not in (own, -1)]
         while left:
+            self._deadline.check()
             rest = [v for v in left if v in labels.held or not labels.give(v, own)]
             if len(rest) == len(left):
                 break
@@ -163,8 +164,7 @@ class _Moving:
         def joined(a: int, b: int) -> bool:
             return labels.color_of[segment[a]] not in surface.cracked(a, b)
 
-        room = Room(nearby, segment, joined, self._radius)
-        self._deadline.check()
+        room = Room(nearby, segment, joined, self._radius, self._deadline)
         corridors = room.corridors()
         narrow = [found for found in corridors if found.width_m < 2 * self._radius]
         lacking = sum(2 * self._radius - found.width_m for found in narrow)
@@ -182,7 +182,6 @@ class _Moving:
         area = float(self._nearby.areas[np.array(state.segment) >= 0].sum())
         narrowest = state.corridors[0] if state.corridors else None
         repeated = state.room.repeated(state.narrow)
-        self._deadline.check()
         cost = state.cost / area if area else 0.0
         return Borders(state.length, cost, len(state.narrow), narrowest, repeated)
 

@@ -129,7 +129,7 @@ def paint(
     refined = unrefined(surface)
     while True:
         deadline.check()
-        mesh = _Mesh(refined, cell_of)
+        mesh = _Mesh(refined, cell_of, deadline)
         curves = mesh.borders.curves(deadline)
         steps = steps_by_edge(refined, decomposition.curves, curves)
         gates, short = choose_gates(subcells, divided, steps)
@@ -138,7 +138,8 @@ def paint(
             ends = [vertex for step in steps[edge] for vertex in step]
             narrow[ends] = True
         trees: dict[int, int] = {}
-        for cell in deadline.watch(sorted(divided)):
+        for cell in sorted(divided):
+            deadline.check()
             found = mesh.trees(cell, subcells[cell], gates)
             if found is None:
                 narrow |= mesh.cell_of == cell
@@ -146,21 +147,24 @@ def paint(
                 trees |= found
         if not narrow.any():
             return _painted(mesh, subcells, divided, trees, solution)
-        refined = refined.halved(narrow)
+        refined = refined.halved(narrow, deadline)
 
 
 class _Mesh:
     """One refinement of a surface, on which divided cells may leave room or not."""
 
-    def __init__(self, refined: Refined, cell_of: Index) -> None:
+    def __init__(self, refined: Refined, cell_of: Index, deadline: Deadline) -> None:
         self.refined = refined
-        self.surface = refined.surface()
+        self.deadline = deadline
+        self.surface = refined.surface(deadline)
+        deadline.check()
         self.closed = ClosedMesh(self.surface)
+        deadline.check()
         self.cell_of = cell_of[refined.stands_for]
         outside = [OUTSIDE] * (self.closed.vertex_count - self.closed.real_count)
         self.borders = Borders(self.surface, self.closed, [*self.cell_of.tolist(), *outside])
         self.around: dict[int, list[int]] = {}
-        for a, b in self.closed.third:
+        for a, b in deadline.watch(self.closed.third):
             self.around.setdefault(a, []).append(b)
 
     def cracked(self, a: int, b: int) -> bool:
@@ -181,7 +185,9 @@ class _Mesh:
         own = np.flatnonzero(self.cell_of == cell).tolist()
         terminals = [[gates[strand] for strand in sorted(subcell.strands)] for subcell in subcells]
         try:
-            trees = grow_trees(own, self.around, self.closed.third, self.cracked, terminals)
+            trees = grow_trees(
+                own, self.around, self.closed.third, self.cracked, terminals, self.deadline
+            )
         except TooNarrow:
             return None
         return {vertex: subcells[number].segment for vertex, number in trees.items()}
@@ -203,7 +209,9 @@ def _painted(
         segment_of[vertex] = segment
     color = {sub.segment: sub.color for cell in solution.cells or () for sub in cell.subcells}
     plan = Plan(tuple([color.get(segment) for segment in segment_of.tolist()]))
+    mesh.deadline.check()
     report = check_plan(mesh.surface, plan)
+    mesh.deadline.check()
     if report.segments is None:
         raise RefusedResult(f"a painting is not valid: {report.problems[0]}")
     merged = _merged(mesh.surface, plan, segment_of)
@@ -233,6 +241,7 @@ def _spread(mesh: _Mesh, trees: dict[int, int]) -> dict[int, int]:
     queue = [(0.0, vertex, number) for vertex, number in trees.items()]
     heapify(queue)
     while queue:
+        mesh.deadline.check()
         far, vertex, number = heappop(queue)
         if vertex in segment:
             continue

@@ -15,6 +15,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack, LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 
 __all__ = ["MOST_VERTICES", "Refined", "interpolated", "unrefined"]
@@ -43,13 +44,13 @@ class Refined:
     stands_for: Index
     between: Index
 
-    def surface(self) -> LabelledSurface:
+    def surface(self, deadline: Deadline = NEVER) -> LabelledSurface:
         """The refined surface, to be decomposed, saved and planned on like any other."""
         if len(self.vertices) == len(self.old.vertices):
             return self.old
         origin = self.stands_for.tolist()
         cracks = []
-        for a, b in _edges(self.faces).tolist():
+        for a, b in deadline.watch(_edges(self.faces).tolist()):
             if colors := self.old.cracked(origin[a], origin[b]):
                 cracks.append(Crack(a, b, tuple(colors)))
         given_up = set(self.old.given_up)
@@ -64,13 +65,14 @@ class Refined:
             given_up=tuple([v for v, vertex in enumerate(origin) if vertex in given_up]),
         )
 
-    def halved(self, roomy: Mask) -> Refined:
+    def halved(self, roomy: Mask, deadline: Deadline = NEVER) -> Refined:
         """Every mesh edge with an end in ``roomy`` (n,) parted in the middle.
 
         The new vertex copies an end that is in ``roomy``, so what was marked gets wider: where
         there was a single vertex there is one with a neighbor in every direction.
 
         Raises:
+            OutOfTime: the deadline came first.
             TooLarge: there would be more than ``MOST_VERTICES``.
         """
         edges = _edges(self.faces)
@@ -85,7 +87,7 @@ class Refined:
             (a, b): first + number for number, (a, b) in enumerate(map(tuple, parted.tolist()))
         }
         faces: list[tuple[int, int, int]] = []
-        for a, b, c in self.faces.tolist():
+        for a, b, c in deadline.watch(self.faces.tolist()):
             faces += _parted_face((a, b, c), middle)
         places = (self.vertices[parted[:, 0]] + self.vertices[parted[:, 1]]) / 2
         return Refined(

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from heapq import heappop, heappush
 
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Step
 from cellcolor.union_find import UnionFind
 
@@ -36,6 +37,7 @@ def grow_trees(
     third: Mapping[Step, int],
     cracked: Callable[[int, int], bool],
     terminals: list[list[int]],
+    deadline: Deadline = NEVER,
 ) -> dict[int, int]:
     """Disjoint connected sets of vertices, one for each sub-cell.
 
@@ -45,14 +47,16 @@ def grow_trees(
         third: the triangle on the left of each directed mesh edge, of a mesh without border.
         cracked: whether a mesh edge has a crack, given either way round.
         terminals: the vertices that each sub-cell has to contain, non-crossing.
+        deadline: when to give up.
 
     Returns:
         ``{vertex: sub-cell}`` for those that were needed.
 
     Raises:
+        OutOfTime: the deadline came first.
         TooNarrow: there is no room, or two sub-cells have one terminal in common.
     """
-    return _Trees(vertices, around, third, cracked, terminals).grown()
+    return _Trees(vertices, around, third, cracked, terminals, deadline).grown()
 
 
 class _Trees:
@@ -63,11 +67,24 @@ class _Trees:
         third: Mapping[Step, int],
         cracked: Callable[[int, int], bool],
         terminals: list[list[int]],
+        deadline: Deadline,
     ) -> None:
+        self.deadline = deadline
         self.free = set(vertices)
         self.third = third
         self.cracked = cracked
         self.around = around
+        inside = self.free.union(*terminals)
+        self.open = {
+            v: [x for x in around[v] if x in inside and not cracked(v, x)]
+            for v in deadline.watch(inside)
+        }
+        """The neighbors in the cell to which no crack bars the way."""
+        self.walls = {
+            (f, x) for f in deadline.watch(self.free) for x in around[f] if self._is_wall(f, x)
+        }
+        """Free vertices and what is beside them, if no tree can grow there."""
+        self.owned: list[list[int]] = [[] for _ in terminals]
         self.owner: dict[int, int] = {}
         self.piece: UnionFind[int] = UnionFind()
         self.pieces = [len(set(own)) for own in terminals]
@@ -94,7 +111,11 @@ class _Trees:
         """Give a free vertex to a sub-cell: one piece less for each piece that it touches."""
         self.free.discard(vertex)
         self.owner[vertex] = block
+        self.owned[block].append(vertex)
         for other in self.around[vertex]:
+            self.walls.discard((vertex, other))
+            if other in self.free:
+                self.walls.add((other, vertex))
             touching = self.owner.get(other) == block and not self.cracked(vertex, other)
             if touching and self.piece[vertex] != self.piece[other]:
                 self.piece.union(vertex, other)
@@ -102,14 +123,15 @@ class _Trees:
 
     def _walks(self) -> list[list[Step]]:
         """Every walk round what is free, as steps (free vertex, what is beside it)."""
-        left = {(f, x) for f in self.free for x in self.around[f] if self._is_wall(f, x)}
+        left = set(self.walls)
         walks = []
-        for first in sorted(left):
+        for first in self.deadline.watch(sorted(left)):
             if first not in left:
                 continue
             walk = []
             step = first
             while True:
+                self.deadline.check()
                 left.discard(step)
                 walk.append(step)
                 step = self._following(step)
@@ -185,6 +207,7 @@ class _Trees:
         before: dict[int, int | None] = {}
         queue: list[tuple[int, int, int | None]] = [(0, f, None) for f in sorted(starts)]
         while queue:
+            self.deadline.check()
             far, vertex, previous = heappop(queue)
             if vertex in before:
                 continue
@@ -214,22 +237,45 @@ class _Trees:
     def _leaves_room(self, block: int, way: list[int]) -> bool:
         """Whether every unfinished sub-cell can still be connected, seen for itself."""
         taken = set(way)
-        linked: UnionFind[object] = UnionFind()
-        for f in self.free:
-            here: object = "way" if f in taken else f
-            for x in self.around[f]:
-                if self.cracked(f, x):
-                    continue
-                if x in self.free:
-                    # The way is a wall to all but its own sub-cell.
-                    if (f in taken) == (x in taken):
-                        linked.union(here, "way" if x in taken else x)
-                    continue
-                other = self._unfinished((f, x))
-                if other is not None and (f not in taken or other == block):
-                    linked.union(here, ("piece", self.piece[x]))
+        reached: dict[int, int] = {}
         for other, count in enumerate(self.pieces):
-            pieces = {self.piece[v] for v, owner in self.owner.items() if owner == other}
-            if count > 1 and len({linked["piece", piece] for piece in pieces}) > 1:
+            if count <= 1:
+                continue
+            own = self.owned[other]
+            if own[0] not in reached:
+                self._flood(own[0], block, taken, reached)
+            if any(reached.get(vertex) != reached[own[0]] for vertex in own):
                 return False
         return True
+
+    def _flood(self, start: int, block: int, taken: set[int], reached: dict[int, int]) -> None:
+        """Give ``start`` to all that hangs together with it once ``block`` has taken a way.
+
+        The way is a wall to all but its own sub-cell. What meets one piece hangs together.
+        """
+        owner, left, way_met = self.owner, [start], False
+        reached[start] = start
+        while left:
+            self.deadline.check()
+            vertex = left.pop()
+            mine, on_way = owner.get(vertex), vertex in taken
+            # The way is one piece, even where it passes the free end of a crack.
+            if on_way and not way_met:
+                way_met = True
+                left += [other for other in taken if other not in reached]
+                reached.update(dict.fromkeys(taken, start))
+            for other in self.open[vertex]:
+                if other in reached:
+                    continue
+                theirs = owner.get(other)
+                if mine is not None:
+                    leads = mine == theirs or (
+                        theirs is None and (other not in taken or mine == block)
+                    )
+                elif theirs is None:
+                    leads = (other in taken) == on_way
+                else:
+                    leads = self.pieces[theirs] > 1 and (not on_way or theirs == block)
+                if leads:
+                    reached[other] = start
+                    left.append(other)

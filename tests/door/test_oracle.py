@@ -19,7 +19,7 @@ from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.cli import main
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.oracle import ProvenRange
 
@@ -201,3 +201,27 @@ def test_a_plan_is_shown_from_a_shell(tmp_path: Path) -> None:
     assert "segment 2" in (tmp_path / "plan.svg").read_text()
     plan.write_text(Plan(WORSE[1:]).to_json())
     assert main(["show", str(surface), str(plan), "-o", str(tmp_path / "plan.svg")]) == 2
+
+
+def test_a_painting_ends_with_the_deadline_of_the_verdict(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Then it is said that it was not known in time, and other time than that is not spent."""
+    given_deadlines: list[Deadline] = []
+
+    def too_slow(_surface: Any, _graph: Any, _solution: Any, deadline: Deadline) -> Any:
+        given_deadlines.append(deadline)
+        raise OutOfTime("the time limit came first")
+
+    monkeypatch.setattr(cellcolor.door.oracle, "paint", too_slow)
+    oracle = cellcolor.Oracle(ROW)
+    deadline = Deadline.after(5.0)
+    verdict = oracle.judge(WORSE, deadline=deadline)
+    assert given_deadlines == [deadline]
+    assert verdict.beatable_by == 2 and verdict.improvement is None
+    assert "not known in time" in str(verdict)
+    # The next plan of a suite does not pay for the same attempt again; with more time it does.
+    oracle.judge(WORSE, deadline=Deadline.after(5.0))
+    assert len(given_deadlines) == 1
+    monkeypatch.undo()
+    assert oracle.judge(WORSE, deadline=Deadline.after(60.0)).improvement is not None

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition.borders import ClosedMesh
 from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.painting.trees import TooNarrow, grow_trees
@@ -132,3 +133,12 @@ def test_a_way_across_leaves_the_other_one_room() -> None:
     # 8 and 9 are on the hole's lower left, 0 and 1 on the outer border.
     found = grown(inside, grid(7), [[0, 15], [1, 9], [48, 40]])
     assert all(connected(7, found, number) for number in range(3))
+
+
+def test_trees_end_with_their_deadline() -> None:
+    mesh = grid(7)
+    around: dict[int, list[int]] = {}
+    for a, b in mesh.third:
+        around.setdefault(a, []).append(b)
+    with pytest.raises(OutOfTime):
+        grow_trees(range(49), around, mesh.third, lambda _a, _b: False, [[1, 5]], Deadline(0.0))
