@@ -28,6 +28,7 @@ def check_solution_file(subject: Subject, claim: Path, name: str) -> SolutionVer
     from cellcolor.door.judging import check
 
     instance, solution = subject.graph(), Solution.read(claim)
+    on_trust = subject.check_graph()
     report = check(subject, solution)
     problems = list(report.problems)
     keys: set[SchemeKey] = set()
@@ -47,6 +48,9 @@ def check_solution_file(subject: Subject, claim: Path, name: str) -> SolutionVer
     # A solution alone may count schemes that it does not list; a list has to be whole.
     if schemes and schemes != solution.schemes:
         problems.append(f"schemes: says {solution.schemes}, listed are {schemes}")
+    claimed = claims(instance, solution, report.bounds) if report.valid else {}
+    if on_trust is not None:
+        claimed["instance.surface"] = on_trust
     return SolutionVerdict(
         file=name,
         valid=not problems,
@@ -57,6 +61,6 @@ def check_solution_file(subject: Subject, claim: Path, name: str) -> SolutionVer
         solver=solution.solver,
         bounds=tuple(CheckedBound(**checked.to_document()) for checked in report.bounds),
         bounds_by_solver=sum(checked.trusted for checked in report.bounds),
-        claimed=claims(instance, solution, report.bounds) if report.valid else {},
+        claimed=claimed,
         schemes=schemes or None,
     )

@@ -15,7 +15,7 @@ from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
 
-__all__ = ["OUTSIDE", "Cell", "Edge", "check_graph", "shared_colors"]
+__all__ = ["OUTSIDE", "Cell", "Edge", "check_color_names", "check_graph", "shared_colors"]
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -187,3 +187,16 @@ def _check_colors(colors: Sequence[int], count: int, where: str) -> None:
     for color, following in pairwise(colors):
         if color == following:
             raise InputError(None, where, f"color {color} stands twice")
+
+
+def check_color_names(colors: Sequence[str]) -> None:
+    """Refuse names of colors that are not distinct: plans and pictures name colors by them.
+
+    Raises:
+        InputError: a name stands twice.
+    """
+    first: dict[str, int] = {}
+    for number, name in enumerate(colors):
+        if first.setdefault(name, number) != number:
+            message = f"{name!r} is the name of color {first[name]} already"
+            raise InputError(None, f"colors[{number}]", message)

@@ -10,7 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
-from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge, check_graph, shared_colors
+from cellcolor.data.cells_and_edges import (
+    OUTSIDE,
+    Cell,
+    Edge,
+    check_color_names,
+    check_graph,
+    shared_colors,
+)
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.version_1 import fingerprint_of_version_1
 from cellcolor.data.wording import count
@@ -115,6 +122,7 @@ class Instance:
         settle(self)
         if self.meta is not None:
             object.__setattr__(self, "meta", json_content(self.meta, "meta"))
+        check_color_names(self.colors)
         check_graph(self.cells, self.edges, len(self.colors))
         if self.surface is not None:
             for vertex, cell in enumerate(self.surface.vertex_cell):

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter
 
+from cellcolor.data.cells_and_edges import check_color_names
 from cellcolor.data.comparing import same_members
 from cellcolor.data.mesh import directed_edges
 from cellcolor.data.wording import count, listed
@@ -143,6 +144,7 @@ class LabelledSurface:
         return f"<{type(self).__name__} {self}>"
 
     def _check_colors(self) -> None:
+        check_color_names(self.colors)
         for vertex, colors in enumerate(self.vertex_colors):
             for color in colors:
                 if not 0 <= color < len(self.colors):

@@ -46,7 +46,7 @@ def decomposition_of(
     cell_of, firsts = _cells(surface, mesh, deadline)
     borders = Borders(surface, mesh, cell_of)
     curves = borders.curves(deadline)
-    loops = _loops(borders, curves, cell_of, deadline)
+    loops = loops_of(borders, curves, cell_of, deadline)
     _check_planar(surface, cell_of, firsts, borders, loops, deadline)
 
     measure = _DualMeasure(surface, mesh)
@@ -110,7 +110,7 @@ def _cells(
     return cell_of, firsts
 
 
-def _loops(
+def loops_of(
     borders: Borders, curves: list[Curve], cell_of: list[int], deadline: Deadline
 ) -> dict[int, tuple[tuple[int, ...], ...]]:
     """Each cell's border loops, as cyclic lists of darts with the cell on the left."""

@@ -53,7 +53,8 @@ def check(
     Of a solution its division is checked, and every number in it. What the instance itself says is
     known (``known``) must not be contradicted either. Lower bounds are verified by their
     certificates; those without one are taken on trust as far as nothing contradicts them
-    (docs/semantics.md). A trajectory is held against its scene, with the proven minimum of
+    (docs/semantics.md). An instance that names its surface is held against that, if it is at hand.
+    A trajectory is held against its scene, with the proven minimum of
     lift-offs beside its own (docs/judging-trajectories.md).
 
     Args:
@@ -82,6 +83,7 @@ def check(
         deadline = deadline_after(time_limit)
         return judge_trajectory(open_subject(instance, deadline), solution, deadline)
     subject = open_subject(instance)
+    subject.check_graph()
     graph = subject.graph()
     if isinstance(solution, Result):
         solution = solution.solution

@@ -208,7 +208,9 @@ class Oracle:
         """The verdict on a plan in colors, or on a solution."""
         if isinstance(plan, Result):
             plan = plan.solution
+        deadline = deadline or deadline_after(self._time_limit)
         if isinstance(plan, Solution):
+            self._subject.check_graph(deadline)
             report = check_solution(self._subject.graph(), plan)
             problems = report.problems
             if not problems and report.segments is None:
@@ -222,7 +224,6 @@ class Oracle:
         segments = found.segments
         if segments is None:
             return Verdict(found.problems, None, self._known, found.violations, **about)
-        deadline = deadline or deadline_after(self._time_limit)
         proof = self.prove(deadline)
         bounds = proof.bounds
         if segments < bounds.lower:

@@ -17,6 +17,7 @@ from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of, locate
+from cellcolor.decomposition.same_graph import wrong_cell
 from cellcolor.door.extras import extras_for
 from cellcolor.door.shipped import find_file
 from cellcolor.errors import InputError
@@ -162,6 +163,32 @@ class Subject:
             f"lies in {reference.path!r} beside the instance's file, and a value read from there "
             "does not know where that is: give the file, or the surface"
         )
+
+    def check_graph(self, deadline: Deadline = NEVER) -> str | None:
+        """Hold an instance that names its surface against that surface, if it is at hand.
+
+        Returns:
+            The path of a surface that is not at hand, so that the graph is taken on trust.
+
+        Raises:
+            InputError: the surface cannot be used, or has another graph.
+            OutOfTime: the deadline came first.
+        """
+        instance = self.given_instance
+        if instance is None or instance.surface is None:
+            return None
+        if self.given_surface is None and (
+            self.path is None or self.surface_path is None or not self.surface_path.is_file()
+        ):
+            return instance.surface.path
+        cells = instance.surface.vertex_cell
+        wrong = wrong_cell(self.surface, instance, cells, deadline)
+        if wrong is not None:
+            message = (
+                f"not those on the surface {instance.surface.path}, in the part with cell {wrong}"
+            )
+            raise InputError(self._file, "edges", message)
+        return None
 
     @property
     def _file(self) -> str | None:

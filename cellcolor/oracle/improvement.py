@@ -95,7 +95,8 @@ def improvement_of(
         better: a painting.
 
     Returns:
-        None if the painting does not have fewer segments.
+        None if the painting does not have fewer segments, or has them only since segments that
+        touch are one in it.
     """
     old = np.asarray(segment_of, dtype=np.int64)
     if better.painted.segments >= len(set(old[old >= 0].tolist())):
@@ -105,21 +106,30 @@ def improvement_of(
         _largest_pair(surface, old, np.flatnonzero(new == number))
         for number in range(int(new.max()) + 1)
     ]
-    area, joined, places = max(pair for pair in found if pair is not None)
-    return Improvement(joined, places, better) if area > 0 else None
+    pairs = [pair for pair in found if pair is not None]
+    if not pairs:
+        return None
+    _, joined, places = max(pairs)
+    return Improvement(joined, places, better)
 
 
 def _largest_pair(
     surface: LabelledSurface, old: Index, inside: Index
-) -> tuple[float, tuple[int, int], tuple[int, int]] | None:
-    """The two segments with the most area among some vertices, and a vertex of each."""
-    areas = np.bincount(old[inside], surface.vertex_areas[inside]) if len(inside) else np.zeros(0)
-    if np.count_nonzero(areas) < 2:
+) -> tuple[tuple[float, int], tuple[int, int], tuple[int, int]] | None:
+    """The two segments with the most area among some vertices, and a vertex of each.
+
+    Where triangles are flat to a line there is no area; then most vertices.
+    """
+    numbers, counts = np.unique(old[inside], return_counts=True)
+    if len(numbers) < 2:
         return None
-    second, first = np.argsort(areas, kind="stable")[-2:].tolist()
+    areas = np.bincount(old[inside], surface.vertex_areas[inside])[numbers]
+    order = np.lexsort((counts, areas))[-2:]
+    second, first = numbers[order].tolist()
     pair = min(first, second), max(first, second)
     places = [_middle(surface, inside[old[inside] == number]) for number in pair]
-    return float(areas[second]), pair, (places[0], places[1])
+    smaller = float(areas[order[0]]), int(counts[order[0]])
+    return smaller, pair, (places[0], places[1])
 
 
 def _middle(surface: LabelledSurface, vertices: Index) -> int:

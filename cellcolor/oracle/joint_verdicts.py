@@ -100,6 +100,8 @@ class PathVerdict(Verdict):
             self.violations,
             self.improvement,
             self.why,
+            self.late,
+            self.kept_lower,
             self.surface,
             self.plan,
         )

@@ -140,7 +140,7 @@ class _Moving:
         return best
 
     def _rank(self, state: _State) -> tuple[float, float]:
-        lacking = round(state.lacking / self._nearby.mean_edge, 3)
+        lacking = round(state.lacking / (self._nearby.mean_edge or 1.0), 3)
         return lacking, state.length + state.cost / self._radius
 
     def _widen(self, corridor: Corridor) -> None:

@@ -236,16 +236,17 @@ def _painted(
 
 def _spread(mesh: _Mesh, trees: dict[int, int]) -> dict[int, int]:
     """The segment of every vertex of the divided cells: that of the tree nearest along the mesh."""
-    places = mesh.surface.vertices
-    segment: dict[int, int] = {}
+    places, done = mesh.surface.vertices, set[int]()
+    # Trees keep their vertices, even where others lie at the very same place.
+    segment = dict(trees)
     queue = [(0.0, vertex, number) for vertex, number in trees.items()]
     heapify(queue)
     while queue:
         mesh.deadline.check()
         far, vertex, number = heappop(queue)
-        if vertex in segment:
+        if segment.setdefault(vertex, number) != number or vertex in done:
             continue
-        segment[vertex] = number
+        done.add(vertex)
         for other in mesh.around[vertex]:
             if other not in segment and mesh.within_cell(vertex, other):
                 length = float(np.linalg.norm(places[vertex] - places[other]))

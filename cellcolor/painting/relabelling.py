@@ -80,7 +80,7 @@ class Relabelling:
             for new in beside
         }
         for new in sorted(beside, key=lambda number: (change[number], number)):
-            if change[new] > -self._least:
+            if change[new] >= -self._least:
                 return False
             if self.give(vertex, new):
                 return True

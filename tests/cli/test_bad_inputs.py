@@ -120,6 +120,12 @@ GRAPHS = {
     "crack on no edge": surface_of(put("cracks", 0, to=[1, 3, [0]]), "cracks[0]", "no edge"),
     "crack twice": surface_of(put("cracks", to=[[0, 2, [0]], [2, 0, [1]]]), "cracks[1]", "already"),
     "crack of a color not there": surface_of(put("cracks", 0, to=[0, 2, [8]]), "cracks[0]", "8"),
+    "two colors of one name in a surface": surface_of(
+        put("colors", to=["left", "left"]), "colors[1]", "'left' is the name of color 0"
+    ),
+    "two colors of one name in an instance": instance_of(
+        put("colors", to=["left", "left"]), "colors[1]", "'left' is the name of color 0"
+    ),
     "cell that is not planar": not_planar(),
 }
 

@@ -27,6 +27,7 @@ from cellcolor.data.plan_verdict import PlanVerdict
 from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.decomposition import decomposition_of
 from cellcolor.oracle import Proof, ProvenRange
 from cellcolor.testing.strategies import broken_plans, valid_plans
 
@@ -426,3 +427,29 @@ def test_out_of_time_is_an_error_of_its_own_code(
 def test_standard_input_is_one_of_the_two(capsys: Capture) -> None:
     assert run("check", "-", "-") == 2
     assert "one of the two only" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("at_hand", [True, False])
+def test_an_edited_graph_is_held_against_its_surface(
+    at_hand: bool, tmp_path: Path, capsys: Capture
+) -> None:
+    """The edge along a crack is dead; the edited graph has it joined."""
+    surface = LabelledSurface.read(PAPER / "crack-separates.surface.json")
+    made = decomposition_of(surface, "part.surface.json").instance
+    instance = json.loads(made.to_json())
+    (dead,) = (edge for edge in instance["edges"] if edge.get("colors") == [])
+    del dead["colors"]
+    graph, solution = tmp_path / "part.json", tmp_path / "solution.json"
+    graph.write_text(json.dumps(instance), encoding="utf-8")
+    run("solve", graph, "-o", solution)
+    if at_hand:
+        (tmp_path / "part.surface.json").write_text(surface.to_json(), encoding="utf-8")
+    capsys.readouterr()
+    code = run("check", graph, solution, "--json")
+    said = json.loads(capsys.readouterr().out)
+    if at_hand:
+        assert code == 2
+        assert "not those on the surface" in said["error"]
+    else:
+        assert code == 0
+        assert said["claimed"]["instance.surface"] == "part.surface.json"

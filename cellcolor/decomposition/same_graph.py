@@ -1,0 +1,141 @@
+"""Is a topological graph that of its surface, however its edges and loops are numbered?"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Mapping, Sequence
+
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.decomposition.borders import Borders, ClosedMesh
+from cellcolor.decomposition.cells import loops_of
+
+__all__ = ["wrong_cell"]
+
+_Side = tuple[int, int, tuple[int, ...]]
+"""What a dart is besides its number: its cell, the cell across, the joinable colors."""
+
+
+def wrong_cell(
+    surface: LabelledSurface,
+    instance: Instance,
+    vertex_cell: Sequence[int],
+    deadline: Deadline = NEVER,
+) -> int | None:
+    """A cell of a connected part whose borders are not those on the surface; None if all are.
+
+    Args:
+        surface: the labelled surface.
+        instance: a topological graph that is said to be of it.
+        vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable. Cells have to have the
+            colors of their vertices; they may be smaller than they could be.
+        deadline: when to give up.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    mesh = ClosedMesh(surface)
+    cell_of = [*vertex_cell, *[OUTSIDE] * (mesh.vertex_count - mesh.real_count)]
+    pieces = _pieces(surface, vertex_cell, deadline)
+    for cell in range(len(instance.cells)):
+        if pieces[cell] != 1:
+            return cell
+    borders = Borders(surface, mesh, cell_of)
+    curves = borders.curves(deadline)
+    loops = loops_of(borders, curves, cell_of, deadline)
+    drawn: dict[int, _Side] = {}
+    for number, curve in enumerate(curves, start=1):
+        left, right = curve.steps[0]
+        colors = tuple(sorted(borders.joinable(left, right)))
+        drawn[number] = cell_of[left], cell_of[right], colors
+        drawn[-number] = cell_of[right], cell_of[left], colors
+    told: dict[int, _Side] = {}
+    for edge in instance.edges:
+        colors = instance.joinable(edge.id)
+        told[edge.id] = edge.left, edge.right, colors
+        told[-edge.id] = edge.right, edge.left, colors
+    on_mesh = _shapes(drawn, loops.values(), deadline)
+    in_file = _shapes(told, (cell.loops for cell in instance.cells), deadline)
+    different = (on_mesh - in_file) + (in_file - on_mesh)
+    return min((shape[0][0][0] for shape in different), default=None)
+
+
+def _pieces(
+    surface: LabelledSurface, vertex_cell: Sequence[int], deadline: Deadline
+) -> Counter[int]:
+    """In how many pieces each cell lies on the mesh."""
+    beside: dict[int, list[int]] = defaultdict(list)
+    for a, b in deadline.watch(surface.left_of):
+        if vertex_cell[a] == vertex_cell[b] and not surface.cracked(a, b):
+            beside[a].append(b)
+            beside[b].append(a)
+    found, seen = Counter[int](), set[int]()
+    for vertex, cell in deadline.watch(enumerate(vertex_cell)):
+        if cell == OUTSIDE or vertex in seen:
+            continue
+        found[cell] += 1
+        seen.add(vertex)
+        left = [vertex]
+        while left:
+            for other in beside[left.pop()]:
+                if other not in seen:
+                    seen.add(other)
+                    left.append(other)
+    return found
+
+
+_Shape = tuple[tuple[_Side, int, int], ...]
+
+
+def _shapes(
+    sides: Mapping[int, _Side],
+    loops: Iterable[Sequence[Sequence[int]]],
+    deadline: Deadline,
+) -> Counter[_Shape]:
+    """Each connected part of the borders in a form that does not depend on any number of an edge.
+
+    From a dart on, the following dart of its loop and the one across its edge are numbered as they
+    are met. So one dart says where all are, and of the darts to begin with the least form counts.
+    """
+    following = {
+        dart: loop[place - len(loop) + 1]
+        for own in loops
+        for loop in own
+        for place, dart in enumerate(loop)
+    }
+    found: Counter[_Shape] = Counter()
+    left = set(following)
+    for first in sorted(following):
+        if first not in left:
+            continue
+        part = _walk(first, following)
+        left.difference_update(part)
+        alike: dict[_Side, list[int]] = defaultdict(list)
+        for dart in part:
+            alike[sides[dart]].append(dart)
+        # The rarest sort of dart, so that there are few to begin with.
+        starts = min(alike.items(), key=lambda item: (len(item[1]), item[0]))[1]
+        forms = []
+        for start in starts:
+            deadline.check()
+            number = {dart: place for place, dart in enumerate(_walk(start, following))}
+            forms.append(
+                tuple(
+                    (sides[dart], number[following[dart]], number.get(-dart, -1)) for dart in number
+                )
+            )
+        found[min(forms)] += 1
+    return found
+
+
+def _walk(first: int, following: Mapping[int, int]) -> list[int]:
+    """All darts that hang together with one, in the order in which they are met from there."""
+    met = {first: None}
+    order = [first]
+    for dart in order:  # which grows meanwhile
+        for other in (following[dart], -dart):
+            if other in following and other not in met:
+                met[other] = None
+                order.append(other)
+    return order
