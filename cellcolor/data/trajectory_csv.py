@@ -1,8 +1,9 @@
 """Trajectories as tables of comma-separated values, as any planner can write them.
 
 The header names the columns, in any order: ``contact`` (0 or 1), ``q1`` to the last joint in rad;
-and if they are known ``time_s``, ``segment``, and the tool's pose ``x``, ``y``, ``z`` in m with the
-surface's normal ``nx``, ``ny``, ``nz``.
+and if they are known ``time_s``, ``segment``, the tool's pose ``x``, ``y``, ``z`` in m with the
+surface's normal ``nx``, ``ny``, ``nz``, and what the trajectory states of a sample, 0 or 1:
+``repeated``, ``unplanned`` and ``extra_lift_off``.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from cellcolor.files.documents import read_text
 __all__ = ["TrajectoryTable", "read_trajectory_csv"]
 
 _POSE = ("x", "y", "z", "nx", "ny", "nz")
-_OTHERS = ("time_s", "segment", "contact", *_POSE)
+_STATED = ("repeated", "unplanned", "extra_lift_off")
+_OTHERS = ("time_s", "segment", "contact", *_POSE, *_STATED)
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +40,9 @@ class TrajectoryTable:
         times: (k,) in s; None without the column.
         segment: (k,); None without the column.
         poses: (k, 6) point in m and normal; None without these columns.
+        repeated: (k,) where it runs along an earlier pass on purpose.
+        unplanned: (k,) where the move to the next sample was not planned.
+        extra_lift_off: (k,) the last sample in contact before a lift-off beyond the minimum.
     """
 
     name: str
@@ -46,6 +51,9 @@ class TrajectoryTable:
     times: Array | None
     segment: Index | None
     poses: Array | None
+    repeated: Mask
+    unplanned: Mask
+    extra_lift_off: Mask
 
 
 def read_trajectory_csv(path: str | PathLike[str]) -> TrajectoryTable:
@@ -89,6 +97,12 @@ def _parsed(name: str, text: str) -> TrajectoryTable:
         times=table[:, place["time_s"]] if "time_s" in place else None,
         segment=table[:, place["segment"]].astype(np.int64) if "segment" in place else None,
         poses=table[:, [place[title] for title in _POSE]] if "x" in place else None,
+        **{
+            title: table[:, place[title]] == 1
+            if title in place
+            else np.zeros(len(rows), dtype=bool)
+            for title in _STATED
+        },
     )
 
 
@@ -123,7 +137,7 @@ def _number(cell: str, field: str) -> float:
 
 def _check_kinds(columns: list[str], row: list[float], line: str) -> None:
     for column, number in zip(columns, row, strict=True):
-        if column == "contact" and number not in (0, 1):
-            raise InputError(None, f"{line}, column contact", f"must be 0 or 1, is {number:g}")
+        if column in ("contact", *_STATED) and number not in (0, 1):
+            raise InputError(None, f"{line}, column {column}", f"must be 0 or 1, is {number:g}")
         if column == "segment" and (number != int(number) or abs(number) > 2**53):
             raise InputError(None, f"{line}, column segment", f"must be an integer, is {number:g}")

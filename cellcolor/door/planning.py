@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -209,6 +209,7 @@ def plan_by(
     if len(painting.minima) > 1:  # the surface was refined and solved again
         subject = Subject(path, painting.built, painting.built.surface)
         result = Result(painting.solution, subject, witness(painting.solution))
+        prepared = replace(prepared, surface=painting.built.stages.surface)
     with clock.timed("motion"):
         planned = plan_motion(
             prepared,

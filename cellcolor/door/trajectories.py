@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
@@ -51,7 +52,9 @@ def judge_trajectory(
 
     report = progress or (lambda _: None)
     report("preparation")
-    prepared = prepare(built.scene, deadline)
+    # The build may have bisected borders; cracks and area are those of its mesh.
+    prepared = replace(prepare(built.scene, deadline), surface=built.stages.surface)
+    tells = isinstance(given, Trajectory)
     timed = isinstance(given, Trajectory) or given.times is not None
     if isinstance(given, TrajectoryTable):
         given = completed(given, prepared.robot, deadline)
@@ -63,6 +66,7 @@ def judge_trajectory(
         built,
         given,
         timed=timed,
+        tells=tells,
         minimum_lift_offs=max(0, bounds.lower - 1) if bounds.exact else None,
         deadline=deadline,
         progress=progress,

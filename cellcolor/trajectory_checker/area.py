@@ -52,12 +52,14 @@ def judge_area(
     fine: FineMesh,
     spacing: float,
     limits: Limits,
+    tells: bool,
     faults: FaultList,
 ) -> CoveredArea:
     """Measure what is covered, and note what is not, and what is gone over too often.
 
     Args:
         rows: (c,) those of ``dense`` in contact, with their places and branches.
+        tells: whether the trajectory can say what it leaves out.
         touching: (c,) whether the tip is on the surface there; nothing else covers anything.
     """
     rows, branches = rows[touching], branches[touching]
@@ -70,7 +72,14 @@ def judge_area(
     total = float(areas.sum())
     reached = reach(fine, located, FAR * spacing)
     missed = (areas > 0) & (reached.distance > NEAR * spacing)
-    right = excused(prepared, trajectory, dense, rows, branches, fine, reached, missed)
+    segments = (
+        {part.segment for part in trajectory.left_out}
+        if tells
+        else set(trajectory.segment[trajectory.contact].tolist())
+    )
+    right = excused(
+        prepared, trajectory, sorted(segments), dense, rows, branches, fine, reached, missed
+    )
     near = reached.distance <= FAR * spacing
     uncovered = missed & ~right & ~near
     visits = passes(dense, rows, located, fine, _VISIT * spacing)

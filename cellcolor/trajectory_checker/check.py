@@ -42,6 +42,7 @@ def check_trajectory(
     trajectory: Trajectory,
     *,
     timed: bool = True,
+    tells: bool = True,
     minimum_lift_offs: int | None = None,
     limits: Limits | None = None,
     deadline: Deadline = NEVER,
@@ -54,13 +55,16 @@ def check_trajectory(
         built: the same scene's labelled surface: the area that has a color has to be covered.
         trajectory: what is judged.
         timed: whether its times mean anything; without them velocities are not judged.
+        tells: whether it can say what it leaves out. A table cannot: of it whatever no branch can
+            do counts as stated.
         minimum_lift_offs: what its lift-offs are compared with.
         limits: what it has to cover and may repeat; the usual ones without.
         deadline: when to give up.
         progress: told what is being done.
 
     Raises:
-        InputError: the trajectory is of another arm, or the setup's velocities are; or the arm's
+        InputError: the scene was prepared with another mesh than the labelled surface, the
+            trajectory is of another arm, or the setup's velocities are; or the arm's
             solutions have no names, or it has a prismatic joint.
         OutOfTime: the deadline came first.
         TooLarge: surface or trajectory would not fit into memory.
@@ -69,6 +73,7 @@ def check_trajectory(
     robot, motion = prepared.robot, prepared.setup.motion
     prepared.check_named()
     _check_task(prepared)
+    _check_mesh(prepared, built)
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)
     notes: list[str] = []
@@ -103,7 +108,7 @@ def check_trajectory(
         deadline.check()
         covered = judge_area(
             prepared, built, trajectory, dense, rows, located, branches, touching, fine,
-            motion.spacing_m, limits or Limits(), faults,
+            motion.spacing_m, limits or Limits(), tells, faults,
         )  # fmt: skip
         notes += _given_up(built)
     return _verdict(trajectory, dense, timed, minimum_lift_offs, faults, covered, notes)
@@ -159,6 +164,20 @@ def _check_task(prepared: PreparedScene) -> None:
             "asked for"
         )
         raise InputError(None, "robot.kinematics", message)
+
+
+def _check_mesh(prepared: PreparedScene, built: BuildResult) -> None:
+    """Refuse two meshes: a crack of one means nothing on the other."""
+    mesh, surface = prepared.surface, built.surface
+    same = np.array_equal(mesh.vertices, surface.vertices) and np.array_equal(
+        mesh.faces, surface.faces
+    )
+    if not same:
+        message = (
+            f"the scene has a mesh of {len(mesh.vertices)} vertices and its labelled surface one "
+            f"of {len(surface.vertices)}: a trajectory is judged on one"
+        )
+        raise InputError(None, "surface", message)
 
 
 def _check_arm(prepared: PreparedScene, trajectory: Trajectory) -> None:

@@ -82,6 +82,7 @@ def reach(fine: FineMesh, located: Located, farthest: float) -> Reached:
 def excused(
     prepared: PreparedScene,
     trajectory: Trajectory,
+    stated: list[int],
     dense: Dense,
     rows: Index,
     branches: Index,
@@ -96,13 +97,13 @@ def excused(
     pass nothing tells which segment is meant, so there no branch may be valid.
 
     Args:
+        stated: the segments of which the trajectory states to leave something out.
         rows: (c,) those of ``dense`` in contact; ``branches`` (c,) of these.
         missed: (n,) the vertices to be asked about.
     """
     right = np.zeros(len(fine.vertices), dtype=bool)
     segment = trajectory.segment[dense.sample[rows]]
     near = np.append(segment, -1)[reached.nearest]
-    stated = sorted({part.segment for part in trajectory.left_out})
     every = np.arange(len(prepared.kinematics.branches))
     regions = [(near == number, branches[segment == number]) for number in stated]
     if stated:

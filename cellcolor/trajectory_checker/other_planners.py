@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory import ExtraLiftOff, RepeatedStretch, Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.trajectory_checker.dense import poses_of
+from cellcolor.trajectory_checker.fault_list import stretches
 
 __all__ = ["completed"]
+
+_REASON = "stated in the table"
 
 
 def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) -> Trajectory:
@@ -35,6 +38,7 @@ def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) 
         points, normals = table.poses[:, :3], table.poses[:, 3:]
     begins = table.contact & ~np.concatenate([[False], table.contact[:-1]])
     strokes = np.where(table.contact, np.cumsum(begins) - 1, -1)
+    segment = strokes if table.segment is None else table.segment
     return Trajectory(
         name=table.name,
         joint_names=robot.joint_names,
@@ -43,5 +47,13 @@ def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) 
         points=points,
         normals=normals,
         contact=table.contact,
-        segment=strokes if table.segment is None else table.segment,
+        segment=segment,
+        unplanned=tuple(np.flatnonzero(table.unplanned).tolist()),
+        extra_lift_offs=tuple(
+            ExtraLiftOff(k, int(segment[k]), _REASON, _REASON, tuple(points[k].tolist()))
+            for k in np.flatnonzero(table.extra_lift_off).tolist()
+        ),
+        repeated=tuple(
+            RepeatedStretch(first, after - 1, _REASON) for first, after in stretches(table.repeated)
+        ),
     )

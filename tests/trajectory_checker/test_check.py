@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -15,12 +17,17 @@ pytest.importorskip("coal")
 import rasters
 from planted_faults import twice
 
+import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.data.surface import Crack
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
+from cellcolor.data.trajectory_csv import read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
+from cellcolor.exports.joint_table import joints_csv
+from cellcolor.frontend.parts.bisect import bisected
 from cellcolor.trajectory_checker.check import check_trajectory
+from cellcolor.trajectory_checker.other_planners import completed
 from cellcolor.trajectory_checker.tolerances import Limits
 
 
@@ -364,3 +371,60 @@ def test_an_empty_trajectory_covers_nothing() -> None:
     verdict = judged(empty)
     assert (verdict.strokes, verdict.lift_offs, verdict.samples) == (0, 0, 0)
     assert set(verdict.fault_counts) == {"uncovered"}
+
+
+def test_two_meshes_are_refused() -> None:
+    prepared, built, trajectory = rasters.cap()
+    marked = np.zeros(len(prepared.surface.edges()), dtype=bool)
+    marked[0] = True
+    finer = replace(prepared, surface=bisected(prepared.surface, marked, "here"))
+    with pytest.raises(InputError, match="a trajectory is judged on one"):
+        check_trajectory(finer, built, trajectory)
+
+
+def test_a_scene_with_bisected_borders_is_judged_on_its_own_mesh() -> None:
+    """The door prepares the scene once more, and has to take the mesh that was built."""
+    prepared, built, trajectory = rasters.cap()
+    setup = prepared.setup.varied(continuity={"border_length_m": 0.006})
+    scene = prepared.scene.with_setup(setup)
+    finer = cellcolor.build(scene)
+    assert len(finer.surface.vertices) > len(built.surface.vertices)
+    assert cellcolor.check(finer, trajectory).covered is not None
+
+
+def test_a_table_says_what_the_trajectory_states(tmp_path: Path) -> None:
+    """A stretch twice is valid where it is stated; so it is in the table of the same motion."""
+    prepared, _, trajectory = rasters.cap()
+    again = twice(prepared, trajectory, np.random.default_rng(0)).trajectory
+    (fault,) = judged(again).of_kind("repeated")
+    extra = ExtraLiftOff(again.strokes[0][1] - 1, 0, "winding", "", (0.0, 0.0, 0.0))
+    assert fault.sample is not None
+    assert fault.last_sample is not None
+    stated = replace(
+        again,
+        repeated=(RepeatedStretch(fault.sample, fault.last_sample, "on purpose"),),
+        extra_lift_offs=(extra,),
+        unplanned=(3,),
+    )
+    file = tmp_path / "joints.csv"
+    file.write_bytes(joints_csv(SimpleNamespace(trajectory=stated)))  # type: ignore[arg-type]
+    read = completed(read_trajectory_csv(file), prepared.robot)
+    assert [(r.sample, r.last_sample) for r in read.repeated] == [
+        (r.sample, r.last_sample) for r in stated.repeated
+    ]
+    assert [e.sample for e in read.extra_lift_offs] == [extra.sample]
+    assert read.unplanned == (3,)
+    as_file, as_table = judged(stated), judged(read, tells=False)
+    assert as_file.fault_counts == as_table.fault_counts
+    assert "repeated" not in as_table.fault_counts
+
+
+def test_a_table_is_not_excused_from_what_an_arm_can_do() -> None:
+    """It cannot state what it leaves out; half of a stroke is left out all the same."""
+    trajectory = rasters.cap()[2]
+    first, after = trajectory.strokes[0]
+    gone = np.arange(first, (first + after) // 2)
+    kept = np.delete(np.arange(len(trajectory.times)), gone)
+    names = ("times", "joints", "points", "normals", "contact", "segment")
+    half = replace(trajectory, **{name: getattr(trajectory, name)[kept] for name in names})
+    assert judged(half, tells=False).of_kind("uncovered")
