@@ -19,7 +19,7 @@ from documents import TRAJECTORY
 from shipped import ROBOTS, SCENES, edited
 
 import cellcolor
-from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory import ExtraLiftOff, Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 
 Capture = pytest.CaptureFixture[str]
@@ -41,29 +41,37 @@ def scene(tmp_path: Path) -> Path:
     return path
 
 
+def stated(trajectory: Trajectory) -> Trajectory:
+    """The raster lifts off once, which the square does not need, and says so."""
+    sample = trajectory.strokes[0][1] - 1
+    extra = ExtraLiftOff(sample, 0, "half way", "", tuple(trajectory.points[sample]))
+    return replace(trajectory, extra_lift_offs=(extra,))
+
+
 def table(path: Path, trajectory: Trajectory, *, timed: bool = True) -> Path:
-    """Joints and contact alone, with six decimals."""
+    """Joints, contact and the extra lift-off alone, with six decimals."""
+    extra = {stated.sample for stated in trajectory.extra_lift_offs}
     with path.open("w", encoding="utf-8", newline="") as stream:
         writer = csv.writer(stream)
         joints = [f"q{k + 1}" for k in range(trajectory.joints.shape[1])]
-        writer.writerow([*(["time_s"] if timed else []), "contact", *joints])
-        for time, contact, row in zip(
-            trajectory.times, trajectory.contact, trajectory.joints, strict=True
+        writer.writerow([*(["time_s"] if timed else []), "contact", *joints, "extra_lift_off"])
+        for number, (time, contact, row) in enumerate(
+            zip(trajectory.times, trajectory.contact, trajectory.joints, strict=True)
         ):
-            cells = [f"{number:.6f}" for number in ([time, *row] if timed else row)]
+            cells = [f"{value:.6f}" for value in ([time, *row] if timed else row)]
             cells.insert(1 if timed else 0, str(int(contact)))
-            writer.writerow(cells)
+            writer.writerow([*cells, int(number in extra)])
     return path
 
 
 def test_a_valid_one(scene: Path, tmp_path: Path, capsys: Capture) -> None:
-    trajectory = rasters.square()[2]
+    trajectory = stated(rasters.square()[2])
     path = tmp_path / "t.json"
     path.write_text(trajectory.to_json(), encoding="utf-8")
     assert run("check", scene, path) == 0
     printed = capsys.readouterr().out
     assert printed.startswith(f"{path}: valid\n  2 strokes, 1 lift-off, ")
-    assert "fewest lift-offs on this surface, proved: 0; 0 more stated, 1 more not" in printed
+    assert "fewest lift-offs on this surface, proved: 0; 1 more stated, 0 more not" in printed
     assert "covered 100.00%" in printed
     for timed in (True, False):
         other = table(tmp_path / "t.csv", trajectory, timed=timed)
@@ -93,8 +101,9 @@ def test_one_with_faults(scene: Path, tmp_path: Path, capsys: Capture) -> None:
 def test_from_python_as_values() -> None:
     _, built, trajectory = rasters.square()
     verdict = cellcolor.check(built, trajectory)
-    assert verdict.valid
     assert verdict.minimum_lift_offs == 0
+    assert set(verdict.fault_counts) == {"lift-offs"}
+    assert cellcolor.check(built, stated(trajectory)).valid
 
 
 def test_bad_input(scene: Path, tmp_path: Path, capsys: Capture) -> None:

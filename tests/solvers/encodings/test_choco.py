@@ -17,7 +17,7 @@ from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.solution import count_segments
 from cellcolor.deadline import Deadline
-from cellcolor.errors import CellcolorError, InputError, SolverMissing, TooLarge
+from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, planar_graph
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.child import Child
@@ -92,12 +92,6 @@ def test_without_edges(count: int) -> None:
     cells = tuple(Cell(number, (0,), ()) for number in range(count))
     solution = solve(Instance("no edges", ("c",), cells, ()), Options(), "choco")
     assert (solution.status, solution.segments) == ("optimal", count)
-
-
-def test_several_loops_are_refused() -> None:
-    annulus = Instance.read(PAPER / "annulus.json")
-    with pytest.raises(InputError, match="one live loop only, this one has 2"):
-        solve(annulus, Options(), "choco")
 
 
 def test_models_that_would_not_fit_are_refused() -> None:
