@@ -167,14 +167,6 @@ class TestRun:
         assert run("bench", "run", RING, *arguments) == 0
         assert [row.status for row in rows(table)] == ["memory"]
 
-    def test_unsupported(self, tmp_path: Path) -> None:
-        """The depth-first search knows the search space of the paper only."""
-        table = tmp_path / "t.csv"
-        command = ["bench", "run", "ring", "--solver", "dfs", "--search-space", "surface"]
-        assert run(*command, "-o", table) == 0
-        (row,) = rows(table)
-        assert row.status == "unsupported" and row.error
-
     @pytest.mark.usefixtures("fakes")
     @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGKILL])
     def test_stopped_and_continued(self, tmp_path: Path, number: int) -> None:
