@@ -84,9 +84,10 @@ def accelerations(times: Array, joints: Array) -> Array:
     """The least accelerations (k, joints) at the samples of a motion from rest to rest, rad/s^2.
 
     No smooth motion through the samples has less. Between neighboring steps it is the change of
-    velocity. Of three steps with the velocities u, v, w that last r, s, t it is 4 |v - (u + w) / 2|
-    by r + s + t: within s of the middle step velocities differ by as at most, and their mean is at
-    most as/4 off the middle of the first and the last, which are ar/2 and at/2 off u and w.
+    velocity. Of three steps with the velocities u, v, w that last r, s, t it is four times what v
+    is off (u + w) / 2, by r + s + t: within s of the middle step velocities differ by as at most,
+    and their mean is at most as/4 off the middle of the first and the last, which are at most ar/2
+    and at/2 off u and w.
     """
     steps = np.diff(times)
     velocity = np.diff(joints, axis=0) / steps[:, None]
