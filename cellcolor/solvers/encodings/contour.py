@@ -90,7 +90,8 @@ class Contour(Encoding):
         The nodes are the darts, node i standing for "just arrived at dart i, in its cell". If j is
         next, the walk crosses there and arrives at -j. A loop at a node leaves it out. The depot,
         node 0, is where all walks begin and end: each at its root, which has no arc from its last
-        dart to its first.
+        dart to its first. One more node has a tour of its own that is always there: CP-SAT's
+        presolve calls a depot that no tour visits infeasible, and all joins may be idle.
         """
         node = {dart: number for number, dart in enumerate(self.problem.darts, start=1)}
         arcs = [(node[i], node[-j], arc) for (i, j), arc in self.next.items()]
@@ -98,8 +99,9 @@ class Contour(Encoding):
             arcs.append((number, number, self.idle[abs(dart)]))
             arcs.append((0, node[-dart], self.first[dart]))
             arcs.append((number, 0, self.last[dart]))
-        if arcs:
-            self.model.add_multiple_circuit(arcs)
+        spare, always = len(node) + 1, self.model.new_constant(1)
+        arcs += [(0, spare, always), (spare, 0, always)]
+        self.model.add_multiple_circuit(arcs)
 
     def _roots(self) -> None:
         """A root is an undivided cell, which every segment has (docs/encodings.md).

@@ -76,6 +76,8 @@ class EncodingSolver:
         status, interrupt = solve_interruptibly(solver, built.model, found)
         if interrupt is not None and not isinstance(interrupt, OutOfTime):
             raise interrupt
+        if status in (cp_model.INFEASIBLE, cp_model.MODEL_INVALID):
+            raise AssertionError(f"{self.encoding.__name__}: every instance has a division")
         if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             return Answer(None, (), (Bound("model", 0, "strands"),))
         colors = {edge: c for (edge, c), on in built.joined.items() if solver.boolean_value(on)}
