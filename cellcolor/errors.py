@@ -33,7 +33,7 @@ class InputError(CellcolorError):
         self.message = " ".join(message.split())
         super().__init__(": ".join(part for part in (file, field, self.message) if part))
 
-    def __reduce__(self) -> tuple[type[InputError], tuple[str | None, str | None, str]]:
+    def __reduce__(self) -> tuple[type[InputError], tuple[object, ...]]:
         # Python would hand the text of the whole line to __init__, which takes its three parts.
         return type(self), (self.file, self.field, self.message)
 

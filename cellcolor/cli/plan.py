@@ -14,6 +14,8 @@ from cellcolor.cli.terminal import complain, say
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.plan_files import KINDS, check_folder
+from cellcolor.door.subject import Subject
+from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedPlan
 from cellcolor.errors import InputError
 
 _SHOWN = 5  # faults
@@ -43,14 +45,21 @@ def plan_scene(
             begun = time.perf_counter()
             planned.save(folder)
             stages = {**planned.seconds, "files and page": time.perf_counter() - begun}
+    except PlanOutOfTime as error:
+        return _unfinished(scene, folder, error.unfinished)
     except OutOfTime:
-        complain(f"{scene}: not planned: the time limit came first; nothing is written")
+        complain(
+            f"{scene}: not planned: the time limit came before the topological graph was known"
+        )
         return Exit.STOPPED
+    except NothingCovered as error:
+        for line in str(error.report).split("\n"):
+            say(line)
+        raise
     except InputError as error:
         raise error if error.file else error.in_file(str(scene)) from error
     INTERRUPTS.check()
-    for warning in planned.subject.warnings:
-        complain(f"{scene}: warning: {warning}")
+    _warn(scene, planned.subject)
     for line in str(planned).split("\n"):
         say(line)
     verdict = planned.verdict
@@ -63,3 +72,23 @@ def plan_scene(
         return Exit.INVALID
     proved = planned.solution.status == "optimal"
     return Exit.DONE if verdict.valid and proved else Exit.STOPPED
+
+
+def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
+    """Write what there is when the time limit came, and say what is missing."""
+    _warn(scene, unfinished.subject)
+    complain(f"{scene}: not planned to the end: {unfinished.missing}")
+    try:
+        written = unfinished.save(folder)
+    except InputError as error:
+        complain(f"nothing is written: {error}")
+        return Exit.STOPPED
+    if unfinished.result is not None:
+        say(str(unfinished.result))
+    say(f"wrote {count(len(written), 'file')} to {folder}: look at {folder / 'report.html'}")
+    return Exit.STOPPED
+
+
+def _warn(scene: Path, subject: Subject) -> None:
+    for warning in subject.warnings:
+        complain(f"{scene}: warning: {warning}")

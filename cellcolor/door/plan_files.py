@@ -16,6 +16,7 @@ from cellcolor.data import tool_paths as tool_paths_file
 from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data import trajectory_verdict as verdict_file
 from cellcolor.data.instance import SurfaceReference
+from cellcolor.door.unfinished import UnfinishedPlan
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.files.writing import (
@@ -26,12 +27,13 @@ from cellcolor.files.writing import (
     check_output,
     is_folder_or_nothing,
     kind_of_format,
+    write,
 )
 
 if TYPE_CHECKING:
     from cellcolor.door.planning import PlannedScene
 
-__all__ = ["KINDS", "check_folder", "make_folder", "outputs"]
+__all__ = ["KINDS", "check_folder", "make_folder", "save"]
 
 _SIDE, _SURFACE = "instance.reasons.npz", "instance.surface.json"
 
@@ -82,13 +84,48 @@ def make_folder(folder: Path) -> Iterator[None]:
         raise
 
 
-def outputs(planned: PlannedScene, folder: Path) -> list[Output]:
-    """All files of a plan, ready to be written."""
+def save(plan: PlannedScene | UnfinishedPlan, folder: Path) -> tuple[str, ...]:
+    """Write the files of a plan, all of them or none: their names.
+
+    Raises:
+        InputError: the folder has files of another plan that these would not replace; something
+            else is there; or it cannot be written.
+    """
+    files = _files(plan)
+    for name in KINDS.keys() - files.keys():
+        if (folder / name).exists():
+            message = "is of a plan that came farther, and files of two plans are not mixed"
+            raise InputError(str(folder / name), None, message)
+    with make_folder(folder):
+        write([Output(folder / name, KINDS[name], [files[name]]) for name in files])
+    return tuple(files)
+
+
+def _files(plan: PlannedScene | UnfinishedPlan) -> dict[str, bytes]:
+    """The files that there are, by name, in the order of :data:`KINDS`."""
+    surface, painted = plan.built.surface, plan.painted
+    surface = replace(surface, meta=surface.meta | {"side_file": _SIDE})
+    content: dict[str, bytes] = {
+        _SIDE: plan.built.candidates.to_bytes(),
+        _SURFACE: surface.to_json().encode(),
+        "instance.json": _named(plan).encode(),
+    }
+    if plan.solution is not None:
+        content["solution.json"] = plan.solution.to_json().encode()
+    if painted is not None:
+        content["painted.plan.json"] = painted.plan.to_json().encode()
+        content["painted.surface.json"] = painted.surface.to_json().encode()
+    if plan.paths is not None:
+        content["paths.json"] = plan.paths.to_json().encode()
+    if not isinstance(plan, UnfinishedPlan):
+        content |= _of_motion(plan)
+    return content | {"report.html": plan.page()}
+
+
+def _of_motion(planned: PlannedScene) -> dict[str, bytes]:
     from cellcolor.exports.interface import PlannedMotion
     from cellcolor.pictures.report_page.surface_modes import segment_fills
 
-    surface = planned.built.surface
-    surface = replace(surface, meta=surface.meta | {"side_file": _SIDE})
     painted = planned.painted
     motion = PlannedMotion(
         painted.surface,
@@ -97,24 +134,15 @@ def outputs(planned: PlannedScene, folder: Path) -> list[Output]:
         planned.paths,
         planned.trajectory,
     )
-    content = {
-        _SIDE: planned.built.candidates.to_bytes(),
-        _SURFACE: surface.to_json().encode(),
-        "instance.json": _named(planned).encode(),
-        "solution.json": planned.solution.to_json().encode(),
-        "painted.plan.json": painted.plan.to_json().encode(),
-        "painted.surface.json": painted.surface.to_json().encode(),
-        "paths.json": planned.paths.to_json().encode(),
+    return {
         "trajectory.json": planned.trajectory.to_json().encode(),
         "verdict.json": planned.verdict.to_json().encode(),
         **{name: export.content(motion) for name, export in EXPORTS.items()},
-        "report.html": planned.page(),
     }
-    return [Output(folder / name, kind, [content[name]]) for name, kind in KINDS.items()]
 
 
-def _named(planned: PlannedScene) -> str:
+def _named(plan: PlannedScene | UnfinishedPlan) -> str:
     """The instance, which names the surface's file beside it."""
-    decomposition, sha256 = planned.subject.decomposition, planned.built.surface.sha256
+    decomposition, sha256 = plan.subject.decomposition, plan.built.surface.sha256
     reference = SurfaceReference(_SURFACE, tuple(decomposition.vertex_cell), sha256)
     return replace(decomposition.instance, surface=reference).to_json()

@@ -20,9 +20,9 @@ from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_file
 from cellcolor.door.solving import deadline_after, solve
 from cellcolor.door.subject import Subject, is_made_by, is_scene
+from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedPlan
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
-from cellcolor.files.writing import write
 from cellcolor.painting.paint import Painted
 from cellcolor.solvers.bounds.witness import witness
 
@@ -108,11 +108,9 @@ class PlannedScene:
         Raises:
             InputError: something else is there, or it cannot be written.
         """
-        from cellcolor.door.plan_files import make_folder, outputs
+        from cellcolor.door.plan_files import save
 
-        place = path_of(folder)
-        with make_folder(place):
-            write(outputs(self, place))
+        save(self, path_of(folder))
 
     def __str__(self) -> str:
         extra = len(self.trajectory.extra_lift_offs)
@@ -158,7 +156,9 @@ def plan(
     Raises:
         InputError: the scene or a key cannot be used, no point of the object can be covered, or
             the setup has no table ``[motion]`` and not all that is needed of it is given.
-        OutOfTime: the time limit came first.
+        PlanOutOfTime: the time limit came after the topological graph was known; what there is by
+            then can be saved.
+        OutOfTime: it came earlier.
     """
     return plan_by(scene, pattern, motion, deadline_after(time_limit), progress)
 
@@ -183,6 +183,7 @@ def plan_by(
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
     from cellcolor.frontend.stage_clock import StageClock
+    from cellcolor.motion.home import check_home
     from cellcolor.motion.limits import motion_of
     from cellcolor.motion.plan import plan_motion
     from cellcolor.motion.scene_painting import paint_scene
@@ -192,44 +193,59 @@ def plan_by(
     given = Scene.read(path) if path is not None else scene
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)  # type: ignore[arg-type]
-        motion_of(prepared)  # refuses what is wrong with it before the long work begins
+        # What is wrong with the motion is refused before the long work begins.
+        check_home(prepared, motion_of(prepared))
     with clock.timed("colors"):
         prepared, subject = _built(prepared, path, StageClock(deadline, progress))
-    with clock.timed("fewest segments"):
-        result = _solved(subject, deadline)
-    with clock.timed("painting"):
-        painting = paint_scene(
-            prepared,
-            subject.build(),
-            subject.decomposition,
-            result.solution,
-            deadline=deadline,
-            progress=progress,
-        )
-    if len(painting.minima) > 1:  # the surface was refined and solved again
-        subject = Subject(path, painting.built, painting.built.surface)
-        result = Result(painting.solution, subject, witness(painting.solution))
-        prepared = replace(prepared, surface=painting.built.stages.surface)
-    with clock.timed("motion"):
-        planned = plan_motion(
-            prepared,
-            subject.build(),
-            painting.painted,
-            painting.normals,
-            pattern=pattern or DEFAULT_PATTERN,
-            deadline=deadline,
-            progress=progress,
-        )
-    solution = result.solution
-    with clock.timed("judging"):
-        verdict = check_trajectory(
-            prepared,
-            subject.build(),
-            planned.trajectory,
-            minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
-            deadline=deadline,
-            progress=progress,
-        )
+    so_far = UnfinishedPlan(subject, prepared)
+
+    def has(**more: Any) -> None:
+        nonlocal so_far
+        so_far = replace(so_far, **more)
+
+    try:
+        with clock.timed("fewest segments"):
+            result = solve(subject, time_limit=_seconds(deadline.share(_FOR_SOLVING)))
+            has(result=result)
+            if result.solution.cells is None:
+                raise OutOfTime("the time limit came before any division was known")
+        with clock.timed("painting"):
+            painting = paint_scene(
+                prepared,
+                subject.build(),
+                subject.decomposition,
+                result.solution,
+                deadline=deadline,
+                progress=progress,
+            )
+        if len(painting.minima) > 1:  # the surface was refined and solved again
+            subject = Subject(path, painting.built, painting.built.surface)
+            result = Result(painting.solution, subject, witness(painting.solution))
+            prepared = replace(prepared, surface=painting.built.stages.surface)
+        has(subject=subject, prepared=prepared, result=result, painted=painting.painted)
+        with clock.timed("motion"):
+            planned = plan_motion(
+                prepared,
+                subject.build(),
+                painting.painted,
+                painting.normals,
+                pattern=pattern or DEFAULT_PATTERN,
+                deadline=deadline,
+                progress=progress,
+                on_paths=lambda paths, measures: has(paths=paths, measures=measures),
+            )
+        solution = result.solution
+        with clock.timed("judging"):
+            verdict = check_trajectory(
+                prepared,
+                subject.build(),
+                planned.trajectory,
+                minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
+                deadline=deadline,
+                progress=progress,
+            )
+    except OutOfTime as error:
+        raise PlanOutOfTime(so_far) from error
     return PlannedScene(
         subject,
         prepared,
@@ -262,7 +278,7 @@ def _built(
     """The scene with the surface that was built, refined where its setup asks for it, and that.
 
     Raises:
-        InputError: no point of the object can be covered.
+        NothingCovered: no point of the object can be covered.
     """
     from cellcolor.frontend.build import result_of
     from cellcolor.frontend.finer_borders import with_finer_borders
@@ -272,20 +288,12 @@ def _built(
         prepared, stages = with_finer_borders(prepared, clock)
         built = result_of(prepared, stages, clock)
         subject = Subject(path, built, built.surface)
-        if subject.graph(prepared.deadline).nothing_to_cover:
-            message = "no point of the object can be covered: there is nothing to plan"
-            raise InputError(None, None, message)
+        nothing = subject.graph(prepared.deadline).nothing_to_cover
+    if nothing:
+        raise NothingCovered(built.report, str(prepared.scene.file or "") or None)
     return prepared, subject
 
 
-def _solved(subject: Subject, deadline: Deadline) -> Result:
-    """The fewest segments, with a share of the time that is left.
-
-    Raises:
-        OutOfTime: no division was found in that time.
-    """
-    seconds = deadline.share(_FOR_SOLVING).left
-    result = solve(subject, time_limit=None if math.isinf(seconds) else max(seconds, 1e-3))
-    if result.solution.cells is None:
-        raise OutOfTime("the time limit came before any division was known")
-    return result
+def _seconds(deadline: Deadline) -> float | None:
+    """A deadline as a time limit, which is longer than 0."""
+    return None if math.isinf(deadline.left) else max(deadline.left, 1e-3)

@@ -12,10 +12,17 @@ from cellcolor.frontend.contact.stand_in_report import StandInReport
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
+from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.survey import Survey
 
 __all__ = ["BuildReport", "ColorReport", "make_report"]
+
+_REMEDIES = {
+    "no solution": "move the part nearer to the robot, or turn it towards the tool",
+    **{test.name: test.remedy for test in STANDARD_TESTS},
+}
+"""What to try where no vertex is reachable, by the commonest reason."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +77,22 @@ class BuildReport:
         """What is probably not meant, a sentence each."""
         return self.survey.warnings + self.notes
 
+    @property
+    def nothing_covered(self) -> str | None:
+        """Why no vertex has a color, and what to try, in one line; None where one has."""
+        if any(color.vertices for color in self.colors):
+            return None
+        why = "no point of the object can be covered"
+        if self.reachable:
+            return f"{why}: the sliver policy gave up all cells; lower slivers.uncover_below_share"
+        if self.survey.seen_from_behind:
+            return f"{why}: the robot sees it from behind; turn its faces round in the mesh's file"
+        reason, number = max(self.unreachable.items(), key=lambda item: item[1])
+        vertices = count(number, "vertex", "vertices")
+        why = f"{why}: the commonest reason is {reason!r}, at {vertices} of {self.vertices}"
+        remedy = _REMEDIES.get(reason)
+        return f"{why}; {remedy}" if remedy else why
+
     def __str__(self) -> str:
         share = 100 * self.reachable_area_m2 / self.area_m2
         lines = [f"object  {self.survey}", *(f"warning  {text}" for text in self.warnings)]
@@ -91,6 +114,8 @@ class BuildReport:
             lines += [f"injectivity  {self.injectivity}"]
         if self.slivers is not None:
             lines += [self._slivers(self.slivers)]
+        if self.nothing_covered is not None:
+            lines += [self.nothing_covered]
         spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in self.seconds.items())
         return "\n".join([*lines, f"seconds  {sum(self.seconds.values()):.2f}: {spent}"])
 

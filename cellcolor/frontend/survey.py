@@ -41,9 +41,14 @@ class Survey:
         return f"{size} m, nearest point {_meters(self.distance_m)} m from the robot's base"
 
     @property
+    def seen_from_behind(self) -> bool:
+        """Whether the faces are probably wound the wrong way."""
+        return self.from_behind > 0.5
+
+    @property
     def warnings(self) -> tuple[str, ...]:
         """What is probably not meant, a sentence each."""
-        if self.from_behind <= 0.5:
+        if not self.seen_from_behind:
             return ()
         return (
             f"the robot sees {100 * self.from_behind:.0f} % of the object from behind only: if its "

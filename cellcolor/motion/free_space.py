@@ -69,6 +69,43 @@ class FreeSpace:
             clear[rows] = ~self._touching(configurations[rows])
         return clear
 
+    def touched(self, configuration: Array) -> list[str]:
+        """What is in the way in one configuration (joints,): both bodies of each contact, named."""
+        if not self._on:
+            return []
+        place, found = self._place, []
+        poses = forward(place.robot, configuration[None])
+
+        def name(robot: Robot, body: int) -> str:
+            return "the tool's tip" if body == len(place.robot.bodies) else robot.bodies[body].link
+
+        def alone(robot: Robot) -> list[tuple[str, Robot]]:
+            return [
+                (name(robot, number), replace(robot, bodies=(body,), tested_pairs=()))
+                for number, body in enumerate(robot.bodies)
+            ]
+
+        if place.ground is not None:
+            exempt = place.setup.robot.may_touch_ground
+            for link, body in alone(self._near_ground):
+                if hits_ground(body, body_ends(body, poses), place.ground, exempt, poses)[0]:
+                    found.append(f"{link} and the ground")
+        solids = [
+            (self._near_obstacles, f"obstacle[{number}]", solid)
+            for number, solid in enumerate(place.obstacles)
+        ]
+        for around, what, solid in (*solids, (self._near_object, "the object", place.target)):
+            for link, body in alone(around):
+                if solid.hits(body, body_ends(body, poses), poses)[0]:
+                    found.append(f"{link} and {what}")
+        ends = body_ends(self._half, poses)
+        found += [
+            " and ".join(name(self._half, body) for body in pair)
+            for pair in self._half.tested_pairs
+            if hits_itself(replace(self._half, tested_pairs=(pair,)), ends, poses)[0]
+        ]
+        return list(dict.fromkeys(found))
+
     def _touching(self, configurations: Array) -> Mask:
         place = self._place
         poses = forward(place.robot, configurations)

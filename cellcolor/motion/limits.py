@@ -6,7 +6,6 @@ import math
 
 import numpy as np
 
-from cellcolor.arrays import Array
 from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import Robot
@@ -16,7 +15,7 @@ from cellcolor.frontend.setup import Motion
 from cellcolor.frontend.tables import in_file
 from cellcolor.motion.timing import Speeds
 
-__all__ = ["home_of", "motion_of", "speeds_of"]
+__all__ = ["motion_of", "speeds_of"]
 
 
 def motion_of(prepared: PreparedScene) -> Motion:
@@ -61,11 +60,6 @@ def motion_of(prepared: PreparedScene) -> Motion:
             message = f"must be above {least:g} m, contact radius and clearance together"
             raise InputError(None, "motion.retract_m", message)
     return motion
-
-
-def home_of(motion: Motion) -> Array | None:
-    """Where the arm begins and ends (joints,), rad; None if that does not matter."""
-    return None if motion.home_rad is None else np.array(motion.home_rad)
 
 
 def speeds_of(motion: Motion, robot: Robot) -> Speeds:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections import defaultdict
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -17,7 +18,8 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.motion.assembly import assembled
 from cellcolor.motion.following import joint_limits
-from cellcolor.motion.limits import home_of, motion_of, speeds_of
+from cellcolor.motion.home import home_of
+from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.order import ordered
 from cellcolor.motion.segment import Ground, SegmentStrokes, strokes_of
 from cellcolor.motion.small_triangles import (
@@ -32,7 +34,10 @@ from cellcolor.tool_paths.cover import ASKED_FOR, Covered, cover
 from cellcolor.tool_paths.measures import PathMeasures, in_all
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
-__all__ = ["MotionPlan", "plan_motion"]
+__all__ = ["MotionPlan", "OnPaths", "plan_motion"]
+
+OnPaths = Callable[[ToolPaths, tuple[PathMeasures, ...]], None]
+"""Given tool paths, and the measures of each."""
 
 
 @dataclass(frozen=True)
@@ -66,6 +71,7 @@ def plan_motion(
     seed: int = 0,
     deadline: Deadline = NEVER,
     progress: Progress | None = None,
+    on_paths: OnPaths | None = None,
 ) -> MotionPlan:
     """Plan a motion that covers a painted surface (docs/motion.md).
 
@@ -78,6 +84,7 @@ def plan_motion(
         seed: of the sampling planner; the same seed gives the same motion.
         deadline: when to give up.
         progress: told the name of each stage as it begins.
+        on_paths: given the tool paths as soon as they are laid, before the arm is moved on them.
 
     Raises:
         InputError: the setup has no motion, or one that does not fit the arm, or the arm can
@@ -121,9 +128,21 @@ def plan_motion(
             strokes_of(ground, segment, color_of[segment], int(own_branch[segment]))
             for segment in np.unique(segment_of[segment_of >= 0]).tolist()
         ]
+    measures = [one for segment in covered for one in segment.courses.covered.measures]
+    paths = ToolPaths(
+        surface.name,
+        pattern,
+        motion.spacing_m,
+        motion.tool_radius_m,
+        tuple(path for segment in covered for path in segment.courses.covered.paths.paths),
+        surface.sha256,
+    )
+    if on_paths is not None:
+        on_paths(paths, tuple(measures))
     strokes = [stroke for segment in covered for stroke in segment.strokes]
+    left_out = _left_out(small, covered)
     if not strokes:
-        raise InputError(None, None, "the arm can follow no path on any segment")
+        raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
         strokes = ordered(strokes, limits, speeds.velocities, home, deadline)
     with clock.timed("transfers"):
@@ -137,21 +156,12 @@ def plan_motion(
             speeds,
             motion.speed_m_per_s,
             motion.spacing_m,
-            _left_out(small, covered),
+            left_out,
             {"pattern": pattern, "seed": seed},
             deadline,
         )
-    measures = [one for segment in covered for one in segment.courses.covered.measures]
-    paths = [path for segment in covered for path in segment.courses.covered.paths.paths]
     return MotionPlan(
-        ToolPaths(
-            surface.name,
-            pattern,
-            motion.spacing_m,
-            motion.tool_radius_m,
-            tuple(paths),
-            surface.sha256,
-        ),
+        paths,
         tuple(measures),
         in_all(measures, motion.spacing_m),
         trajectory,
@@ -180,3 +190,22 @@ def _left_out(small: SmallTriangles, covered: Sequence[SegmentStrokes]) -> tuple
             if place.cause != ASKED_FOR
         ]
     return tuple(sorted(parts, key=lambda part: (-part.area_m2, part.segment, part.place)))
+
+
+def _no_stroke(small: SmallTriangles, left_out: Sequence[LeftOut], spacing_m: float) -> str:
+    """Why the arm can follow no path, and what to try."""
+    why, whole = "the arm can follow no path on any segment", small.areas[small.segment >= 0].sum()
+    areas: defaultdict[str, float] = defaultdict(float)
+    for part in left_out:
+        areas[part.reason] += part.area_m2
+    if not areas or sum(areas.values()) < whole / 2:
+        return (
+            f"{why}: what it can follow is in stretches shorter than motion.spacing_m, "
+            f"{spacing_m:g} m; try a smaller one"
+        )
+    most = sorted(areas.items(), key=lambda item: -item[1])[:3]
+    shares = ", ".join(f"{area / whole:.0%} ({reason})" for reason, area in most)
+    return (
+        f"{why}: left out of the segments' area: {shares}; try a finer mesh, or move the part to "
+        "where these tests pass with more room"
+    )

@@ -10,14 +10,12 @@ import numpy as np
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import Deadline
-from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
-from cellcolor.frontend.tables import in_file
 from cellcolor.motion.following import CIRCLE, whole_turns
 from cellcolor.motion.free_space import FreeSpace
-from cellcolor.motion.limits import home_of
+from cellcolor.motion.home import check_home, home_of
 from cellcolor.motion.samples import DISTANCE, TURN, angles_between
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke
@@ -60,19 +58,18 @@ class Transfers:
         seed: int,
         deadline: Deadline,
     ) -> None:
-        """``velocities`` (joints,) in rad/s; ``seed`` is that of the sampling planner."""
+        """``velocities`` (joints,) in rad/s; ``seed`` is that of the sampling planner.
+
+        Raises:
+            InputError: the home position is not free.
+        """
+        check_home(prepared, motion)
         self._prepared, self._seed, self._deadline = prepared, seed, deadline
         self._height, self._velocities = motion.retract_m, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
         self._clear = FreeSpace(prepared, motion.clearance_m)
         self._wide = FreeSpace(prepared, motion.clearance_m + _SPARE)
         self._home = home_of(motion)
-        if self._home is not None and not self._clear(self._home[None])[0]:
-            message = (
-                "is no place for the arm: something is in the way there, or nearer than allowed"
-            )
-            with in_file(prepared.setup.file):
-                raise InputError(None, "motion.home_rad", message)
         self._shares: dict[bytes, float] = {}
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:

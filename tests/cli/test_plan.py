@@ -15,11 +15,14 @@ import pytest
 
 pytest.importorskip("pinocchio")
 
+import trimesh
 from commands import run
-from shipped import wok_file
+from shipped import edited, wok_file
 from stand_in import stand_in
 
+import cellcolor
 import cellcolor.motion.plan
+import cellcolor.motion.scene_painting
 import cellcolor.trajectory_checker.check
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
@@ -30,6 +33,8 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import OutOfTime
 from cellcolor.door.plan_files import KINDS
+from cellcolor.exports.registry import EXPORTS
+from cellcolor.frontend.scene import Scene
 
 Capture = pytest.CaptureFixture[str]
 FILES = {
@@ -192,13 +197,71 @@ def test_how_it_ends_is_what_the_judge_says(
     assert "must not drive" in (folder / "report.html").read_text(encoding="utf-8")
 
 
-@pytest.mark.parametrize("how", ["the time limit", "a signal"])
-def test_stopped_on_the_way_nothing_is_there(
-    how: str, scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
-) -> None:  # fmt: skip
+def out_of_time(laid: bool) -> Any:
+    """A planner whose time is up after the tool paths were laid, or before."""
+    made = stand_in()
+
+    def motion(*_: Any, on_paths: Any, **__: Any) -> None:
+        if laid:
+            on_paths(made.paths, made.measures)
+        raise OutOfTime("the time limit came first")
+
+    return motion
+
+
+def test_a_time_limit_leaves_what_there_is(
+    scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Never a trajectory that no judge has seen."""
+    motion, folder = {"trajectory.json", "verdict.json", *EXPORTS}, tmp_path / "a"
+    for laid, missing in (
+        (False, "the tool paths were laid out"),
+        (True, "motion on the tool paths"),
+    ):
+        monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", out_of_time(laid))
+        assert run("plan", scene, "-o", folder) == 3
+        there = {file.name for file in folder.iterdir()}
+        assert there == set(KINDS) - motion - (set() if laid else {"paths.json"})
+        said = capsys.readouterr()
+        assert missing in said.err
+        assert "2 segments, 1 lift-off, optimal" in said.out
+        page = (folder / "report.html").read_text(encoding="utf-8")
+        assert "What is missing" in page
+        assert missing in page
+    assert run("check", folder / "instance.json", folder / "solution.json") == 0
+    assert run("check", folder / "painted.surface.json", folder / "painted.plan.json") == 0
+    # A run that gets less far does not mix its files with these.
+    kept = {file: file.read_bytes() for file in folder.iterdir()}
+    monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", out_of_time(laid=False))
+    capsys.readouterr()
+    assert run("plan", scene, "-o", folder) == 3
+    assert "paths.json: is of a plan that came farther" in capsys.readouterr().err
+    assert {file: file.read_bytes() for file in folder.iterdir()} == kept
+
+
+def test_a_time_limit_before_the_painting_leaves_the_number(
+    scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def painting(*_: Any, **__: Any) -> None:
+        raise OutOfTime("the time limit came first")
+
+    monkeypatch.setattr(cellcolor.motion.scene_painting, "paint_scene", painting)
+    with pytest.raises(
+        cellcolor.PlanOutOfTime, match="before the segments were painted"
+    ) as stopped:
+        cellcolor.plan(scene)
+    assert stopped.value.unfinished.solution.lift_offs == 1
+    written = stopped.value.unfinished.save(tmp_path / "a")
+    assert {file.name for file in (tmp_path / "a").iterdir()} == set(written)
+    assert {"instance.json", "solution.json", "report.html"} <= set(written)
+    assert not [name for name in written if "painted" in name]
+
+
+def test_a_signal_on_the_way_leaves_nothing(
+    scene: Path, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
+) -> None:
     def stopped(*_: Any, **__: Any) -> None:
-        if how == "a signal":
-            os.kill(os.getpid(), signal.SIGINT)
+        os.kill(os.getpid(), signal.SIGINT)
         raise OutOfTime("the time limit came first")
 
     monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", stopped)
@@ -206,7 +269,41 @@ def test_stopped_on_the_way_nothing_is_there(
     assert not (tmp_path / "a").exists()
     said = capsys.readouterr()
     assert said.out == ""
-    assert ("interrupted" if how == "a signal" else "nothing is written") in said.err
+    assert "interrupted" in said.err
+
+
+@pytest.mark.parametrize(
+    ("place", "reason", "remedy"),
+    [
+        ("[9.0, 0.0, 0.0]", "no solution", "move the part nearer"),
+        ("[0.6, 0.0, -0.6]", "tip blocked", "below the ground"),
+        ("turned inside out", "warning", "turn its faces round"),
+    ],
+)
+def test_where_nothing_can_be_covered_it_says_what_build_says(
+    place: str, reason: str, remedy: str, scene: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    if place.startswith("["):
+        text = edited(scene.read_text(), position_m=place)
+    else:
+        wok = Scene.read(scene).object.surface(scene.parent)
+        trimesh.Trimesh(wok.vertices, wok.faces[:, ::-1], process=False).export(
+            scene.parent / "wok.ply"
+        )
+        part = '[object]\nkind = "mesh"\nfile = "wok.ply"\nmeters_per_unit = 1.0\n\n[placement]'
+        text = re.sub(r"\[object\].*\[placement\]", part, scene.read_text(), flags=re.DOTALL)
+    scene.write_text(text)
+    assert run("build", scene, "-o", tmp_path / "i.json") == 3
+    built = capsys.readouterr().out.splitlines()
+    assert run("plan", scene, "-o", tmp_path / "a") == 2
+    planned = capsys.readouterr()
+    seen = [line for line in planned.out.splitlines() if not line.startswith("seconds")]
+    assert set(seen) <= set(built)
+    assert any(line.strip().startswith(reason) for line in seen)
+    (line,) = planned.err.splitlines()
+    assert remedy in line
+    assert any(remedy in line for line in built)
+    assert not (tmp_path / "a").exists()
 
 
 def test_a_time_limit_too_short_for_anything(scene: Path, tmp_path: Path, capsys: Capture) -> None:

@@ -36,6 +36,7 @@ PUBLIC = [
     "Painted",
     "PathVerdict",
     "Plan",
+    "PlanOutOfTime",
     "PlannedScene",
     "ProvenRange",
     "Result",

@@ -9,19 +9,15 @@ import pinocchio as pin
 import pytest
 from motions import Planned, planned
 from scipy.spatial import cKDTree
-from shipped import ROBOTS, WOK, shipped
+from shipped import ROBOTS, shipped
 
 import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
-from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.scene import Scene
 from cellcolor.motion.limits import motion_of
 from cellcolor.motion.plan import plan_motion
-from cellcolor.motion.transfers import Transfers
 
 NAMES = ("wok", "half_pipe", "square", "hemisphere_flat", "hemisphere_tilted", "wok_obstacle")
 
@@ -166,18 +162,6 @@ def test_a_setup_without_a_motion_and_one_that_does_not_fit_are_refused() -> Non
             motion_of(prepared)
 
 
-def test_a_home_in_the_object_is_refused() -> None:
-    """The home of the setup, with the ball moved so that it holds the tool there."""
-    scene = Scene.read(WOK)
-    motion = scene.setup.motion
-    assert motion is not None and motion.home_rad is not None
-    prepared = prepare(scene)
-    tip = forward(prepared.robot, np.array([motion.home_rad])).tip[0]
-    moved = prepare(scene.moved(position_m=tip.tolist()))
-    with pytest.raises(InputError, match=r"motion\.home_rad: is no place for the arm"):
-        Transfers(moved, motion, np.ones(6), 0, NEVER)
-
-
 @pytest.mark.slow
 def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
     """As many vendors describe theirs: of what is missing a plan needs the velocities."""
@@ -193,3 +177,9 @@ def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
     planned = cellcolor.plan(square.with_setup(setup))
     assert planned.verdict.valid
     assert re.search(r'"lower":\s*\[null', planned.page().decode())  # JSON knows no infinity
+
+
+def test_where_no_path_can_be_followed_it_says_why() -> None:
+    """A dome of some 12 triangles: at every corner between two of them the tool's body hits it."""
+    with pytest.raises(InputError, match=r"no path .* 100% \(object collision\); try a finer mesh"):
+        cellcolor.plan(shipped("wok", 12))

@@ -101,6 +101,34 @@ def test_the_ground_is_a_normal_and_an_offset() -> None:
     assert data_of(render_page(report()).decode())["ground"] == [0.0, 0.0, 1.0, height]
 
 
+def test_a_page_without_a_motion_shows_what_there_is(tmp_path: Path) -> None:
+    made = stand_in()
+    nothing = {"trajectory": None, "verdict": None, "missing": "The time limit came <first>."}
+    stages = (
+        ({"solution": None, "witness": (), "painted": None}, 1, 0),
+        ({"painted": None, "measures": ()}, 2, 0),
+        ({"paths": made.paths}, 3, sum(len(path.points) for path in made.paths.paths)),
+    )
+    for there, modes, points in stages:
+        file = tmp_path / "report.html"
+        file.write_bytes(render_page(report(**nothing, **there)))
+        text = file.read_text(encoding="utf-8")
+        assert "The time limit came &lt;first&gt;." in text
+        data = data_of(text)
+        assert len(data["modes"]) == modes
+        state = unpacked(data["trace"]["state"])
+        assert len(state) == points
+        # Nothing is drawn from one path to the next.
+        assert np.count_nonzero(state == 3) == (len(made.paths.paths) if points else 0)
+        with opened(file, DESKTOP) as (page, faults):
+            page.wait_for_selector("#modes button")
+            assert page.locator("#modes button").count() == modes
+            assert page.locator("#space").is_visible()
+            for hidden in ("#play", "#charts", "#clock", "#show-moves"):
+                assert not page.locator(hidden).is_visible(), hidden
+            assert faults == []
+
+
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
 def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) -> None:
     """What the page's own kinematics says of the tip is where the trajectory has it."""

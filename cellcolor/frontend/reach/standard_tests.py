@@ -20,8 +20,14 @@ __all__ = ["STANDARD_TESTS", "StandardTest"]
 
 
 class StandardTest(ValidityTest):
-    """One of the tests that a setup can leave out by the constraint that it belongs to."""
+    """One of the tests that a setup can leave out by the constraint that it belongs to.
 
+    Attributes:
+        remedy: what to try where it fails everywhere.
+        constraint: what it belongs to.
+    """
+
+    remedy: ClassVar[str]
     constraint: ClassVar[Literal["collision", "force", "conditioning"]]
 
 
@@ -30,6 +36,7 @@ class JointLimits(StandardTest):
 
     name = "joint limits"
     sentence = "no equivalent angle (modulo 360 degrees) inside the limits, or a slide outside them"
+    remedy = "move or turn the part, or check the limits in the URDF"
     constraint = "collision"
 
     def failed(self, postures: Postures) -> Mask:
@@ -44,6 +51,10 @@ class TipBlocked(StandardTest):
 
     name = "tip blocked"
     sentence = "an obstacle or the ground is in the tool's contact region"
+    remedy = (
+        "move what is in the tool's way, or the part: its surface lies below the ground"
+        " or inside an obstacle"
+    )
     constraint = "collision"
 
     def failed(self, postures: Postures) -> Mask:
@@ -58,6 +69,7 @@ class Torque(StandardTest):
     sentence = (
         "gravity of arm and tool, and the normal force along the tool axis, exceed a joint's effort"
     )
+    remedy = "lower task.normal_force_n, move the part nearer, or check the efforts in the URDF"
     constraint = "force"
 
     def failed(self, postures: Postures) -> Mask:
@@ -74,6 +86,10 @@ class Manipulability(StandardTest):
 
     name = "manipulability"
     sentence = "Yoshikawa's translational measure of the task's joints below its threshold"
+    remedy = (
+        "move the part away from where the arm is stretched out, or lower"
+        " conditioning.min_manipulability"
+    )
     constraint = "conditioning"
 
     def failed(self, postures: Postures) -> Mask:
@@ -91,6 +107,7 @@ class TaskDeterminant(StandardTest):
         "absolute determinant of the Jacobian of tip position, tool direction and, if it is given,"
         " the tool's turn below its threshold"
     )
+    remedy = "move or turn the part, or lower conditioning.min_task_determinant"
     constraint = "conditioning"
 
     def failed(self, postures: Postures) -> Mask:
@@ -104,6 +121,7 @@ class GroundContact(StandardTest):
 
     name = "ground"
     sentence = "a link other than those of may_touch_ground reaches below the ground"
+    remedy = "lift the part, or name the links that may touch the ground in robot.may_touch_ground"
     constraint = "collision"
 
     def failed(self, postures: Postures) -> Mask:
@@ -121,6 +139,7 @@ class SelfCollision(StandardTest):
 
     name = "self collision"
     sentence = "two links overlap that are not next to each other"
+    remedy = "look at the shapes of the links, or name pairs that overlap anyway in robot.may_touch"
     constraint = "collision"
 
     def failed(self, postures: Postures) -> Mask:
@@ -134,6 +153,7 @@ class ObstacleCollision(StandardTest):
 
     name = "obstacle collision"
     sentence = "a link or the tool's body touches an obstacle"
+    remedy = "move the part or the obstacles farther apart"
     constraint = "collision"
 
     def failed(self, postures: Postures) -> Mask:
@@ -151,6 +171,7 @@ class ObjectCollision(StandardTest):
 
     name = "object collision"
     sentence = "a link or the tool's body touches the object"
+    remedy = "use a longer or thinner tool, or turn the part"
     constraint = "collision"
 
     def failed(self, postures: Postures) -> Mask:

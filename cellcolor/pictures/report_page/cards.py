@@ -40,9 +40,11 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
     return tuple(card for card in cards if card is not None)
 
 
-def _proof(report: MotionReport) -> Card:
+def _proof(report: MotionReport) -> Card | None:
     """Why there cannot be fewer lift-offs; or that this is open."""
     solution = report.solution
+    if solution is None or solution.segments is None:
+        return None
     segments = solution.segments or 0
     bounds = [b for b in solution.bounds or () if b.value == solution.surface_lower_bound]
     surface_bounds = [bound for bound in bounds if bound.holds_for == "surface"]
@@ -78,16 +80,14 @@ def _bound_rows(bounds: list[Bound]) -> tuple[tuple[str, ...], ...]:
     return (("at least", "bound", "why"), *rows)
 
 
-def _segments(report: MotionReport) -> Card:
-    """Each segment with its color, its path and its time."""
+def _segments(report: MotionReport) -> Card | None:
+    """Each segment with its color, and with its path and its time if there is a motion."""
     trajectory, painted = report.trajectory, report.painted
-    steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
-    spent = np.diff(trajectory.times)
-    touching = trajectory.contact[1:] & trajectory.contact[:-1]
+    if painted is None:
+        return None
     rows = []
     areas = painted.surface.vertex_areas
     for segment in range(int(painted.segment_of.max(initial=-1)) + 1):
-        own = touching & (trajectory.segment[1:] == segment)
         vertices = np.flatnonzero(painted.segment_of == segment)
         color = painted.plan.vertex_colors[int(vertices[0])] if len(vertices) else None
         rows.append(
@@ -95,13 +95,21 @@ def _segments(report: MotionReport) -> Card:
                 str(segment),
                 "–" if color is None else painted.surface.colors[color],
                 f"{1e4 * float(areas[vertices].sum()):.0f} cm²",
-                f"{float(steps[own].sum()):.2f} m",
-                f"{float(spent[own].sum()):.1f} s",
             )
         )
+    if trajectory is None:
+        return Card("Segments", (), (("", "color", "area"), *rows))
+    steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
+    spent = np.diff(trajectory.times)
+    touching = trajectory.contact[1:] & trajectory.contact[:-1]
+    driven = []
+    for segment in range(len(rows)):
+        own = touching & (trajectory.segment[1:] == segment)
+        driven.append((f"{float(steps[own].sum()):.2f} m", f"{float(spent[own].sum()):.1f} s"))
     between = float(spent[~touching].sum())
     text = f"Moves between strokes, approaches and retracts take {between:.1f} s."
-    return Card("Segments", (text,), (("", "color", "area", "path", "in contact"), *rows))
+    table = [row + more for row, more in zip(rows, driven, strict=True)]
+    return Card("Segments", (text,), (("", "color", "area", "path", "in contact"), *table))
 
 
 def _reach(report: MotionReport) -> Card:
@@ -126,7 +134,7 @@ def _reach(report: MotionReport) -> Card:
 def _extra(report: MotionReport) -> Card | None:
     """Lift-offs beyond the proven minimum, and moves that were not planned."""
     trajectory = report.trajectory
-    if not trajectory.extra_lift_offs and not trajectory.unplanned:
+    if trajectory is None or not (trajectory.extra_lift_offs or trajectory.unplanned):
         return None
     texts, rows = [], []
     if trajectory.unplanned:
@@ -152,7 +160,7 @@ def _left_out(report: MotionReport) -> Card | None:
     """What the tool does not go to, by cause."""
     areas: dict[tuple[int, str], list[float]] = defaultdict(list)
     largest: dict[tuple[int, str], tuple[float, tuple[float, float, float]]] = {}
-    for part in report.trajectory.left_out:
+    for part in report.trajectory.left_out if report.trajectory is not None else ():
         key = (part.segment, part.reason)
         areas[key].append(part.area_m2)
         largest[key] = max(largest.get(key, (0.0, part.place)), (part.area_m2, part.place))

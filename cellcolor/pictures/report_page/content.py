@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cellcolor.data.solution import Solution
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import Decomposition
@@ -35,26 +36,30 @@ class Card:
 
 @dataclass(frozen=True)
 class MotionReport:
-    """A planned motion, and all that led to it.
+    """A planned motion, and all that led to it, or as much of that as there is.
 
     Attributes:
         prepared: the scene, in place.
         built: which colors reach each point.
         decomposition: the graph that was solved, on the surface.
-        solution: its solution.
+        solution: its solution, None before the search.
         witness: cells no two of which can share a segment, as many as segments; or none.
-        painted: the solution on the surface.
-        trajectory: how the arm moves.
-        measures: of each tool path that it follows.
-        verdict: an independent judge's.
+        painted: the solution on the surface; None if it was not painted.
+        trajectory: how the arm moves; None if that was not planned or not judged.
+        measures: of each tool path.
+        verdict: an independent judge's; None without a trajectory.
+        paths: the tool paths, which are drawn if there is no trajectory.
+        missing: what of this there is not, and why, as a sentence; empty for a whole plan.
     """
 
     prepared: PreparedScene
     built: BuildResult
     decomposition: Decomposition
-    solution: Solution
+    solution: Solution | None
     witness: tuple[int, ...]
-    painted: Painted
-    trajectory: Trajectory
+    painted: Painted | None
+    trajectory: Trajectory | None
     measures: tuple[PathMeasures, ...]
-    verdict: TrajectoryVerdict
+    verdict: TrajectoryVerdict | None
+    paths: ToolPaths | None = None
+    missing: str = ""

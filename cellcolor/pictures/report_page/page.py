@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from importlib.resources import files
 
 from cellcolor.data.proof_wording import in_words, witness_in_words
+from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.files.writing import MARKER
 from cellcolor.pictures.report_page.cards import cards_of
@@ -24,13 +25,42 @@ _SCRIPTS = ("viewer.js", "camera.js", "space.js", "charts.js", "player.js")
 
 def render_page(report: MotionReport) -> bytes:
     """``report.html``; the same report gives the same bytes."""
-    trajectory, instance = report.trajectory, report.decomposition.instance
-    witness = witness_in_words(instance, report.witness)
-    title = (
-        f"{trajectory.name}: {count(len(trajectory.strokes), 'stroke')}, "
-        f"{count(trajectory.lift_offs, 'lift-off')}, {trajectory.seconds:.0f} s"
+    return _filled(
+        {
+            "MARKER": MARKER,
+            "TITLE": html.escape(_title(report)),
+            "PROOF": html.escape(_proof(report)),
+            "BADGES": "".join(map(_badge, badges_of(report))),
+            "STILL": "" if report.trajectory is not None else ' class="still"',
+            "CHART_NOTE": html.escape(_chart_note(report.trajectory)),
+            "CARDS": "\n".join(map(_card, cards_of(report))),
+            "FOOTER": html.escape(f"Made by cellcolor {__version__}; this file loads nothing."),
+            "STYLE": _own_text("page.css"),
+            "DATA": _data(report),
+            "SCRIPT": "\n".join(map(_own_text, _SCRIPTS)),
+        }
+    ).encode()
+
+
+def _title(report: MotionReport) -> str:
+    trajectory = report.trajectory
+    if trajectory is None:
+        return f"{report.built.surface.name}: not planned to the end"
+    strokes, lift_offs = count(len(trajectory.strokes), "stroke"), trajectory.lift_offs
+    return (
+        f"{trajectory.name}: {strokes}, {count(lift_offs, 'lift-off')}, {trajectory.seconds:.0f} s"
     )
-    samples = len(trajectory.times)
+
+
+def _proof(report: MotionReport) -> str:
+    if report.solution is None:
+        return report.missing
+    witness = witness_in_words(report.decomposition.instance, report.witness)
+    return _sentence(in_words(report.solution, witness))
+
+
+def _chart_note(trajectory: Trajectory | None) -> str:
+    samples = 0 if trajectory is None else len(trajectory.times)
     note = (
         "Red, dashed: limits. Orange: moves between strokes. A click goes to that moment. "
         "Of the measures of conditioning the least value up to the next frame is drawn; their "
@@ -38,21 +68,12 @@ def render_page(report: MotionReport) -> bytes:
     )
     if samples > MOST_FRAMES:
         note += f" Shown are about {MOST_FRAMES} of {samples} samples."
+    return note
+
+
+def _data(report: MotionReport) -> str:
     data = json.dumps(viewer_data(report), allow_nan=False, separators=(",", ":"))
-    return _filled(
-        {
-            "MARKER": MARKER,
-            "TITLE": html.escape(title),
-            "PROOF": html.escape(_sentence(in_words(report.solution, witness))),
-            "BADGES": "".join(map(_badge, badges_of(report))),
-            "CHART_NOTE": html.escape(note),
-            "CARDS": "\n".join(map(_card, cards_of(report))),
-            "FOOTER": html.escape(f"Made by cellcolor {__version__}; this file loads nothing."),
-            "STYLE": _own_text("page.css"),
-            "DATA": data.replace("<", "\\u003c"),  # nothing in it ends the script
-            "SCRIPT": "\n".join(map(_own_text, _SCRIPTS)),
-        }
-    ).encode()
+    return data.replace("<", "\\u003c")  # nothing in it ends the script
 
 
 def _filled(parts: Mapping[str, str]) -> str:

@@ -89,6 +89,7 @@ class Space {
     const points = unpack(trace.points), moments = unpack(trace.times), states = unpack(trace.state);
     const whole = [[], [], []], driven = [[], [], []];
     for (let k = 0; k + 1 < moments.length; k++) {
+      if (states[k] > 2) continue; // from one tool path to the next, where no motion is planned
       const piece = {
         from: points.subarray(3 * k, 3 * k + 3),
         to: points.subarray(3 * k + 3, 3 * k + 6),
@@ -132,7 +133,7 @@ class Space {
     const contact = unpack(this.data.frames.contact); // moves between swing far out of the picture
     const all = [...points];
     for (let frame = 0; frame < contact.length; frame++) {
-      if (!contact[frame] || frame % 20) continue;
+      if ((contact.length > 1 && !contact[frame]) || frame % 20) continue;
       for (const pose of armPoses(this.data.arm, joints.subarray(frame * count, frame * count + count)))
         for (const axis of [3, 7, 11])
           for (const thick of [-0.09, 0.09]) {

@@ -26,7 +26,7 @@ class SurfaceMode:
     Attributes:
         name: what the button says.
         classes: of vertices, with their fills; those without a vertex are left out of the legend.
-        labels: (n,) the class of each vertex of the painted surface.
+        labels: (n,) the class of each vertex of the surface.
     """
 
     name: str
@@ -64,17 +64,16 @@ def _color_name(painted: Painted, segment: int) -> str:
     return "empty" if color is None else painted.surface.colors[color]
 
 
-def reach_mode(built: BuildResult, painted: Painted) -> SurfaceMode:
+def reach_mode(built: BuildResult) -> SurfaceMode:
     """Which points are out of reach, by the test that fails in the branch that comes farthest."""
     view = by_reason(built.surface, built.candidates)
-    return SurfaceMode("Out of reach", tuple(view.classes), view.labels[painted.stands_for])
+    return SurfaceMode("Out of reach", tuple(view.classes), view.labels)
 
 
 def proof_mode(
     surface: LabelledSurface,
     decomposition: Decomposition,
     witness: tuple[int, ...],
-    painted: Painted,
 ) -> SurfaceMode | None:
     """Cells no two of which can share a segment; None where no such cells are known.
 
@@ -82,7 +81,6 @@ def proof_mode(
         surface: the one that was solved.
         decomposition: its graph, with the cell of each vertex.
         witness: the cells.
-        painted: what the page shows.
     """
     if len(witness) < 2:
         return None
@@ -105,4 +103,4 @@ def proof_mode(
     ]
     classes.append(VertexClass(f"other cells, {share[others]}", "#F3F1EA"))
     classes += bare_classes(*share[others + 1 :])
-    return SurfaceMode("Cells of the proof", tuple(classes), labels[painted.stands_for])
+    return SurfaceMode("Cells of the proof", tuple(classes), labels)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from cellcolor.data.solution import Solution
+from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.pictures.report_page.content import Card, MotionReport
 
@@ -13,25 +15,29 @@ _SHOWN = 12  # faults
 def badges_of(report: MotionReport) -> list[tuple[str, bool | None]]:
     """What is to be seen first, each with whether that is as it should be."""
     verdict, trajectory = report.verdict, report.trajectory
+    if verdict is None or trajectory is None:
+        return [("no motion", False)]
     faults = sum(verdict.fault_counts.values())
     said = "judged valid" if verdict.valid else f"judged: {count(faults, 'fault')}"
-    badges: list[tuple[str, bool | None]] = [(said, verdict.valid), _lift_offs(report)]
+    badges: list[tuple[str, bool | None]] = [(said, verdict.valid)]
+    if report.solution is not None:
+        badges.append(_lift_offs(trajectory, report.solution))
     if trajectory.unplanned:
         badges.append((f"{count(len(trajectory.unplanned), 'move')} not planned", False))
     if verdict.covered is not None:
         share = _percent(verdict.covered.covered_share)
-        coverage = report.solution.coverage
+        coverage = None if report.solution is None else report.solution.coverage
         given_up = 0.0 if coverage is None else coverage.given_up
         more = f", {given_up:.1%} of the surface given up as slivers" if given_up else ""
         badges.append((f"{share} of the area with a color covered{more}", None))
     return badges
 
 
-def _lift_offs(report: MotionReport) -> tuple[str, bool | None]:
+def _lift_offs(trajectory: Trajectory, solution: Solution) -> tuple[str, bool | None]:
     """The lift-offs of the trajectory against what is proved."""
-    lift_offs, least = report.trajectory.lift_offs, report.solution.lift_offs
+    lift_offs, least = trajectory.lift_offs, solution.lift_offs
     said = count(lift_offs, "lift-off")
-    if not report.solution.proved_for_surface or least is None:
+    if not solution.proved_for_surface or least is None:
         return f"{said}; the minimum is not proved", None
     if lift_offs == least:
         return f"{said}: the proved minimum", True
@@ -41,8 +47,11 @@ def _lift_offs(report: MotionReport) -> tuple[str, bool | None]:
 
 
 def verdict_card(report: MotionReport) -> Card:
-    """What is wrong with the trajectory, or that nothing was found."""
+    """What is wrong with the trajectory, or that nothing was found; or why there is none."""
     verdict = report.verdict
+    if verdict is None:
+        more = "Give a longer time limit, or none; the files beside this page are what there is."
+        return Card("What is missing", (report.missing, more), (), False)
     samples = f"{count(verdict.samples, 'sample')}, tested at {count(verdict.tested, 'place')}"
     title = "Verdict of the judge"
     how = "The judge knows the scene and the trajectory, and nothing of what made it."
@@ -62,7 +71,7 @@ def verdict_card(report: MotionReport) -> Card:
 
 def coverage_card(report: MotionReport) -> Card | None:
     """What is covered, as the judge measured it; and the tool paths, as their maker did."""
-    covered = report.verdict.covered
+    covered = None if report.verdict is None else report.verdict.covered
     if covered is None:
         return None
     spacing = 1e3 * covered.spacing_m

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import base64
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index
+from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.frontend.arm.kinematics import (
     forward,
@@ -43,21 +46,30 @@ _OBSTACLE, _BODY = "#882255", "#C8C4B0"
 
 def viewer_data(report: MotionReport) -> dict[str, Any]:
     """What ``viewer.js`` and ``charts.js`` draw, JSON-able; arrays as base64 (``_packed``)."""
-    prepared, painted, trajectory = report.prepared, report.painted, report.trajectory
-    modes = [segment_mode(painted), reach_mode(report.built, painted)]
+    prepared, painted = report.prepared, report.painted
+    trajectory = report.trajectory or _still(report)
     surface = report.built.surface
-    proof = proof_mode(surface, report.decomposition, report.witness, painted)
+    modes = [reach_mode(report.built)]
+    proof = proof_mode(surface, report.decomposition, report.witness)
     modes += [proof] if proof is not None else []
+    if painted is not None:  # its surface may be finer
+        surface, given = painted.surface, painted.stands_for
+        modes = [replace(mode, labels=mode.labels[given]) for mode in modes]
+        modes.insert(0, segment_mode(painted))
     frames = frames_of(trajectory, MOST_FRAMES)
-    vertices, faces = painted.surface.vertices, painted.surface.faces
-    ground = prepared.workplace.ground
+    vertices, faces = surface.vertices, surface.faces
+    lift, ground = 0.05 * _edge(vertices, faces), prepared.workplace.ground
     return {
         "mesh": {"vertices": _packed(vertices, "f4"), "faces": _packed(faces, "u4")},
-        "modes": [_mode(painted.surface, mode) for mode in modes],
+        "modes": [_mode(surface, mode) for mode in modes],
         "arm": _arm(prepared.robot),
         "solids": _solids(prepared),
         "ground": None if ground is None else [*ground.normal, ground.offset_m],
-        "trace": _trace(trajectory, 0.05 * _edge(vertices, faces)),
+        "trace": (
+            _trace(report.trajectory, lift)
+            if report.trajectory is not None
+            else _paths(report.paths, lift)
+        ),
         "frames": _frames(prepared, trajectory, frames),
         "limits": _limits(prepared),
         "joint_names": list(trajectory.joint_names),
@@ -145,6 +157,38 @@ def _trace(trajectory: Trajectory, lift: float) -> dict[str, Any]:
         # Of the piece that begins at each point: 0 between strokes, 1 in contact, 2 not planned.
         "state": _packed(np.where(np.isin(kept, jumps), 2, touching), "u1"),
     }
+
+
+def _paths(paths: ToolPaths | None, lift: float) -> dict[str, Any]:
+    """Tool paths drawn as if driven at once, with nothing from one to the next (state 3)."""
+    drawn = () if paths is None else paths.paths
+    points = [path.points + lift * path.normals for path in drawn]
+    states = [np.append(np.ones(len(path.points) - 1), 3) for path in drawn]
+    return {
+        "points": _packed(np.concatenate([np.empty((0, 3)), *points]), "f4"),
+        "times": _packed(np.zeros(sum(map(len, points))), "f4"),
+        "state": _packed(np.concatenate([np.empty(0), *states]), "u1"),
+    }
+
+
+def _still(report: MotionReport) -> Trajectory:
+    """The arm standing still, at home or in some valid configuration on the part."""
+    robot, motion = report.prepared.robot, report.prepared.setup.motion
+    if motion is not None and motion.home_rad is not None:
+        joints = np.array([motion.home_rad])
+    else:
+        joints = report.built.configurations[report.built.reasons == VALID][:1]
+    poses = forward(robot, joints)
+    return Trajectory(
+        report.built.surface.name,
+        tuple(robot.joint_names),
+        np.zeros(1),
+        joints,
+        poses.tip,
+        -poses.tool_axis,
+        np.zeros(1, dtype=bool),
+        np.full(1, -1),
+    )
 
 
 def _frames(prepared: PreparedScene, trajectory: Trajectory, frames: Index) -> dict[str, Any]:

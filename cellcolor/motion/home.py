@@ -1,0 +1,67 @@
+"""The home position: whether the arm can stand there, what is in the way, what is near and free."""
+
+from __future__ import annotations
+
+from itertools import takewhile
+
+import numpy as np
+
+from cellcolor.arrays import Array
+from cellcolor.errors import InputError
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.setup import Motion
+from cellcolor.frontend.tables import in_file
+from cellcolor.motion.free_space import FreeSpace
+
+__all__ = ["check_home", "home_of"]
+
+_TRIED = 256  # configurations at each distance
+_FIRST, _FARTHER = 0.1, 1.3  # rad, and the factor from one distance to the next
+_SHOWN = 3  # contacts
+_DIGITS = 2  # of a proposed angle, rad
+
+
+def home_of(motion: Motion) -> Array | None:
+    """Where the arm begins and ends (joints,), rad; None if that does not matter."""
+    return None if motion.home_rad is None else np.array(motion.home_rad)
+
+
+def check_home(prepared: PreparedScene, motion: Motion) -> None:
+    """Refuse a home position that is not free.
+
+    Raises:
+        InputError: with the bodies that are in each other's way there, and a free position near it.
+    """
+    home = home_of(motion)
+    if home is None:
+        return
+    free = FreeSpace(prepared, motion.clearance_m)
+    if free(home[None])[0]:
+        return
+    how, found = "touch", FreeSpace(prepared, 0.0).touched(home)
+    if not found:
+        how, found = "are nearer than motion.clearance_m or a margin allows", free.touched(home)
+    more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
+    shown = ", ".join(found[:_SHOWN]) + more
+    near = _free_near(free, home)
+    proposed = (
+        "; no free position was found near it"
+        if near is None
+        else f"; free is, for example, [{', '.join(f'{angle:g}' for angle in near)}]"
+    )
+    with in_file(prepared.setup.file):
+        message = f"the arm cannot stand there: {shown} {how}{proposed}"
+        raise InputError(None, "motion.home_rad", message)
+
+
+def _free_near(free: FreeSpace, home: Array) -> list[float] | None:
+    """A free configuration, the nearest of some hundred drawn around home at growing distances."""
+    drawn = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIED, len(home)))
+    distances = (_FIRST * _FARTHER**step for step in range(100))
+    for distance in takewhile(lambda far: far < np.pi, distances):
+        tried = np.round(home + distance * drawn, _DIGITS)
+        found = np.flatnonzero(free(tried))
+        if len(found):
+            nearest = np.argmin(np.abs(tried[found] - home).max(axis=1))
+            return [float(angle) for angle in tried[found[nearest]]]
+    return None
