@@ -6,11 +6,12 @@ import math
 import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TypeVar
+from numbers import Real
+from typing import TypeAlias, TypeVar
 
 from cellcolor.errors import CellcolorError, InputError
 
-__all__ = ["NEVER", "Deadline", "OutOfTime"]
+__all__ = ["NEVER", "Deadline", "OutOfTime", "TimeLimit"]
 
 _Item = TypeVar("_Item")
 
@@ -47,6 +48,27 @@ class Deadline:
         if seconds is None:
             return NEVER
         return cls((time.monotonic() if start is None else start) + seconds)
+
+    @classmethod
+    def of(cls, time_limit: TimeLimit) -> Deadline:
+        """The moment that a public function has to end at.
+
+        Args:
+            time_limit: seconds from now, None for no deadline; or a deadline that there is already,
+                whose moment may have passed.
+
+        Raises:
+            InputError: it is no positive number of seconds.
+        """
+        if time_limit is None:
+            return NEVER
+        if isinstance(time_limit, Deadline):
+            return time_limit
+        number = isinstance(time_limit, Real) and not isinstance(time_limit, bool)
+        if not number or not 0 < time_limit < math.inf:
+            message = f"must be a positive number of seconds or None, is {time_limit!r}"
+            raise InputError(None, "time_limit", message)
+        return cls.after(float(time_limit))
 
     @property
     def left(self) -> float:
@@ -91,3 +113,6 @@ class Deadline:
 
 NEVER = Deadline()
 """No deadline."""
+
+TimeLimit: TypeAlias = float | Deadline | None
+"""Seconds, a deadline, or None for as long as it takes."""

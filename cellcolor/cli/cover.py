@@ -46,12 +46,18 @@ def cover_files(
     check_output(output, _PATHS, inputs)
     surface, colors = LabelledSurface.read(source), Plan.read(plan)
 
-    from cellcolor.door.covering import cover_by
+    from cellcolor.door.covering import cover as cover_surface
 
     try:
         with stages_of(source, "covering") as report:
-            found = cover_by(
-                surface, colors, pattern, spacing_m, tool_radius_m, None, deadline, report
+            found = cover_surface(
+                surface,
+                colors,
+                pattern=pattern,
+                spacing_m=spacing_m,
+                tool_radius_m=tool_radius_m,
+                time_limit=deadline,
+                progress=report,
             )
     except OutOfTime:
         complain(f"{source}: not covered: the time limit came first; nothing is written")

@@ -17,7 +17,6 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
-    from cellcolor.motion.scene_painting import ScenePainting
     from cellcolor.painting.border_report import BorderReport
     from cellcolor.painting.paint import Painted
 
@@ -40,14 +39,14 @@ def paint_files(
     if tool_radius is not None and not 0 < tool_radius < math.inf:
         raise InputError(None, "--tool-radius", "must be a positive number of meters")
 
-    from cellcolor.door.painting import paint_by
+    from cellcolor.door.painting import paint
 
     try:
         subject = read_subject(source, deadline)
         if subject.surface_path is not None:  # of an instance: what it names is read as well
             inputs.append(subject.surface_path)
         check_painted(output, inputs)
-        painted, asked = paint_by(subject, solution, tool_radius, deadline)
+        painted = paint(subject, solution, tool_radius_m=tool_radius, time_limit=deadline)
     except OutOfTime:
         complain(f"{source}: not painted: the time limit came first; nothing is written")
         return Exit.STOPPED
@@ -62,7 +61,7 @@ def paint_files(
     if painted.borders is not None:
         for line in _lines(painted.borders, painted.segments > 1):
             say(f"  {line}")
-    for line in _answers(asked, painted):
+    for line in _answers(painted):
         say(f"  {line}")
     for group in painted.merged:
         say(f"  segments {listed(group)} of the solution touch in one color: painted they are one")
@@ -88,11 +87,12 @@ def _lines(report: BorderReport, several: bool) -> Iterator[str]:
         yield f"{tool} passes over {after.repeated_m2:.3g} m² of other segments{places}"
 
 
-def _answers(asked: ScenePainting | None, painted: Painted) -> Iterator[str]:
+def _answers(painted: Painted) -> Iterator[str]:
     """What the scene has said of a painting, where it was asked and has refused something."""
-    if asked is not None and len(asked.minima) > 1:
-        yield f"the scene refuses copied colors: {count(asked.minima[0], 'segment')} as solved,"
+    if len(painted.minima) > 1:
+        yield f"the scene refuses copied colors: {count(painted.minima[0], 'segment')} as solved,"
         yield f"{painted.segments} after solving again with the true colors of the refined surface"
-    if asked is not None and asked.refused:
-        refused = count(len(asked.refused), "vertex", "vertices")
-        yield f"the scene refuses {refused} of the painting all the same, {asked.refused[0]} first"
+    if painted.refused:
+        refused = count(len(painted.refused), "vertex", "vertices")
+        first = painted.refused[0]
+        yield f"the scene refuses {refused} of the painting all the same, {first} first"

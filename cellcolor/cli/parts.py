@@ -11,7 +11,7 @@ from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import apart_from, complain, print_json, say
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture
-from cellcolor.door.parts import draw_inspection, inspect_by, repair_by
+from cellcolor.door.parts import draw_inspection, inspect, repair
 from cellcolor.errors import InputError
 from cellcolor.files.writing import FileKind, Output, check_output, write
 
@@ -35,7 +35,7 @@ def inspect_part(
         check_output(picture, kind, [part])
     try:
         with stages_of(part, "inspecting") as tell:
-            found = inspect_by(part, unit, deadline, tell)
+            found = inspect(part, unit=unit, time_limit=deadline, progress=tell)
             drawn = None
             if picture is not None:
                 tell("drawing")
@@ -84,7 +84,15 @@ def repair_part(
     check_output(output, _OBJ, [part])
     try:
         with stages_of(part, "repairing") as tell:
-            made = repair_by(part, unit, fill_holes, least_component, edge_length, deadline, tell)
+            made = repair(
+                part,
+                unit=unit,
+                fill_holes_m=fill_holes,
+                least_component=least_component,
+                edge_length_m=edge_length,
+                time_limit=deadline,
+                progress=tell,
+            )
             tell("writing")
             content = made.to_obj().encode()
     except OutOfTime:

@@ -35,12 +35,12 @@ def plan_scene(
     """
     check_folder(folder, [scene])
 
-    from cellcolor.door.planning import plan_by
+    from cellcolor.door.planning import plan
 
     INTERRUPTS.check()
     try:
         with stages_of(scene, "planning") as report:
-            planned = plan_by(scene, pattern, motion, deadline, report)
+            planned = plan(scene, pattern=pattern, time_limit=deadline, progress=report, **motion)
             report("files and page")
             begun = time.perf_counter()
             planned.save(folder)

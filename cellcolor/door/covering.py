@@ -12,16 +12,15 @@ from cellcolor.arrays import Array
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import require_motion
-from cellcolor.door.solving import deadline_after
 from cellcolor.errors import InputError
 from cellcolor.painting.paint import Painted
 
 if TYPE_CHECKING:
     from cellcolor.tool_paths.cover import Covered
 
-__all__ = ["cover", "cover_by"]
+__all__ = ["cover"]
 
 
 def cover(
@@ -32,7 +31,8 @@ def cover(
     spacing_m: float,
     tool_radius_m: float,
     normals: Any = None,
-    time_limit: float | None = None,
+    time_limit: TimeLimit = None,
+    progress: Callable[[str], None] | None = None,
 ) -> Covered:
     """Lay one continuous path on every segment of a painted surface (docs/tool-paths.md).
 
@@ -44,6 +44,7 @@ def cover(
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
         time_limit: seconds, None for as long as it takes.
+        progress: told the name of each stage as it begins.
 
     Returns:
         The paths, with what they cover, how often they pass and what is left uncovered.
@@ -52,7 +53,7 @@ def cover(
         InputError: something cannot be used, or the plan does not fit the surface.
         OutOfTime: the time limit came first.
     """
-    deadline = deadline_after(time_limit)
+    deadline = Deadline.of(time_limit)
     if isinstance(surface, Painted):
         if plan is not None:
             raise InputError(None, "plan", "is given already by what was painted")
@@ -64,20 +65,6 @@ def cover(
         raise InputError(None, "plan", "is missing")
     if not isinstance(plan, Plan):
         plan = Plan.read(plan)
-    return cover_by(surface, plan, pattern, spacing_m, tool_radius_m, normals, deadline)
-
-
-def cover_by(
-    surface: LabelledSurface,
-    plan: Plan,
-    pattern: str,
-    spacing_m: float,
-    tool_radius_m: float,
-    normals: Any,
-    deadline: Deadline,
-    progress: Callable[[str], None] | None = None,
-) -> Covered:
-    """The paths by a moment that may have passed already: :func:`cover`."""
     require_motion("tool paths", ("scipy", "potpourri3d"))
 
     from cellcolor.tool_paths.cover import cover as cover_segments

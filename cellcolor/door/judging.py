@@ -14,11 +14,11 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import FORMAT as TRAJECTORY
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.claims import format_of_claim
 from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_claim
-from cellcolor.door.solving import deadline_after
 from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.door.trajectories import judge_trajectory, read_trajectory
 from cellcolor.oracle import ProvenRange, Verdict
@@ -32,13 +32,13 @@ def check(instance: Solvable, solution: Solution | Result) -> Report: ...
 
 @overload
 def check(
-    instance: Solvable, solution: Trajectory, *, time_limit: float | None = 60.0
+    instance: Solvable, solution: Trajectory, *, time_limit: TimeLimit = 60.0
 ) -> TrajectoryVerdict: ...
 
 
 @overload
 def check(
-    instance: Solvable, solution: str | PathLike[str], *, time_limit: float | None = 60.0
+    instance: Solvable, solution: str | PathLike[str], *, time_limit: TimeLimit = 60.0
 ) -> Any: ...
 
 
@@ -46,7 +46,7 @@ def check(
     instance: Solvable,
     solution: Solution | Result | Trajectory | str | PathLike[str],
     *,
-    time_limit: float | None = 60.0,
+    time_limit: TimeLimit = 60.0,
 ) -> Report | TrajectoryVerdict:
     """An independent checker's opinion of a solution or of a trajectory.
 
@@ -76,11 +76,11 @@ def check(
     if isinstance(solution, (str, PathLike)):
         solution = find_claim(solution)
     if isinstance(solution, Path) and format_of_claim(solution) == TRAJECTORY:
-        deadline = deadline_after(time_limit)
+        deadline = Deadline.of(time_limit)
         read = read_trajectory(solution)
         return judge_trajectory(open_subject(instance, deadline), read, deadline)
     if isinstance(solution, Trajectory):
-        deadline = deadline_after(time_limit)
+        deadline = Deadline.of(time_limit)
         return judge_trajectory(open_subject(instance, deadline), solution, deadline)
     subject = open_subject(instance)
     subject.check_graph()
@@ -103,7 +103,7 @@ def proven_range(
     surface: Solvable,
     *,
     strands: int | None = None,
-    time_limit: float | None = 60.0,
+    time_limit: TimeLimit = 60.0,
     workers: int | None = None,
     seed: int = 0,
 ) -> ProvenRange:
@@ -121,7 +121,7 @@ def proven_range(
         InputError: the surface or an option cannot be used.
         OutOfTime: the time limit came before there was a surface.
     """
-    deadline = deadline_after(time_limit)
+    deadline = Deadline.of(time_limit)
     subject = open_subject(surface, deadline)
     return Oracle(subject, strands=strands, workers=workers, seed=seed).prove(deadline).bounds
 
@@ -131,7 +131,7 @@ def judge(
     plan: AnyPlan,
     *,
     bounds: ProvenRange | None = None,
-    time_limit: float | None = 60.0,
+    time_limit: TimeLimit = 60.0,
 ) -> Verdict:
     """The verdict on a plan: is it valid, how many segments has it, can it be beaten?
 
@@ -154,5 +154,5 @@ def judge(
         InputError: surface or plan cannot be used.
         OutOfTime: the time limit came before there was a surface.
     """
-    deadline = deadline_after(time_limit)
+    deadline = Deadline.of(time_limit)
     return Oracle(open_subject(surface, deadline), bounds=bounds).judge(plan, deadline=deadline)

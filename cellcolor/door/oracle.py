@@ -19,11 +19,10 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.claims import color_numbers, read_claim
 from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
 from cellcolor.door.result import Result
-from cellcolor.door.solving import deadline_after
 from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
@@ -65,7 +64,7 @@ class Oracle:
         self,
         source: Solvable,
         *,
-        time_limit: float | None = 60.0,
+        time_limit: TimeLimit = 60.0,
         strands: int | None = None,
         workers: int | None = None,
         seed: int = 0,
@@ -92,7 +91,7 @@ class Oracle:
             message = f"must be what cellcolor.proven_range returns, is {bounds!r:.100}"
             raise InputError(None, "bounds", message)
         self._time_limit = time_limit
-        self._subject = open_subject(source, deadline_after(time_limit))
+        self._subject = open_subject(source, Deadline.of(time_limit))
         self._options: dict[str, Any] = {"strands": strands, "workers": workers, "seed": seed}
         self._known = bounds
         self._without_painting = 0.0
@@ -106,7 +105,7 @@ class Oracle:
         Raises:
             InputError: a cell of the surface is not planar, or an option is out of its range.
         """
-        return self.prove(deadline_after(self._time_limit)).bounds
+        return self.prove(Deadline.of(self._time_limit)).bounds
 
     def prove(self, deadline: Deadline) -> Proof:
         """What is proved of the surface: now, if it has not been proved yet.
@@ -129,7 +128,7 @@ class Oracle:
     @property
     def best(self) -> BetterPainting | None:
         """A painting with the fewest segments found; None without time or memory for one."""
-        return self._best(deadline_after(self._time_limit))
+        return self._best(Deadline.of(self._time_limit))
 
     def _best(self, deadline: Deadline) -> BetterPainting | None:
         """The painting, made once; an attempt that ran out of time is repeated with twice that.
@@ -208,7 +207,7 @@ class Oracle:
         """The verdict on a plan in colors, or on a solution."""
         if isinstance(plan, Result):
             plan = plan.solution
-        deadline = deadline or deadline_after(self._time_limit)
+        deadline = deadline or Deadline.of(self._time_limit)
         if isinstance(plan, Solution):
             self._subject.check_graph(deadline)
             report = check_solution(self._subject.graph(), plan)
@@ -270,7 +269,7 @@ class Oracle:
     @cached_property
     def _why(self) -> str | None:
         """Why there cannot be fewer segments than the minimum, a clause."""
-        proof = self.prove(deadline_after(self._time_limit))
+        proof = self.prove(Deadline.of(self._time_limit))
         if proof.solution is None or proof.decomposition is None:
             return None
         cells = witness_in_words(proof.decomposition.instance, witness(proof.solution))

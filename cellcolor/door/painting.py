@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from os import PathLike
-from typing import TYPE_CHECKING
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.solution import Solution
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.result import Result
-from cellcolor.door.solving import deadline_after
-from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import InputError
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted
 from cellcolor.painting.paint import paint as paint_solution
 
-if TYPE_CHECKING:
-    from cellcolor.motion.scene_painting import ScenePainting
-
-__all__ = ["paint", "paint_by"]
+__all__ = ["paint"]
 
 
 def paint(
@@ -27,7 +22,7 @@ def paint(
     solution: Solution | Result | str | PathLike[str],
     *,
     tool_radius_m: float | None = None,
-    time_limit: float | None = None,
+    time_limit: TimeLimit = None,
 ) -> Painted:
     """Paint every vertex of a surface in the colors of a solution (docs/painting.md).
 
@@ -52,39 +47,27 @@ def paint(
         OutOfTime: the time limit came first.
         TooLarge: the refined mesh would not fit into memory.
     """
-    deadline = deadline_after(time_limit)
+    deadline = Deadline.of(time_limit)
     if isinstance(solution, Result):
         solution = solution.solution
     elif not isinstance(solution, Solution):
         solution = Solution.read(solution)
-    return paint_by(open_subject(source, deadline), solution, tool_radius_m, deadline)[0]
-
-
-def paint_by(
-    subject: Subject, solution: Solution, tool_radius_m: float | None, deadline: Deadline
-) -> tuple[Painted, ScenePainting | None]:
-    """The painting by a moment that may have passed already: :func:`paint`.
-
-    Of a scene also what was asked of it; None for all else.
-    """
+    subject = open_subject(source, deadline)
     surface, decomposition = subject.surface, subject.decomposition
     problems = check_solution(decomposition.instance, solution).problems
     if problems:
         raise InputError(None, None, f"the solution is not valid: {problems[0]}")
     if subject.built is None:
         drawn = paint_solution(surface, decomposition, solution, deadline)
-        return move_borders(drawn, tool_radius_m, deadline=deadline), None
+        return move_borders(drawn, tool_radius_m, deadline=deadline)
 
-    from cellcolor.frontend.prepared import prepare
     from cellcolor.motion.scene_painting import paint_scene
 
-    prepared = prepare(subject.built.scene, deadline)
-    asked = paint_scene(
-        prepared,
+    return paint_scene(
+        subject.built.prepared,
         subject.built,
         decomposition,
         solution,
         tool_radius_m=tool_radius_m,
         deadline=deadline,
-    )
-    return asked.painted, asked
+    ).painted

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.drawing import Drawing
 from cellcolor.door.extras import extras_for
 from cellcolor.errors import InputError
@@ -19,31 +19,32 @@ if TYPE_CHECKING:
     from cellcolor.frontend.parts.inspected import Inspection
     from cellcolor.frontend.parts.repaired import RepairedPart
 
-__all__ = ["draw_inspection", "inspect", "inspect_by", "repair", "repair_by"]
+__all__ = ["draw_inspection", "inspect", "repair"]
 
 Telling = Callable[[str], None]
 
 
-def inspect(part: Any, *, unit: str | None = None, time_limit: float | None = None) -> Inspection:
+def inspect(
+    part: Any,
+    *,
+    unit: str | None = None,
+    time_limit: TimeLimit = None,
+    progress: Callable[[str], None] | None = None,
+) -> Inspection:
     """What a part's mesh has, what is wrong with it, and what a repair would do about that.
 
     Args:
         part: a mesh file (STL, OBJ, PLY), a ``trimesh.Trimesh``, or vertices (n, 3) and faces
             (m, 3).
         unit: ``m`` or ``mm``; without it the likely one is taken, and said.
-        time_limit: in seconds.
+        time_limit: seconds, None for as long as it takes.
+        progress: told what is being done.
 
     Raises:
         InputError: it cannot be read or looked through; names file and element.
         OutOfTime: the time limit came first.
     """
-    return inspect_by(part, unit, Deadline.after(time_limit))
-
-
-def inspect_by(
-    part: Any, unit: str | None, deadline: Deadline, tell: Telling = lambda _: None
-) -> Inspection:
-    """:func:`inspect` for who has a deadline, and is told what is being done."""
+    deadline, tell = Deadline.of(time_limit), progress or _nobody
     name, file = _name(part)
     with extras_for(name):
         from cellcolor.frontend.parts.inspected import inspect_mesh
@@ -62,7 +63,8 @@ def repair(
     fill_holes_m: float = 0.0,
     least_component: float | None = None,
     edge_length_m: float | None = None,
-    time_limit: float | None = None,
+    time_limit: TimeLimit = None,
+    progress: Callable[[str], None] | None = None,
 ) -> RepairedPart:
     """A part's mesh repaired, so that a scene can use it.
 
@@ -73,26 +75,14 @@ def repair(
         least_component: components with less than this share of the largest one's area are
             dropped; a hundredth if it is not given.
         edge_length_m: remesh to edges of about that length; needs the extra ``parts``.
-        time_limit: in seconds.
+        time_limit: seconds, None for as long as it takes.
+        progress: told what is being done.
 
     Raises:
         InputError: it cannot be read or made good; names file and element.
         OutOfTime: the time limit came first.
     """
-    deadline = Deadline.after(time_limit)
-    return repair_by(part, unit, fill_holes_m, least_component, edge_length_m, deadline)
-
-
-def repair_by(
-    part: Any,
-    unit: str | None,
-    fill_holes_m: float,
-    least_component: float | None,
-    edge_length_m: float | None,
-    deadline: Deadline,
-    tell: Telling = lambda _: None,
-) -> RepairedPart:
-    """:func:`repair` for who has a deadline, and is told what is being done."""
+    deadline, tell = Deadline.of(time_limit), progress or _nobody
     name, file = _name(part)
     with extras_for(name):
         from cellcolor.frontend.parts.repaired import repair_mesh
@@ -116,6 +106,10 @@ def draw_inspection(inspection: Inspection) -> Drawing:
         from cellcolor.pictures.faulty_part import faulty_part
 
         return Drawing(faulty_part(inspection))
+
+
+def _nobody(_: str) -> None:
+    """Is told what is being done where nobody asked."""
 
 
 def _name(part: Any) -> tuple[str, str | None]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from os import PathLike
@@ -14,11 +13,11 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.extras import require_motion
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_file
-from cellcolor.door.solving import deadline_after, solve
+from cellcolor.door.solving import solve
 from cellcolor.door.subject import Subject, is_made_by, is_scene
 from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedPlan
 from cellcolor.errors import InputError
@@ -33,7 +32,7 @@ if TYPE_CHECKING:
     from cellcolor.frontend.stage_clock import StageClock
     from cellcolor.tool_paths.measures import PathMeasures
 
-__all__ = ["PlannedScene", "plan", "plan_by"]
+__all__ = ["PlannedScene", "plan"]
 
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "potpourri3d", "ompl", "toppra")
 _FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
@@ -45,27 +44,22 @@ class PlannedScene:
 
     Attributes:
         subject: the scene, built and decomposed.
-        prepared: the scene, in place, with the motion's keys.
         result: the fewest segments, and what is proved about them.
         painted: the segments on the surface.
         paths: where the tool goes.
         measures: of each of these paths.
         trajectory: how the arm moves.
         verdict: an independent judge's.
-        minima: the segments of each surface that was solved: several if the scene refused a
-            painting, and the surface was refined and solved again.
         seconds: wall time of each stage.
     """
 
     subject: Subject
-    prepared: PreparedScene
     result: Result
     painted: Painted
     paths: ToolPaths
     measures: tuple[PathMeasures, ...]
     trajectory: Trajectory
     verdict: TrajectoryVerdict
-    minima: tuple[int, ...]
     seconds: Mapping[str, float]
 
     @property
@@ -90,7 +84,6 @@ class PlannedScene:
 
         return render_page(
             MotionReport(
-                self.prepared,
                 self.built,
                 self.subject.decomposition,
                 self.solution,
@@ -115,8 +108,8 @@ class PlannedScene:
     def __str__(self) -> str:
         extra = len(self.trajectory.extra_lift_offs)
         said = [f"{self.built.surface.name}: {self.result}", str(self.paths)]
-        if len(self.minima) > 1:
-            earlier = ", ".join(map(str, self.minima[:-1]))
+        if len(self.painted.minima) > 1:
+            earlier = ", ".join(map(str, self.painted.minima[:-1]))
             said.insert(1, f"refined where the scene refused a painting; {earlier} segments before")
         said += [str(self.trajectory) + (f", {extra} beyond the minimum" if extra else "")]
         if self.trajectory.unplanned:
@@ -137,7 +130,7 @@ def plan(
     scene: str | PathLike[str] | Scene,
     *,
     pattern: str | None = None,
-    time_limit: float | None = None,
+    time_limit: TimeLimit = None,
     progress: Callable[[str], None] | None = None,
     **motion: Any,
 ) -> PlannedScene:
@@ -160,18 +153,9 @@ def plan(
             then can be saved.
         OutOfTime: it came earlier.
     """
-    return plan_by(scene, pattern, motion, deadline_after(time_limit), progress)
-
-
-def plan_by(
-    scene: str | PathLike[str] | Scene,
-    pattern: str | None,
-    motion: Mapping[str, Any],
-    deadline: Deadline,
-    progress: Callable[[str], None] | None = None,
-) -> PlannedScene:
-    """The same by a moment that may have passed already: :func:`plan`."""
     from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
+
+    deadline = Deadline.of(time_limit)
 
     path = None
     if not is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
@@ -196,8 +180,8 @@ def plan_by(
         # What is wrong with the motion is refused before the long work begins.
         check_home(prepared, motion_of(prepared))
     with clock.timed("colors"):
-        prepared, subject = _built(prepared, path, StageClock(deadline, progress))
-    so_far = UnfinishedPlan(subject, prepared)
+        subject = _built(prepared, path, StageClock(deadline, progress))
+    so_far = UnfinishedPlan(subject)
 
     def has(**more: Any) -> None:
         nonlocal so_far
@@ -205,28 +189,28 @@ def plan_by(
 
     try:
         with clock.timed("fewest segments"):
-            result = solve(subject, time_limit=_seconds(deadline.share(_FOR_SOLVING)))
+            result = solve(subject, time_limit=deadline.share(_FOR_SOLVING))
             has(result=result)
             if result.solution.cells is None:
                 raise OutOfTime("the time limit came before any division was known")
         with clock.timed("painting"):
             painting = paint_scene(
-                prepared,
+                subject.build().prepared,
                 subject.build(),
                 subject.decomposition,
                 result.solution,
                 deadline=deadline,
                 progress=progress,
             )
-        if len(painting.minima) > 1:  # the surface was refined and solved again
+        if len(painting.painted.minima) > 1:  # the surface was refined and solved again
             subject = Subject(path, painting.built, painting.built.surface)
             result = Result(painting.solution, subject, witness(painting.solution))
-            prepared = replace(prepared, surface=painting.built.stages.surface)
-        has(subject=subject, prepared=prepared, result=result, painted=painting.painted)
+        has(subject=subject, result=result, painted=painting.painted)
+        built = painting.built
         with clock.timed("motion"):
             planned = plan_motion(
-                prepared,
-                subject.build(),
+                built.prepared,
+                built,
                 painting.painted,
                 painting.normals,
                 pattern=pattern or DEFAULT_PATTERN,
@@ -237,8 +221,8 @@ def plan_by(
         solution = result.solution
         with clock.timed("judging"):
             verdict = check_trajectory(
-                prepared,
-                subject.build(),
+                built.prepared,
+                built,
                 planned.trajectory,
                 minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,
                 deadline=deadline,
@@ -248,14 +232,12 @@ def plan_by(
         raise PlanOutOfTime(so_far) from error
     return PlannedScene(
         subject,
-        prepared,
         result,
         painting.painted,
         planned.paths,
         planned.measures,
         planned.trajectory,
         verdict,
-        painting.minima,
         clock.seconds,
     )
 
@@ -272,28 +254,16 @@ def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:
         return scene.varied(setup=setup, file=scene.file)
 
 
-def _built(
-    prepared: PreparedScene, path: Path | None, clock: StageClock
-) -> tuple[PreparedScene, Subject]:
-    """The scene with the surface that was built, refined where its setup asks for it, and that.
+def _built(prepared: PreparedScene, path: Path | None, clock: StageClock) -> Subject:
+    """The scene, built.
 
     Raises:
         NothingCovered: no point of the object can be covered.
     """
-    from cellcolor.frontend.build import result_of
-    from cellcolor.frontend.finer_borders import with_finer_borders
-    from cellcolor.frontend.tables import in_file
+    from cellcolor.frontend.build import build_prepared
 
-    with in_file(prepared.scene.file):
-        prepared, stages = with_finer_borders(prepared, clock)
-        built = result_of(prepared, stages, clock)
-        subject = Subject(path, built, built.surface)
-        nothing = subject.graph(prepared.deadline).nothing_to_cover
-    if nothing:
+    built = build_prepared(prepared, clock)
+    subject = Subject(path, built, built.surface)
+    if subject.graph(clock.deadline).nothing_to_cover:
         raise NothingCovered(built.report, str(prepared.scene.file or "") or None)
-    return prepared, subject
-
-
-def _seconds(deadline: Deadline) -> float | None:
-    """A deadline as a time limit, which is longer than 0."""
-    return None if math.isinf(deadline.left) else max(deadline.left, 1e-3)
+    return subject

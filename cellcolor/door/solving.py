@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from numbers import Real
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace, Solution
-from cellcolor.deadline import NEVER, Deadline
+from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import Solvable, build_scene, is_made_by, is_scene, open_subject
@@ -23,13 +21,13 @@ from cellcolor.solvers.interface import Options, Start
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
 
-__all__ = ["build", "deadline_after", "decompose", "solve", "start_from"]
+__all__ = ["build", "decompose", "solve", "start_from"]
 
 
 def build(
     scene: str | PathLike[str] | Scene,
     *,
-    time_limit: float | None = None,
+    time_limit: TimeLimit = None,
     progress: Callable[[str], None] | None = None,
 ) -> BuildResult:
     """Compute which colors reach each point of a robot scene's object.
@@ -48,7 +46,7 @@ def build(
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
         OutOfTime: the time limit came first.
     """
-    deadline = deadline_after(time_limit)
+    deadline = Deadline.of(time_limit)
     if is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
         return build_scene(scene, deadline, progress)  # type: ignore[arg-type]
     path = find_file(scene)  # type: ignore[arg-type]
@@ -57,7 +55,7 @@ def build(
     return build_scene(path, deadline, progress)
 
 
-def decompose(source: Solvable, *, time_limit: float | None = None) -> Instance:
+def decompose(source: Solvable, *, time_limit: TimeLimit = None) -> Instance:
     """The topological graph of a labelled surface or a scene: what ``solve`` solves.
 
     Args:
@@ -68,7 +66,7 @@ def decompose(source: Solvable, *, time_limit: float | None = None) -> Instance:
         InputError: it cannot be used; a cell of the surface is not planar.
         OutOfTime: the time limit came first.
     """
-    deadline = deadline_after(time_limit)
+    deadline = Deadline.of(time_limit)
     return open_subject(source, deadline).graph(deadline)
 
 
@@ -78,7 +76,7 @@ def solve(
     solver: str = "cp-sat",
     search_space: SearchSpace = "paper",
     strands: int | None = None,
-    time_limit: float | None = None,
+    time_limit: TimeLimit = None,
     workers: int | None = None,
     seed: int = 0,
     fewest_cuts: bool = False,
@@ -108,7 +106,7 @@ def solve(
         InputError: what is to be solved, or an option, cannot be used.
         OutOfTime: the time limit came before any division was known.
     """
-    deadline = deadline_after(time_limit)
+    deadline = Deadline.of(time_limit)
     subject = open_subject(source, deadline)
     instance = subject.graph(deadline)
     given: dict[str, Any] = {} if strands is None else {"strands": strands}
@@ -152,18 +150,3 @@ def start_from(
     if strands is not None and solution.strands != strands:
         raise InputError(file, "strands", f"is {solution.strands}, wanted are {strands}")
     return Start(solution.cells, solution.seams)
-
-
-def deadline_after(time_limit: float | None) -> Deadline:
-    """The moment so many seconds from now.
-
-    Raises:
-        InputError: it is no positive number of seconds.
-    """
-    if time_limit is None:
-        return NEVER
-    number = isinstance(time_limit, Real) and not isinstance(time_limit, bool)
-    if not number or not 0 < time_limit < math.inf:
-        message = f"must be a positive number of seconds or None, is {time_limit!r}"
-        raise InputError(None, "time_limit", message)
-    return Deadline.after(float(time_limit))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from os import PathLike
 from pathlib import Path
 from typing import TypeAlias
@@ -46,23 +45,19 @@ def judge_trajectory(
 
     built = subject.build()
     with extras_for("the front end"):
-        from cellcolor.frontend.prepared import prepare
         from cellcolor.trajectory_checker.check import check_trajectory
         from cellcolor.trajectory_checker.other_planners import completed
 
     report = progress or (lambda _: None)
-    report("preparation")
-    # The build may have bisected borders; cracks and area are those of its mesh.
-    prepared = replace(prepare(built.scene, deadline), surface=built.stages.surface)
     tells = isinstance(given, Trajectory)
     timed = isinstance(given, Trajectory) or given.times is not None
     if isinstance(given, TrajectoryTable):
-        given = completed(given, prepared.robot, deadline)
+        given = completed(given, built.robot, deadline)
     report("proven minimum")
     # Half of the time is for the judge, who has something to say whatever is proved.
     bounds = prove(built.surface, deadline.share(0.5)).bounds
     return check_trajectory(
-        prepared,
+        built.prepared,
         built,
         given,
         timed=timed,

@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from cellcolor.door.result import Result
     from cellcolor.door.subject import Subject
     from cellcolor.frontend import BuildReport, BuildResult
-    from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.painting.paint import Painted
     from cellcolor.tool_paths.measures import PathMeasures
 
@@ -32,7 +31,6 @@ class UnfinishedPlan:
 
     Attributes:
         subject: the scene, built and decomposed.
-        prepared: the scene, in place.
         result: the fewest segments that were found, and what is proved; None before the search.
         painted: the segments on the surface, if they were painted.
         paths: where the tool goes, if that was laid out.
@@ -40,7 +38,6 @@ class UnfinishedPlan:
     """
 
     subject: Subject
-    prepared: PreparedScene
     result: Result | None = None
     painted: Painted | None = None
     paths: ToolPaths | None = None
@@ -81,7 +78,6 @@ class UnfinishedPlan:
 
         return render_page(
             MotionReport(
-                self.prepared,
                 self.built,
                 self.subject.decomposition,
                 self.solution,

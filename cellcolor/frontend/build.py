@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -45,29 +45,56 @@ class BuildResult:
 
     Attributes:
         surface: what the decomposition takes.
-        branches: names of the inverse-kinematic branches, eight of a UR-type arm, or of sheets
-            (:mod:`cellcolor.frontend.reach.sheets`).
-        configurations: (n, branches, joints) in rad, NaN where a branch has no solution.
-        reasons: (n, branches) uint8 codes, the first test that a candidate fails.
-        reason_names: what the codes mean: valid, no solution, and the tests in their order.
-        node_color: (n, branches) the color of each valid candidate, -1 for the others and for
-            those that a sliver policy took away.
         report: the same in numbers for people.
         stages: what each stage of the build has made.
-        scene: what was built.
-        robot: the arm and tool of its setup.
+        prepared: the scene in place, with the surface that was labelled.
     """
 
     surface: LabelledSurface
-    branches: tuple[str, ...]
-    configurations: Array
-    reasons: NDArray[np.uint8]
-    reason_names: tuple[str, ...]
-    node_color: NDArray[np.int64]
     report: BuildReport
-    stages: Stages = field(compare=False)  # what came of them is compared
-    scene: Scene = field(compare=False)
-    robot: Robot = field(compare=False)
+    stages: Stages
+    prepared: PreparedScene
+
+    @property
+    def scene(self) -> Scene:
+        """What was built."""
+        return self.prepared.scene
+
+    @property
+    def robot(self) -> Robot:
+        """The arm and tool of its setup."""
+        return self.prepared.robot
+
+    @property
+    def branches(self) -> tuple[str, ...]:
+        """Names of the inverse-kinematic branches, eight of a UR-type arm, or of sheets.
+
+        See :mod:`cellcolor.frontend.reach.sheets`.
+        """
+        return self.stages.branches
+
+    @property
+    def configurations(self) -> Array:
+        """(n, branches, joints) in rad, NaN where a branch has no solution."""
+        return self.stages.candidates.configurations
+
+    @property
+    def reasons(self) -> NDArray[np.uint8]:
+        """(n, branches) codes: the first test that a candidate fails."""
+        return self.stages.candidates.reasons
+
+    @property
+    def reason_names(self) -> tuple[str, ...]:
+        """What the codes mean: valid, no solution, and the tests in their order."""
+        return self.stages.candidates.reason_names
+
+    @property
+    def node_color(self) -> NDArray[np.int64]:
+        """(n, branches) the color of each valid candidate, -1 for the others.
+
+        Those that a sliver policy took away have -1 as well.
+        """
+        return self.stages.cleaned.coloring.node_color
 
     @property
     def candidates(self) -> CandidateTable:
@@ -82,7 +109,11 @@ class BuildResult:
         )
 
     def __eq__(self, other: object) -> bool:
-        return same_members(self, other) if isinstance(other, BuildResult) else NotImplemented
+        if not isinstance(other, BuildResult):
+            return NotImplemented
+        return (self.surface, self.report) == (other.surface, other.report) and same_members(
+            self.candidates, other.candidates
+        )
 
     __hash__ = None  # type: ignore[assignment]  # arrays that can be changed
 
@@ -116,6 +147,16 @@ def build_surface(
     clock = StageClock(deadline, progress)
     with clock.timed("preparation"):
         prepared = prepare(scene, deadline)
+    return build_prepared(prepared, clock)
+
+
+def build_prepared(prepared: PreparedScene, clock: StageClock) -> BuildResult:
+    """Compute which colors reach each point of a scene that is in place.
+
+    Raises:
+        InputError: the scene asks for too much; names file and field.
+        OutOfTime: the clock's deadline came first.
+    """
     with in_file(prepared.scene.file):
         return result_of(*with_finer_borders(prepared, clock), clock)
 
@@ -133,21 +174,10 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
     """
     clock.begin("report")
     labelled = _labelled(prepared, stages, clock.seconds)
-    prepared.deadline.check()
+    clock.deadline.check()
     report = _report(prepared, stages, clock.seconds)
-    prepared.deadline.check()
-    return BuildResult(
-        surface=labelled,
-        branches=stages.branches,
-        configurations=stages.candidates.configurations,
-        reasons=stages.candidates.reasons,
-        reason_names=stages.candidates.reason_names,
-        node_color=stages.cleaned.coloring.node_color,
-        report=report,
-        stages=stages,
-        scene=prepared.scene,
-        robot=prepared.robot,
-    )
+    clock.deadline.check()
+    return BuildResult(labelled, report, stages, prepared)
 
 
 def _labelled(

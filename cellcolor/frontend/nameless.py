@@ -11,10 +11,11 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.between import Test
 from cellcolor.frontend.reach.sheets import Sheets, linked_pairs, sheets_of
-from cellcolor.frontend.reach.tracking import Solutions
+from cellcolor.frontend.reach.tracking import Solutions, Tracker
 from cellcolor.frontend.reach.validity import NO_SOLUTION, Candidates
 
 __all__ = ["Nameless", "arranged_in_sheets"]
@@ -28,6 +29,7 @@ class Nameless:
 
     Attributes:
         prepared: the scene.
+        tracker: follows solutions along mesh edges.
         sheets: which solution each sheet has, and where it is continuous.
         solutions: (n, sheets) of all vertices.
         candidates: the same as branches have it, a sheet each.
@@ -35,6 +37,7 @@ class Nameless:
     """
 
     prepared: PreparedScene
+    tracker: Tracker
     sheets: Sheets
     solutions: Solutions
     candidates: Candidates
@@ -53,14 +56,16 @@ class Nameless:
             ends = np.where((away[:, 0] <= away[:, 1])[:, None], ends, ends[:, ::-1])
             way = away.min(axis=1) / away.sum(axis=1)
             start = self.solutions.take(ends[:, 0], sheets[at])
-            joints, _motions = self.prepared.tracker.walk(surface, ends, start, way)
+            joints, _motions = self.tracker.walk(surface, ends, start, way)
             verdicts = self.prepared.judge(joints)
             return np.asarray(verdicts.reasons == VALID), verdicts.tracked
 
         return test
 
 
-def arranged_in_sheets(prepared: PreparedScene, candidates: Candidates, tracked: Array) -> Nameless:
+def arranged_in_sheets(
+    prepared: PreparedScene, candidates: Candidates, tracked: Array, deadline: Deadline
+) -> Nameless:
     """Link solutions along mesh edges, and make sheets of them.
 
     Args:
@@ -71,13 +76,13 @@ def arranged_in_sheets(prepared: PreparedScene, candidates: Candidates, tracked:
         InputError: linked solutions are two of one vertex, or there are too many sheets.
         OutOfTime: the deadline came first.
     """
-    surface, robot, tracker = prepared.surface, prepared.robot, prepared.tracker
+    surface, robot, tracker = prepared.surface, prepared.robot, prepared.tracker(deadline)
     edges, nodes = surface.edges(), candidates.valid
     limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
     solutions = tracker.described(candidates.configurations)
     pairs = [np.empty((0, 3), dtype=np.int64)]
     for first in range(0, len(edges), _AT_ONCE):
-        prepared.deadline.check()
+        deadline.check()
         part = edges[first : first + _AT_ONCE]
         found = linked_pairs(surface, part, nodes, solutions, tracker, prepared.measure, limits)
         pairs.append(found + np.array([first, 0, 0]))
@@ -97,4 +102,4 @@ def arranged_in_sheets(prepared: PreparedScene, candidates: Candidates, tracked:
     bodies = tracked.reshape(len(tracked), *nodes.shape, 3).transpose(1, 2, 0, 3)
     moved = sheets.arranged(bodies, np.nan).transpose(2, 0, 1, 3)
     moved = moved.reshape(len(tracked), by_sheet.reasons.size, 3)
-    return Nameless(prepared, sheets, arranged, by_sheet, moved)
+    return Nameless(prepared, tracker, sheets, arranged, by_sheet, moved)

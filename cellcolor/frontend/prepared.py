@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import partial
 from os import PathLike
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,7 +56,6 @@ class PreparedScene:
         surface: what has to be covered, in the world.
         judge: the tests.
         notes: what is probably not meant of robot and mesh, a sentence each.
-        deadline: when to give up.
     """
 
     scene: Scene
@@ -63,7 +64,10 @@ class PreparedScene:
     surface: Surface
     judge: Judge
     notes: tuple[str, ...]
-    deadline: Deadline
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Solids of python-fcl cannot be pickled: where it is unpickled the scene is read again.
+        return _prepared_on, (self.scene, self.surface)
 
     @property
     def setup(self) -> Setup:
@@ -75,14 +79,17 @@ class PreparedScene:
         """Arm and tool."""
         return self.workplace.robot
 
-    def inverse(self, points: Array, directions: Array) -> Array:
+    def inverse(self, points: Array, directions: Array, deadline: Deadline = NEVER) -> Array:
         """All branches (n, branches, joints) in rad, or all solutions if they have no names.
 
         See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
+
+        Raises:
+            OutOfTime: the deadline came first.
         """
         parts = []
         for first in range(0, len(points), _AT_ONCE):
-            self.deadline.check()
+            deadline.check()
             rows = slice(first, first + _AT_ONCE)
             parts.append(self.kinematics.solve(points[rows], directions[rows]))
         most = max([1, *(part.shape[1] for part in parts)])
@@ -101,11 +108,11 @@ class PreparedScene:
             return Measure(policy, near_singular, own.lever)
         return Measure(policy, near_singular, own.lever, slides, own.reach)
 
-    @property
-    def tracker(self) -> Tracker:
-        """Follows solutions that have no names."""
+    def tracker(self, deadline: Deadline = NEVER) -> Tracker:
+        """Follows solutions that have no names, until a deadline (OutOfTime)."""
         limits = self.workplace.conditioning if self.setup.constraints.conditioning else None
-        return Tracker(self.robot, self.inverse, self.measure, limits)
+        solve = partial(self.inverse, deadline=deadline)
+        return Tracker(self.robot, solve, self.measure, limits)
 
     def check_named(self) -> None:
         """Refuse an arm whose solutions have no names.
@@ -135,19 +142,35 @@ class PreparedScene:
         return self.kinematics.solve(points, directions, branches)[:, 0]
 
     def probe(
-        self, points: Array, directions: Array, branches: NDArray[np.intp]
+        self,
+        points: Array,
+        directions: Array,
+        branches: NDArray[np.intp],
+        deadline: Deadline = NEVER,
     ) -> tuple[Array, Array]:
-        """Well-conditioned configurations; see :data:`~cellcolor.frontend.reach.smooth.Probe`."""
-        self.deadline.check()
+        """Well-conditioned configurations; see :data:`~cellcolor.frontend.reach.smooth.Probe`.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        deadline.check()
         found = self.follow(points, directions, branches)
         limits = self.workplace.conditioning if self.setup.constraints.conditioning else None
         return found, task_determinants(self.robot, found, limits)
 
     def test(
-        self, points: Array, directions: Array, branches: NDArray[np.intp]
+        self,
+        points: Array,
+        directions: Array,
+        branches: NDArray[np.intp],
+        deadline: Deadline = NEVER,
     ) -> tuple[Mask, Array]:
-        """Is a branch valid there; see :data:`~cellcolor.frontend.reach.between.Test`."""
-        verdicts = self.judge(self.follow(points, directions, branches))
+        """Is a branch valid there; see :data:`~cellcolor.frontend.reach.between.Test`.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        verdicts = self.judge(self.follow(points, directions, branches), deadline)
         return np.asarray(verdicts.reasons == VALID), verdicts.tracked
 
 
@@ -186,11 +209,16 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     with in_file(setup.file):
         limits = conditioning(setup, kinematics.reach, robot)
     workplace = Workplace(robot, setup, limits, ground, tuple(obstacles), target, tip)
-    judge = Judge(workplace, scene.validity_test, deadline)
+    judge = Judge(workplace, scene.validity_test)
     notes = robot.warnings + notes_on_units(scene, kinematics.reach)
     if setup.constraints.collision:
         notes += _notes_on_contacts(workplace, float(lengths.max()))
-    return PreparedScene(scene, workplace, kinematics, surface, judge, notes, deadline)
+    return PreparedScene(scene, workplace, kinematics, surface, judge, notes)
+
+
+def _prepared_on(scene: Scene, surface: Surface) -> PreparedScene:
+    """The scene again, with a surface that may have been refined."""
+    return replace(prepare(scene), surface=surface)
 
 
 def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:

@@ -18,12 +18,13 @@ class StageClock:
     """What one build has spent its time on.
 
     Attributes:
+        deadline: when to give up.
         seconds: wall time of each timed stage, in the order in which they first ended; of a stage
             that came several times, the sum.
     """
 
     def __init__(self, deadline: Deadline, progress: Progress | None) -> None:
-        self._deadline, self._progress = deadline, progress
+        self.deadline, self._progress = deadline, progress
         self.seconds: dict[str, float] = {}
 
     def begin(self, stage: str) -> None:
@@ -32,7 +33,7 @@ class StageClock:
         Raises:
             OutOfTime: the deadline has come.
         """
-        self._deadline.check()
+        self.deadline.check()
         if self._progress is not None:
             self._progress(stage)
 

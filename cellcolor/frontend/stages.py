@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -124,7 +125,8 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
             the same normals. Only new vertices and new mesh edges are asked about, to the same
             result. An arm whose solutions have no names is asked about everything.
     """
-    names, test_on = prepared.kinematics.branches, _test_of_branches(prepared)
+    deadline = clock.deadline
+    names, test_on = prepared.kinematics.branches, _test_of_branches(prepared, deadline)
     known = None if before is None or not names else before.stages
     first = 0 if known is None else len(known.surface.vertices)
     setup, surface = prepared.setup, prepared.surface
@@ -132,29 +134,32 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
         with in_file(setup.file):
             check_turns(len(surface.vertices), len(setup.task.turn.degrees))
     with clock.timed("inverse kinematics"):
-        solutions = prepared.inverse(surface.vertices[first:], -surface.normals[first:])
+        vertices, directions = surface.vertices[first:], -surface.normals[first:]
+        solutions = prepared.inverse(vertices, directions, deadline)
     clock.begin("validity at the vertices")
-    verdicts = prepared.judge(solutions.reshape(-1, solutions.shape[2]))
+    verdicts = prepared.judge(solutions.reshape(-1, solutions.shape[2]), deadline)
     clock.add(verdicts.seconds)
     if before is not None and known is not None:
         verdicts = before.verdicts.followed_by(verdicts)
     candidates, tracked = _candidates(prepared, verdicts), verdicts.tracked
     with clock.timed("continuity"):
         if names:
-            continuous = _continuous_links(prepared, candidates, known)
+            continuous = _continuous_links(prepared, candidates, known, deadline)
         else:
-            found = arranged_in_sheets(prepared, candidates, tracked)
+            found = arranged_in_sheets(prepared, candidates, tracked, deadline)
             candidates, tracked, test_on = found.candidates, found.tracked, found.test_on
             names = found.sheets.names
             continuous = Links(prepared.surface.edges(), found.sheets.linked)
     candidates, links = _with_turn(prepared, candidates), continuous
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
-            links = _valid_links(prepared, candidates, continuous, tracked, test_on, known)
+            links = _valid_links(
+                prepared, candidates, continuous, tracked, test_on, known, deadline
+            )
     with clock.timed("colors and cracks"):
         coloring = _colored(names, candidates, candidates.valid, links)
-        prepared.deadline.check()
-        cleaned = _cleaned(prepared, names, candidates, links, coloring)
+        deadline.check()
+        cleaned = _cleaned(prepared, names, candidates, links, coloring, deadline)
     stages = Stages(
         prepared.surface,
         candidates,
@@ -172,9 +177,12 @@ TestOn = Callable[[Index, Index], Test]
 """Mesh edges (k, 2) and a branch of each (k,) to a test of points on them."""
 
 
-def _test_of_branches(prepared: PreparedScene) -> TestOn:
+def _test_of_branches(prepared: PreparedScene, deadline: Deadline) -> TestOn:
     def test_on(_: Index, branches: Index) -> Test:
-        return lambda points, directions, at: prepared.test(points, directions, branches[at])
+        def test(points: Array, directions: Array, at: Index) -> tuple[Mask, Array]:
+            return prepared.test(points, directions, branches[at], deadline)
+
+        return test
 
     return test_on
 
@@ -201,7 +209,7 @@ def _with_turn(prepared: PreparedScene, candidates: Candidates) -> Candidates:
 
 
 def _continuous_links(
-    prepared: PreparedScene, candidates: Candidates, known: Stages | None
+    prepared: PreparedScene, candidates: Candidates, known: Stages | None, deadline: Deadline
 ) -> Links:
     """The links along which a branch moves without a jump and within the joint limits."""
     robot, setup, edges = prepared.robot, prepared.setup, prepared.surface.edges()
@@ -211,15 +219,15 @@ def _continuous_links(
     if known is not None:
         here, there = _in_both(edges, known.continuous.edges)
         linked[here], new[here] = known.continuous.linked[there], False
-    all_rows = np.flatnonzero(new)
+    all_rows, probe = np.flatnonzero(new), partial(prepared.probe, deadline=deadline)
 
     def link_part(part: slice) -> None:
         rows = all_rows[part]
         linked[rows] = link(
-            prepared.surface, edges[rows], candidates, prepared.measure, limits, prepared.probe
+            prepared.surface, edges[rows], candidates, prepared.measure, limits, probe
         )
 
-    _in_parts(link_part, len(all_rows), prepared.deadline)
+    _in_parts(link_part, len(all_rows), deadline)
     return Links(edges, linked)
 
 
@@ -230,6 +238,7 @@ def _valid_links(
     tracked: Array,
     test_on: TestOn,
     known: Stages | None,
+    deadline: Deadline,
 ) -> Links:
     """The links that are valid between the vertices as well.
 
@@ -256,7 +265,7 @@ def _valid_links(
         linked[rows] &= prepared.workplace.tip.free_along(surface, edges[rows])[:, None]
 
     if prepared.setup.constraints.collision:
-        _in_parts(free_part, len(asked), prepared.deadline)
+        _in_parts(free_part, len(asked), deadline)
     spacing = prepared.setup.continuity.validity_spacing_m
     assert spacing is not None  # asked by who calls
     counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
@@ -272,7 +281,7 @@ def _valid_links(
             surface, edges[rows], branches, pieces, at_vertices, longest, test
         )
 
-    _in_parts(test_part, len(all_rows), prepared.deadline)
+    _in_parts(test_part, len(all_rows), deadline)
     return Links(edges, linked)
 
 
@@ -297,13 +306,14 @@ def _cleaned(
     candidates: Candidates,
     links: Links,
     coloring: Coloring,
+    deadline: Deadline,
 ) -> Cleaned:
     """What the setup's sliver policy leaves, colored anew, and its cracks."""
     policy, report = prepared.setup.slivers, None
     edges = links.edges
     if policy is not None:
         areas = prepared.surface.vertex_areas()
-        kept, report = clean(edges, links.linked, coloring, areas, policy, prepared.deadline)
+        kept, report = clean(edges, links.linked, coloring, areas, policy, deadline)
         links = Links(edges, links.linked & kept[edges].all(axis=1))
         coloring = _colored(names, candidates, kept, links)
     return Cleaned(links, coloring, find_cracks(edges, links.linked, coloring), report)

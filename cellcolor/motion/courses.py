@@ -11,6 +11,7 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath
+from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.following import Followed, follow
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
@@ -53,6 +54,7 @@ def laid_out(
     branch: int,
     lay: Callable[[Index], Covered],
     reasons: dict[int, str],
+    deadline: Deadline,
 ) -> Courses:
     """Lay out the paths of a segment, and again without the places where a sample fails.
 
@@ -63,6 +65,7 @@ def laid_out(
         branch: of the segment's color.
         lay: makes the segment's paths, given the numbers of small triangles to leave out.
         reasons: of each of its small triangles that is known to be bad, the test that fails there.
+        deadline: when to give up.
 
     Returns:
         Paths on whose samples hardly anything fails; what still does has to be cut out of them.
@@ -76,7 +79,7 @@ def laid_out(
         courses, failing = [], {}
         for path in covered.paths.paths:
             samples = with_normals_of(sampled(path), surface.vertices, surface.faces, normals)
-            course = Course(path, samples, follow(prepared, samples, branch))
+            course = Course(path, samples, follow(prepared, samples, branch, deadline))
             courses.append(course)
             for at, why in _failures(course.followed, prepared.judge.reason_names):
                 face, point = int(samples.faces[at]), samples.points[at]

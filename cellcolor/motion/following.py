@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.smooth import Measure, follow_edges
@@ -41,18 +43,20 @@ class Followed:
         return bool((self.reasons == VALID).all() and not self.torn.any())
 
 
-def follow(prepared: PreparedScene, samples: Samples, branch: int) -> Followed:
+def follow(
+    prepared: PreparedScene, samples: Samples, branch: int, deadline: Deadline = NEVER
+) -> Followed:
     """Follow a branch, and judge every sample by the tests of the cells.
 
     Whether the branch jumps between two samples is asked as it is asked of mesh edges
     (``docs/frontend.md``, "Continuity"), so that no jump is ever smoothed over.
 
     Raises:
-        OutOfTime: the deadline of the scene came first.
+        OutOfTime: the deadline came first.
     """
     branches = np.full(len(samples), branch, dtype=np.intp)
     found = prepared.follow(samples.points, -samples.normals, branches)
-    verdicts = prepared.judge(found)
+    verdicts = prepared.judge(found, deadline)
     valid = verdicts.reasons == VALID
     both = np.flatnonzero(valid[:-1] & valid[1:])
     steps = np.column_stack([both, both + 1])
@@ -68,7 +72,7 @@ def follow(prepared: PreparedScene, samples: Samples, branch: int) -> Followed:
         (found[both], found[both + 1]),
         (verdicts.determinants[both], verdicts.determinants[both + 1]),
         measure,
-        prepared.probe,
+        partial(prepared.probe, deadline=deadline),
     )
     torn = np.zeros(len(samples) - 1, dtype=bool)
     torn[both[~motions.smooth]] = True

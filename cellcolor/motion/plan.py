@@ -106,7 +106,7 @@ def plan_motion(
     with clock.timed("corners of small triangles"):
         small = small_triangles(surface.vertices, surface.faces, normals, segment_of)
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
-        states = corner_states(prepared, small, own_branch)
+        states = corner_states(prepared, small, own_branch, deadline)
 
     def lay(segment: int, walls: Collection[tuple[int, int]], left_out: Index) -> Covered:
         return cover(

@@ -47,11 +47,6 @@ class ScenePainting:
             had to be solved again.
         decomposition: of that surface.
         solution: of that surface.
-        minima: the segments of each surface that was solved, the given one first. There are
-            several if the scene refused a painting.
-        refused: vertices of the painting, ascending, at which the scene refuses it all the same: a
-            new one that the color does not reach, or the end of a mesh edge along which it does not
-            lead on.
     """
 
     painted: Painted
@@ -59,8 +54,6 @@ class ScenePainting:
     built: BuildResult
     decomposition: Decomposition
     solution: Solution
-    minima: tuple[int, ...]
-    refused: tuple[int, ...]
 
 
 def paint_scene(
@@ -114,8 +107,8 @@ def paint_scene(
         painted = move_borders(drawn, tool_radius_m, cost, deadline)
         refused = () if whole else _refused(painted, stages, branch)
         if not refused or len(minima) == _TIMES:
-            minimum = tuple(minima)
-            return ScenePainting(painted, normals, built, decomposition, solution, minimum, refused)
+            painted = replace(painted, minima=tuple(minima), refused=refused)
+            return ScenePainting(painted, normals, built, decomposition, solution)
         clock.begin("solving again")
         built = result_of(replace(prepared, surface=finer), stages, clock)
         decomposition = decomposition_of(built.surface, None, deadline)
@@ -124,7 +117,7 @@ def paint_scene(
 
 
 def _refused(painted: Painted, stages: Stages, branch: Index) -> tuple[int, ...]:
-    """The vertices where the scene refuses a painting, see :class:`ScenePainting`.
+    """The vertices where the scene refuses a painting (:class:`~cellcolor.painting.paint.Painted`).
 
     Args:
         painted: the painting.

@@ -88,6 +88,7 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
             branch,
             lambda left_out: ground.lay(segment, walls, left_out),
             reasons,
+            ground.deadline,
         )
 
     courses = courses_with((), own)

@@ -16,6 +16,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import LeftOut
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.following import CIRCLE
 from cellcolor.union_find import UnionFind
@@ -121,14 +122,16 @@ def small_triangles(
     )
 
 
-def corner_states(prepared: PreparedScene, small: SmallTriangles, branch_of: Index) -> CornerStates:
+def corner_states(
+    prepared: PreparedScene, small: SmallTriangles, branch_of: Index, deadline: Deadline = NEVER
+) -> CornerStates:
     """Configurations at all corners of small triangles, judged.
 
     Args:
         branch_of: (segments,) the branch of each segment's color.
 
     Raises:
-        OutOfTime: the deadline of the scene came first.
+        OutOfTime: the deadline came first.
     """
     own = np.flatnonzero(small.segment >= 0)
     branches = int(branch_of.max(initial=0)) + 1
@@ -136,7 +139,7 @@ def corner_states(prepared: PreparedScene, small: SmallTriangles, branch_of: Ind
     asked, place = np.unique(pairs, return_inverse=True)
     corner, branch = asked // branches, asked % branches
     found = prepared.follow(small.points[corner], -small.normals[corner], branch.astype(np.intp))
-    verdicts = prepared.judge(found)
+    verdicts = prepared.judge(found, deadline)
     place = place.reshape(-1, 3)
     at_corners, failed = found[place], verdicts.reasons[place]
     reasons = np.zeros(len(small.corners), dtype=np.uint8)

@@ -47,6 +47,11 @@ class Painted:
         merged: segments of the solution that have one color and touch, so that they are one when
             painted; only where the solution has more than are needed.
         borders: what moving them has changed; None if they are where the drawing has put them.
+        minima: of a scene that was asked about its painting the segments of each surface that was
+            solved. There are several if the scene refused a painting.
+        refused: vertices, ascending, at which the scene refuses the painting all the same: a new
+            one that the color does not reach, or the end of a mesh edge along which it does not
+            lead on.
     """
 
     surface: LabelledSurface
@@ -57,6 +62,8 @@ class Painted:
     between: Index
     merged: tuple[tuple[int, ...], ...]
     borders: BorderReport | None = None
+    minima: tuple[int, ...] = ()
+    refused: tuple[int, ...] = ()
 
     def interpolated(self, values: Array) -> Array:
         """Values (m, ...) at the given surface's vertices, carried over to all (n, ...).

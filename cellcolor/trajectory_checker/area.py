@@ -9,6 +9,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import CoveredArea
+from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.claims import judge_left_out
@@ -54,6 +55,7 @@ def judge_area(
     limits: Limits,
     tells: bool,
     faults: FaultList,
+    deadline: Deadline,
 ) -> CoveredArea:
     """Measure what is covered, and note what is not, and what is gone over too often.
 
@@ -61,6 +63,7 @@ def judge_area(
         rows: (c,) those of ``dense`` in contact, with their places and branches.
         tells: whether the trajectory can say what it leaves out.
         touching: (c,) whether the tip is on the surface there; nothing else covers anything.
+        deadline: when to give up.
     """
     rows, branches = rows[touching], branches[touching]
     located = Located(*(getattr(located, field.name)[touching] for field in fields(located)))
@@ -78,7 +81,16 @@ def judge_area(
         else set(trajectory.segment[trajectory.contact].tolist())
     )
     right = excused(
-        prepared, trajectory, sorted(segments), dense, rows, branches, fine, reached, missed
+        prepared,
+        trajectory,
+        sorted(segments),
+        dense,
+        rows,
+        branches,
+        fine,
+        reached,
+        missed,
+        deadline,
     )
     near = reached.distance <= FAR * spacing
     uncovered = missed & ~right & ~near

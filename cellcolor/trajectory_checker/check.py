@@ -98,7 +98,7 @@ def check_trajectory(
     if turn is not None:
         across = across_of(robot, dense.joints[rows], deadline)
         judge_turn(turn, dense, rows, located.normals, across, faults)
-    branches = branches_of(prepared, dense, rows, across)
+    branches = branches_of(prepared, dense, rows, across, deadline)
     judge_cracks(built, dense, rows, located, branches, fine, faults)
     covered: CoveredArea | None = None
     if motion is None:
@@ -108,7 +108,7 @@ def check_trajectory(
         deadline.check()
         covered = judge_area(
             prepared, built, trajectory, dense, rows, located, branches, touching, fine,
-            motion.spacing_m, limits or Limits(), tells, faults,
+            motion.spacing_m, limits or Limits(), tells, faults, deadline,
         )  # fmt: skip
         notes += _given_up(built)
     return _verdict(trajectory, dense, timed, minimum_lift_offs, faults, covered, notes)

@@ -11,6 +11,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.dense import Dense
@@ -89,6 +90,7 @@ def excused(
     fine: FineMesh,
     reached: Reached,
     missed: Mask,
+    deadline: Deadline,
 ) -> Mask:
     """Which vertices (n,) of the fine mesh are rightly left out.
 
@@ -100,6 +102,7 @@ def excused(
         stated: the segments of which the trajectory states to leave something out.
         rows: (c,) those of ``dense`` in contact; ``branches`` (c,) of these.
         missed: (n,) the vertices to be asked about.
+        deadline: when to give up.
     """
     right = np.zeros(len(fine.vertices), dtype=bool)
     segment = trajectory.segment[dense.sample[rows]]
@@ -113,7 +116,7 @@ def excused(
         for branch in np.unique(own[own >= 0]).tolist():
             of = np.full(len(asked), branch, dtype=np.intp)
             found = prepared.follow(fine.vertices[asked], -fine.normals[asked], of)
-            asked = asked[prepared.judge(found).reasons != VALID]
+            asked = asked[prepared.judge(found, deadline).reasons != VALID]
         right[asked] = True
     return right
 

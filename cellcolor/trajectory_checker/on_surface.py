@@ -107,7 +107,9 @@ def _note(
     )
 
 
-def branches_of(prepared: PreparedScene, dense: Dense, rows: Index, across: Array) -> Index:
+def branches_of(
+    prepared: PreparedScene, dense: Dense, rows: Index, across: Array, deadline: Deadline
+) -> Index:
     """The branch (c,) that configurations belong to, -1 where it is none that is known.
 
     Joints are compared up to full circles, and without a last one that only turns the tool.
@@ -119,7 +121,9 @@ def branches_of(prepared: PreparedScene, dense: Dense, rows: Index, across: Arra
     for first in range(0, len(rows), _AT_ONCE):
         part = slice(first, first + _AT_ONCE)
         own = rows[part]
-        solutions, before = _solutions(prepared, dense.tips[own], dense.axes[own], across[part])
+        solutions, before = _solutions(
+            prepared, dense.tips[own], dense.axes[own], across[part], deadline
+        )
         off = solutions[..., :compared] - dense.joints[own, None, :compared]
         off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
         off = np.where(np.isnan(off), np.inf, off)
@@ -130,7 +134,7 @@ def branches_of(prepared: PreparedScene, dense: Dense, rows: Index, across: Arra
 
 
 def _solutions(
-    prepared: PreparedScene, tips: Array, axes: Array, across: Array
+    prepared: PreparedScene, tips: Array, axes: Array, across: Array, deadline: Deadline
 ) -> tuple[Array, Index]:
     """All solutions (k, branches, joints) of poses, and the number (k,) of their first branch.
 
@@ -138,7 +142,7 @@ def _solutions(
     """
     kinematics = prepared.kinematics
     if not isinstance(kinematics, TurnedKinematics):
-        return prepared.inverse(tips, axes), np.zeros(len(tips), dtype=np.int64)
+        return prepared.inverse(tips, axes, deadline), np.zeros(len(tips), dtype=np.int64)
     number = nearest_turns(kinematics.turn, tips, axes, across)
     return kinematics.solve_pose(tips, axes, across), number * len(kinematics.own.branches)
 

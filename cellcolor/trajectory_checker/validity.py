@@ -45,12 +45,12 @@ def judge_validity(
         faults.add("unplanned", text, sample, place=at_samples[sample])
     contact = np.flatnonzero(dense.contact)
     names = prepared.judge.reason_names
-    _note(dense, contact, _reasons(prepared.judge, dense.joints[contact]), names, faults)
+    _note(dense, contact, _reasons(prepared.judge, dense.joints[contact], deadline), names, faults)
     # What lies between two samples with no planned move is known to be nothing.
     on_the_way = np.flatnonzero(~dense.contact & ~(unplanned[dense.sample] & (dense.way > 0)))
     setup = prepared.setup.varied(constraints={"force": False, "conditioning": False})
-    judge = Judge(replace(prepared.workplace, setup=setup), (), deadline)
-    reasons = _reasons(judge, dense.joints[on_the_way])
+    judge = Judge(replace(prepared.workplace, setup=setup))
+    reasons = _reasons(judge, dense.joints[on_the_way], deadline)
     if setup.constraints.collision:
         through = np.flatnonzero(reasons == VALID)
         rows = on_the_way[through]
@@ -59,10 +59,12 @@ def judge_validity(
     _note(dense, on_the_way, reasons, judge.reason_names, faults)
 
 
-def _reasons(judge: Judge, joints: Array) -> NDArray[np.uint8]:
+def _reasons(judge: Judge, joints: Array, deadline: Deadline) -> NDArray[np.uint8]:
     """The code (k,) of the first test that each configuration fails."""
     parts = [joints[first : first + _AT_ONCE] for first in range(0, len(joints), _AT_ONCE)]
-    return np.concatenate([np.zeros(0, dtype=np.uint8), *(judge(p).reasons for p in parts)])
+    return np.concatenate(
+        [np.zeros(0, dtype=np.uint8), *(judge(p, deadline).reasons for p in parts)]
+    )
 
 
 def _through_object(prepared: PreparedScene, tips: Array, axes: Array) -> NDArray[np.bool_]:

@@ -158,7 +158,7 @@ def test_a_time_out_in_several_processes(fine_scene, monkeypatch):
 
     monkeypatch.setattr(processes, "_forked", noted)
     with pytest.raises(OutOfTime):
-        validity.Judge(place, (), Deadline.after(0))(np.zeros((640, 6)))
+        validity.Judge(place)(np.zeros((640, 6)), Deadline.after(0))
     assert len(begun) == 3 and not multiprocessing.active_children()
 
 

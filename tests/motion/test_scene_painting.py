@@ -57,8 +57,8 @@ def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
     solution = solve(decomposition.instance, Options("surface"))
     told: list[str] = []
     found = paint_scene(prepared, built, decomposition, solution, progress=told.append)
-    assert found.painted.segments == solution.segments == found.minima[0]
-    assert found.minima == (solution.segments,) and found.refused == ()
+    assert found.painted.segments == solution.segments == found.painted.minima[0]
+    assert found.painted.minima == (solution.segments,) and found.painted.refused == ()
     assert_whole(built.surface, found.painted, solution)
     assert np.allclose(np.linalg.norm(found.normals, axis=1), 1)
     assert reaches(prepared, found)
@@ -72,8 +72,8 @@ def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
 def test_what_the_scene_refuses_is_solved_again(wok: Scene, seed: int) -> None:
     """Divisions drawn at random copy colors far beyond where they reach."""
     found = by_chance(wok, seed)
-    assert len(found.minima) > 1 and found.refused == ()
-    assert found.minima[-1] == found.solution.segments == found.painted.segments
+    assert len(found.painted.minima) > 1 and found.painted.refused == ()
+    assert found.painted.minima[-1] == found.solution.segments == found.painted.segments
     assert len(found.built.surface.vertices) > len(wok[1].surface.vertices)
     assert_whole(found.built.surface, found.painted, found.solution)
     assert reaches(wok[0], found)
@@ -85,7 +85,7 @@ def test_what_the_scene_refuses_is_solved_again(wok: Scene, seed: int) -> None:
 def test_a_refined_painting_that_the_scene_takes_is_kept(wok: Scene) -> None:
     found = by_chance(wok, 2)
     assert len(found.painted.surface.vertices) > len(wok[1].surface.vertices)
-    assert len(found.minima) == 1 and found.built is wok[1]
+    assert len(found.painted.minima) == 1 and found.built is wok[1]
     assert reaches(wok[0], found)
 
 
@@ -93,9 +93,9 @@ def test_in_the_end_what_is_refused_is_told(wok: Scene, monkeypatch: pytest.Monk
     """With no second try: the vertices named are those that fail when asked once more."""
     monkeypatch.setattr(scene_painting, "_TIMES", 1)
     found = by_chance(wok, 0)
-    assert found.refused and not reaches(wok[0], found)
+    assert found.painted.refused and not reaches(wok[0], found)
     kept = np.ones(len(found.normals), dtype=bool)
-    kept[list(found.refused)] = False
+    kept[list(found.painted.refused)] = False
     colors = [
         color if keep else None
         for color, keep in zip(found.painted.plan.vertex_colors, kept, strict=True)

@@ -37,7 +37,6 @@ HOSTILE = "</script><b>&\"'{{DATA}}"
 def report(**changes: object) -> MotionReport:
     made = stand_in()
     whole = MotionReport(
-        made.prepared,
         made.built,
         made.result.subject.decomposition,
         made.solution,

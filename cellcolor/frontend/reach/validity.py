@@ -110,14 +110,13 @@ class Judge:
         self,
         workplace: Workplace,
         added: tuple[ValidityTest, ...] = (),
-        deadline: Deadline = NEVER,
     ) -> None:
-        """``deadline`` is when to give up, asked in between (:class:`OutOfTime`).
+        """The tests of a workplace.
 
         Raises:
             InputError: an added test has the name of a standard one.
         """
-        self._workplace, self._deadline = workplace, deadline
+        self._workplace = workplace
         standard_names = (*_NAMES, *(test.name for test in STANDARD_TESTS))
         for number, test in enumerate(added):
             if test.name in standard_names:
@@ -132,8 +131,12 @@ class Judge:
         least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
         self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)
 
-    def __call__(self, configurations: Array) -> Verdicts:
-        """Test configurations (k, joints) in rad, NaN where there is none."""
+    def __call__(self, configurations: Array, deadline: Deadline = NEVER) -> Verdicts:
+        """Test configurations (k, joints) in rad, NaN where there is none.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
         count = len(configurations)
         parts = range(0, count, _AT_ONCE)
         # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
@@ -152,7 +155,7 @@ class Judge:
         seconds = new((len(parts), len(timed)), np.float64)
 
         def judge(number: int) -> None:
-            self._deadline.check()
+            deadline.check()
             rows = slice(parts[number], parts[number] + _AT_ONCE)
             part = self._judged(configurations[rows])
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons

@@ -10,7 +10,6 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import Decomposition
 from cellcolor.frontend import BuildResult
-from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.measures import PathMeasures
 
@@ -39,7 +38,6 @@ class MotionReport:
     """A planned motion, and all that led to it, or as much of that as there is.
 
     Attributes:
-        prepared: the scene, in place.
         built: which colors reach each point.
         decomposition: the graph that was solved, on the surface.
         solution: its solution, None before the search.
@@ -52,7 +50,6 @@ class MotionReport:
         missing: what of this there is not, and why, as a sentence; empty for a whole plan.
     """
 
-    prepared: PreparedScene
     built: BuildResult
     decomposition: Decomposition
     solution: Solution | None

@@ -46,7 +46,7 @@ _OBSTACLE, _BODY = "#882255", "#C8C4B0"
 
 def viewer_data(report: MotionReport) -> dict[str, Any]:
     """What ``viewer.js`` and ``charts.js`` draw, JSON-able; arrays as base64 (``_packed``)."""
-    prepared, painted = report.prepared, report.painted
+    prepared, painted = report.built.prepared, report.painted
     trajectory = report.trajectory or _still(report)
     surface = report.built.surface
     modes = [reach_mode(report.built)]
@@ -173,7 +173,7 @@ def _paths(paths: ToolPaths | None, lift: float) -> dict[str, Any]:
 
 def _still(report: MotionReport) -> Trajectory:
     """The arm standing still, at home or in some valid configuration on the part."""
-    robot, motion = report.prepared.robot, report.prepared.setup.motion
+    robot, motion = report.built.robot, report.built.scene.setup.motion
     if motion is not None and motion.home_rad is not None:
         joints = np.array([motion.home_rad])
     else:

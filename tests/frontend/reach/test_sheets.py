@@ -131,14 +131,14 @@ def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     found = prepared.inverse(surface.vertices, -surface.normals)
     verdicts = prepared.judge(found.reshape(-1, 6))
     nodes = (verdicts.reasons == 0).reshape(found.shape[:2])
-    solutions = prepared.tracker.described(verdicts.configurations.reshape(found.shape))
+    solutions = prepared.tracker().described(verdicts.configurations.reshape(found.shape))
     limits = prepared.robot.lower, prepared.robot.upper
     pairs = linked_pairs(
         surface,
         surface.edges(),
         nodes,
         solutions,
-        prepared.tracker,
+        prepared.tracker(),
         prepared.measure,
         limits,
     )
