@@ -125,12 +125,14 @@ def test_a_tip_that_is_there_in_a_configuration_that_the_scene_does_not_have() -
     vertex, branch = np.argwhere(built.node_color >= 0)[0].tolist()
     joints = built.configurations[vertex, branch]
     configurations = built.configurations.copy()
+    candidates = replace(built.stages.candidates, configurations=configurations)
+    poorer = replace(built, stages=replace(built.stages, candidates=candidates))
     configurations[vertex, branch] = np.nan
-    said = at(replace(built, configurations=configurations), vertex, joints).why_none(0)
+    said = at(poorer, vertex, joints).why_none(0)
     assert said.startswith("the scene's nearest configuration there, ")
     assert said.endswith(" rad off, allowed are 0.1")
     configurations[vertex] = np.nan
-    said = at(replace(built, configurations=configurations), vertex, joints).why_none(0)
+    said = at(poorer, vertex, joints).why_none(0)
     assert said == "the scene has no configuration there"
 
 
@@ -177,6 +179,8 @@ def test_a_last_joint_that_moves_the_tip_is_compared() -> None:
     turned = own + np.array([0, 0, 0, 0, 0, 0.2])
     tip = built.robot.tip.copy()
     tip[:3, 3] += 0.005 * np.cross(built.robot.axis[-1], tip[:3, 1])
-    beside = replace(built, robot=replace(built.robot, tip=tip))
+    place = built.prepared.workplace
+    place = replace(place, robot=replace(built.robot, tip=tip))
+    beside = replace(built, prepared=replace(built.prepared, workplace=place))
     for arm, apart in ((built, 0.0), (beside, 0.2)):
         assert at(arm, vertex, turned).apart[0] == pytest.approx(apart, abs=1e-9)
