@@ -42,7 +42,7 @@ def test_more_colors_than_sixteen_bits_tell(tmp_path: Path) -> None:
     result = build_surface(shipped("wok", 50))
     surface = replace(result.surface, meta={"side_file": "many.npz"})
     numbers = np.arange(result.node_color.size).reshape(result.node_color.shape) + 70_000
-    (tmp_path / "many.npz").write_bytes(replace(result, node_color=numbers).candidates.to_bytes())
+    (tmp_path / "many.npz").write_bytes(replace(result.candidates, node_color=numbers).to_bytes())
     assert np.array_equal(
         CandidateTable.beside(surface, tmp_path / "many.json").node_color, numbers
     )

@@ -14,8 +14,10 @@ pytest.importorskip("toppra")
 from shipped import shipped
 
 import cellcolor
+import cellcolor.frontend.prepared
 from cellcolor.door.plan_files import KINDS
 from cellcolor.errors import InputError
+from cellcolor.frontend.prepared import PreparedScene
 
 
 def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
@@ -38,6 +40,24 @@ def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     again = cellcolor.check(scene, tmp_path / "folder" / "trajectory.json")
     assert again.valid
     assert again.covered == planned.verdict.covered
+
+
+def test_a_scene_is_prepared_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """By a plan, and by a check of it; whatever follows uses the same."""
+    made, prepare = [], cellcolor.frontend.prepared._prepared
+
+    def counted(*given: object) -> PreparedScene:
+        made.append(prepare(*given))
+        return made[-1]
+
+    monkeypatch.setattr(cellcolor.frontend.prepared, "_prepared", counted)
+    scene = shipped("square", 100)
+    planned = cellcolor.plan(scene, spacing_m=0.05)
+    assert len(made) == 1
+    assert planned.built.prepared.workplace is made[0].workplace
+    scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.05}))
+    assert cellcolor.check(scene, planned.trajectory).valid
+    assert len(made) == 2
 
 
 def test_what_was_given_up_is_said_beside_what_is_covered() -> None:

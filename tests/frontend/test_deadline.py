@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from box import BOX, OUTWARD, obj
+from shipped import shipped
 
 from cellcolor.cli import main
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.frontend import build_surface
+from cellcolor.frontend.build import build_prepared
+from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.stage_clock import StageClock
 
 STAGES = [
     "preparation",
@@ -108,3 +113,15 @@ class Shown:
 
     def __call__(self, _task: object, description: str) -> None:
         self.texts.append(description)
+
+
+def test_a_prepared_scene_outlives_the_deadline_that_it_was_prepared_by() -> None:
+    """No deadline is part of it: what is asked later has a deadline of its own, or none."""
+    soon = Deadline.after(2.0)
+    prepared = prepare(shipped("square", 50), soon)
+    time.sleep(soon.left)
+    with pytest.raises(OutOfTime):
+        prepared.inverse(prepared.surface.vertices, -prepared.surface.normals, soon)
+    with pytest.raises(OutOfTime):
+        prepared.judge(np.zeros((1, 6)), soon)
+    assert build_prepared(prepared, StageClock(NEVER, None)).report.reachable > 0
