@@ -111,9 +111,7 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             fault = {"error": "; ".join(wrong)} if wrong else {}
             print_json({"file": str(file)} | solution.to_document() | fault)
         else:
-            from cellcolor.solvers.bounds.witness import witness
-
-            print_solution(instance, solution, witness(solution))
+            print_solution(instance, solution)
         for problem in wrong:
             complain(f"{file}: contradiction: {problem}")
         if instance.nothing_to_cover:

@@ -30,14 +30,12 @@ def console() -> Console:
     )
 
 
-def print_solution(instance: Instance, solution: Solution, witness: tuple[int, ...]) -> None:
+def print_solution(instance: Instance, solution: Solution) -> None:
     """One solution: its segments, then what is known about their number.
 
     Args:
         instance: the topological graph.
         solution: a valid solution of it.
-        witness: cells no two of which can be in one segment, as many as there are segments; none
-            where none are known.
     """
     out = console()
     out.print(
@@ -52,7 +50,7 @@ def print_solution(instance: Instance, solution: Solution, witness: tuple[int, .
             out.print("ranges: where the cut runs through a divided cell is free, between its ends")
             out.print()
     summary = Table(box=None, show_header=False, pad_edge=False)
-    for name, value in [*_summary(solution), *_because(instance, solution, witness)]:
+    for name, value in [*_summary(solution), *_because(instance, solution)]:
         summary.add_row(Text(name, style="bold"), value)
     out.print(summary)
     out.print()
@@ -138,11 +136,9 @@ def _extent(solution: Solution) -> str:
     return "the search was stopped, there may be more: see --limit and --time-limit"
 
 
-def _because(
-    instance: Instance, solution: Solution, witness: tuple[int, ...]
-) -> list[tuple[str, str]]:
+def _because(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
     """Why there cannot be fewer segments."""
-    reason = witness_in_words(instance, witness) or reason_of(solution)
+    reason = witness_in_words(instance, solution.witness) or reason_of(solution)
     return [] if reason is None else [("because", reason)]
 
 

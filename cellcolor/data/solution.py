@@ -32,6 +32,8 @@ SCHEME_FORMAT = "cellcolor/scheme"
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
+_MOST_WITNESSES = 12  # cells; more of them convince nobody
+
 SearchSpace = Literal["paper", "surface"]
 """Which divisions are looked for (docs/semantics.md, section 4)."""
 Status = Literal["optimal", "feasible", "unknown"]
@@ -203,6 +205,23 @@ class Solution:
             )
         if self.status != "unknown" and missing:
             raise InputError(None, missing[0], f"must not be null in a result {self.status!r}")
+
+    @property
+    def witness(self) -> tuple[int, ...]:
+        """As many cells as there are segments, no two of which can be in one segment; ascending.
+
+        They come from the certificate of the bound that proves the number. There are none where the
+        number is not proved for any division, where one segment is enough or more than 12 are
+        needed, and where the certificate has other cells or there is none.
+        """
+        wanted = self.segments or 0
+        if self.proved_for_surface and 1 < wanted <= _MOST_WITNESSES:
+            for bound in self.bounds or ():
+                cells = (bound.certificate or {}).get("cells", ())
+                # So many cells that as many color regions are needed: no region touches two.
+                if bound.kind == "cover" and bound.value == wanted == len(cells):
+                    return tuple(cells)
+        return ()
 
     def __str__(self) -> str:
         return in_words(self)

@@ -28,7 +28,6 @@ from cellcolor.errors import BeatenBound, InputError, TooLarge
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.painting.paint import paint
-from cellcolor.solvers.bounds.witness import witness
 
 __all__ = ["AnyPlan", "Oracle"]
 
@@ -272,7 +271,7 @@ class Oracle:
         proof = self.prove(Deadline.of(self._time_limit))
         if proof.solution is None or proof.decomposition is None:
             return None
-        cells = witness_in_words(proof.decomposition.instance, witness(proof.solution))
+        cells = witness_in_words(proof.decomposition.instance, proof.solution.witness)
         return cells or reason_of(proof.solution)
 
 

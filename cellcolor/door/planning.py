@@ -23,7 +23,6 @@ from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedP
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
-from cellcolor.solvers.bounds.witness import witness
 
 if TYPE_CHECKING:
     from cellcolor.data.trajectory_verdict import TrajectoryVerdict
@@ -87,7 +86,6 @@ class PlannedScene:
                 self.built,
                 self.subject.decomposition,
                 self.solution,
-                self.result.witness,
                 self.painted,
                 self.trajectory,
                 self.measures,
@@ -204,7 +202,7 @@ def plan(
             )
         if len(painting.painted.minima) > 1:  # the surface was refined and solved again
             subject = Subject(path, painting.built, painting.built.surface)
-            result = Result(painting.solution, subject, witness(painting.solution))
+            result = Result(painting.solution, subject)
         has(subject=subject, result=result, painted=painting.painted)
         built = painting.built
         with clock.timed("motion"):

@@ -32,13 +32,10 @@ class Result:
     Attributes:
         solution: the solver's answer, which the checker has passed.
         subject: what was solved, opened.
-        witness: as many cells as there are segments, no two of which can be in one segment; none
-            where no such cells are known.
     """
 
     solution: Solution
     subject: Subject = field(hash=False)
-    witness: tuple[int, ...]
 
     @property
     def instance(self) -> Instance:
@@ -93,7 +90,7 @@ class Result:
         return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
-        return in_words(self.solution, witness_in_words(self.instance, self.witness))
+        return in_words(self.solution, witness_in_words(self.instance, self.solution.witness))
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"

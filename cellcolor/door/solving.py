@@ -15,7 +15,6 @@ from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import Solvable, build_scene, is_made_by, is_scene, open_subject
 from cellcolor.errors import InputError
 from cellcolor.solvers import checked
-from cellcolor.solvers.bounds.witness import witness
 from cellcolor.solvers.interface import Options, Start
 
 if TYPE_CHECKING:
@@ -120,7 +119,7 @@ def solve(
         fewest_cuts=fewest_cuts,
     )
     solution = checked.solve(instance, options, solver, progress)
-    return Result(solution, subject, witness(solution))
+    return Result(solution, subject)
 
 
 def start_from(

@@ -81,7 +81,6 @@ class UnfinishedPlan:
                 self.built,
                 self.subject.decomposition,
                 self.solution,
-                () if self.result is None else self.result.witness,
                 self.painted,
                 None,
                 self.measures,

@@ -40,7 +40,6 @@ def report(**changes: object) -> MotionReport:
         made.built,
         made.result.subject.decomposition,
         made.solution,
-        made.result.witness,
         made.painted,
         made.trajectory,
         made.measures,
@@ -104,7 +103,7 @@ def test_a_page_without_a_motion_shows_what_there_is(tmp_path: Path) -> None:
     made = stand_in()
     nothing = {"trajectory": None, "verdict": None, "missing": "The time limit came <first>."}
     stages = (
-        ({"solution": None, "witness": (), "painted": None}, 1, 0),
+        ({"solution": None, "painted": None}, 1, 0),
         ({"painted": None, "measures": ()}, 2, 0),
         ({"paths": made.paths}, 3, sum(len(path.points) for path in made.paths.paths)),
     )

@@ -57,7 +57,7 @@ def _proof(report: MotionReport) -> Card | None:
     if segments < 2:
         text = "The tool never has to lift off: nothing can be less."
         return Card("Why not fewer lift-offs", (text,), (), True)
-    witness = witness_in_words(report.decomposition.instance, report.witness)
+    witness = witness_in_words(report.decomposition.instance, solution.witness)
     because = witness or reason_of(solution)
     paragraphs = [
         f"However the surface is divided, {count(segments, 'segment')} are needed"

@@ -41,7 +41,6 @@ class MotionReport:
         built: which colors reach each point.
         decomposition: the graph that was solved, on the surface.
         solution: its solution, None before the search.
-        witness: cells no two of which can share a segment, as many as segments; or none.
         painted: the solution on the surface; None if it was not painted.
         trajectory: how the arm moves; None if that was not planned or not judged.
         measures: of each tool path.
@@ -53,7 +52,6 @@ class MotionReport:
     built: BuildResult
     decomposition: Decomposition
     solution: Solution | None
-    witness: tuple[int, ...]
     painted: Painted | None
     trajectory: Trajectory | None
     measures: tuple[PathMeasures, ...]

@@ -55,7 +55,7 @@ def _title(report: MotionReport) -> str:
 def _proof(report: MotionReport) -> str:
     if report.solution is None:
         return report.missing
-    witness = witness_in_words(report.decomposition.instance, report.witness)
+    witness = witness_in_words(report.decomposition.instance, report.solution.witness)
     return _sentence(in_words(report.solution, witness))
 
 

@@ -50,7 +50,8 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
     trajectory = report.trajectory or _still(report)
     surface = report.built.surface
     modes = [reach_mode(report.built)]
-    proof = proof_mode(surface, report.decomposition, report.witness)
+    witness = () if report.solution is None else report.solution.witness
+    proof = proof_mode(surface, report.decomposition, witness)
     modes += [proof] if proof is not None else []
     if painted is not None:  # its surface may be finer
         surface, given = painted.surface, painted.stands_for
