@@ -19,6 +19,7 @@ from cellcolor.data.tool_paths import ToolPaths as ToolPaths
 from cellcolor.data.trajectory import Trajectory as Trajectory
 from cellcolor.data.trajectory_verdict import Fault as Fault
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict as TrajectoryVerdict
+from cellcolor.deadline import Deadline as Deadline
 from cellcolor.deadline import OutOfTime as OutOfTime
 from cellcolor.door.covering import cover as cover
 from cellcolor.door.drawing import Drawing as Drawing

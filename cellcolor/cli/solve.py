@@ -193,16 +193,24 @@ def _solve(
     options: Options,
 ) -> Solution:
     """Solve one instance and write what was found."""
-    from cellcolor.door.solving import start_from
-    from cellcolor.solvers.checked import check_able_to_list, solve
+    from cellcolor.door.solving import solve
+    from cellcolor.solvers.checked import check_able_to_list
 
     if request.every:
         check_able_to_list(request.solver, instance)
-    if request.warm_start is not None:
-        start = start_from(request.warm_start, instance, options.strands)
-        options = replace(options, start=start)
     with progress_of(file) as report, end_the_search():
-        solution = solve(instance, options, request.solver, report)
+        solution = solve(
+            instance,
+            solver=request.solver,
+            search_space=options.search_space,
+            strands=options.strands,
+            time_limit=options.deadline,
+            workers=options.workers,
+            seed=options.seed,
+            fewest_cuts=options.fewest_cuts,
+            start=request.warm_start,
+            progress=report,
+        ).solution
     if not request.every:
         if target is not None:
             _make_folder(target)

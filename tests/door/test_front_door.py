@@ -24,6 +24,7 @@ PUBLIC = [
     "Coverage",
     "Covered",
     "Crack",
+    "Deadline",
     "Drawing",
     "Edge",
     "Fault",
