@@ -40,6 +40,7 @@ _ROOMS = {
     "cellcolor.door.showing": ("show",),
     "cellcolor.door.solving": ("build", "decompose", "solve"),
     "cellcolor.door.unfinished": ("PlanOutOfTime",),
+    "cellcolor.door.versions": ("show_versions",),
     "cellcolor.errors": ("CellcolorError", "ContradictionError", "InputError", "TooLarge"),
     "cellcolor.oracle": ("PathVerdict", "ProvenRange", "Verdict"),
     "cellcolor.painting.paint": ("Painted",),
@@ -97,6 +98,7 @@ __all__ = [
     "read",
     "repair",
     "show",
+    "show_versions",
     "solve",
 ]
 

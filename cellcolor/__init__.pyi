@@ -40,6 +40,7 @@ from cellcolor.door.solving import build as build
 from cellcolor.door.solving import decompose as decompose
 from cellcolor.door.solving import solve as solve
 from cellcolor.door.unfinished import PlanOutOfTime as PlanOutOfTime
+from cellcolor.door.versions import show_versions as show_versions
 from cellcolor.errors import CellcolorError as CellcolorError
 from cellcolor.errors import ContradictionError as ContradictionError
 from cellcolor.errors import InputError as InputError

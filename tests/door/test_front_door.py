@@ -63,6 +63,7 @@ PUBLIC = [
     "read",
     "repair",
     "show",
+    "show_versions",
     "solve",
 ]
 """Whoever changes this list changes what others rely on."""
