@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from shipped import TOP
 
+pytestmark = pytest.mark.second
+
 FOLDER = TOP / "examples"
 FILES = sorted(FOLDER.glob("*.py"))
 NEEDED = {"move_the_part": ("pinocchio",), "plan_a_motion": ("pinocchio", "ompl", "toppra")}

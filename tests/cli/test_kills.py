@@ -17,6 +17,8 @@ from commands import run
 from library import INSTANCES, PAPER
 from pages import needs_frontend
 
+pytestmark = pytest.mark.second
+
 SPEC = importlib.util.spec_from_file_location(
     "kills", Path(__file__).parents[2] / "benchmarks" / "kills.py"
 )

@@ -20,6 +20,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import Scene, build_surface
 from cellcolor.frontend.prepared import prepare
 
+pytestmark = pytest.mark.second
+
 pytest.importorskip("eaik")
 
 GUIDE = "add-an-arm"

@@ -18,6 +18,8 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
 
+pytestmark = pytest.mark.second
+
 
 def test_a_torus(tmp_path: Path) -> None:
     with followed("add-a-part", tmp_path) as names:

@@ -17,6 +17,8 @@ from plugins import install
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 
+pytestmark = pytest.mark.second
+
 
 @pytest.fixture
 def clone(tmp_path: Path) -> Path:

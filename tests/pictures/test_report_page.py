@@ -99,6 +99,7 @@ def test_the_ground_is_a_normal_and_an_offset() -> None:
     assert data_of(render_page(report()).decode())["ground"] == [0.0, 0.0, 1.0, height]
 
 
+@pytest.mark.second
 def test_a_page_without_a_motion_shows_what_there_is(tmp_path: Path) -> None:
     made = stand_in()
     nothing = {"trajectory": None, "verdict": None, "missing": "The time limit came <first>."}
@@ -127,6 +128,7 @@ def test_a_page_without_a_motion_shows_what_there_is(tmp_path: Path) -> None:
             assert faults == []
 
 
+@pytest.mark.second
 @pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
 def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) -> None:
     """What the page's own kinematics says of the tip is where the trajectory has it."""
@@ -171,6 +173,7 @@ def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) ->
         assert faults == []
 
 
+@pytest.mark.second
 def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
     """Pictures of two moments differ, and one without the arm differs from both."""
     with opened(page_file, DESKTOP) as (page, faults):
@@ -189,6 +192,7 @@ def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
         assert faults == []
 
 
+@pytest.mark.second
 def test_without_webgl_the_rest_works(page_file: Path, tmp_path: Path) -> None:
     page = page_file.read_text(encoding="utf-8").replace('getContext("webgl2"', 'getContext("none"')
     (tmp_path / "plain.html").write_text(page, encoding="utf-8")

@@ -18,6 +18,8 @@ from cellcolor.solvers.clingo import asp_facts
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.interface import Options
 
+pytestmark = pytest.mark.second
+
 FIGURES = sorted(
     path
     for path in PAPER.glob("*.json")

@@ -10,7 +10,6 @@ from pathlib import Path
 
 import pytest
 from commands import run
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
@@ -29,6 +28,9 @@ from cellcolor.solvers.linear.coloring import Coloring, estimated_terms
 from cellcolor.solvers.linear.constraints import Model
 from cellcolor.solvers.portable import PORTABLE
 from cellcolor.solvers.registry import REFERENCE
+from examples import examples
+
+pytestmark = pytest.mark.second
 
 FIGURES = sorted(
     path

@@ -24,6 +24,8 @@ from cellcolor.solvers.linear import rival
 from cellcolor.solvers.linear.coloring import Coloring
 from cellcolor.solvers.registry import REFERENCE, make_solver, solver_version
 
+pytestmark = pytest.mark.second
+
 RIVALS = ("highs", "scip", "maxsat", "gecode", "chuffed")
 
 

@@ -7,7 +7,6 @@ import time
 from pathlib import Path
 
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
@@ -27,6 +26,9 @@ from cellcolor.solvers.encodings.problem import Problem
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.registry import make_solver, solver_version
+from examples import examples
+
+pytestmark = pytest.mark.second
 
 FIGURES = sorted(
     path
