@@ -17,7 +17,7 @@ import click
 
 from cellcolor.checker.known_results import contradictions
 from cellcolor.cli.exits import Exit, worst
-from cellcolor.cli.inputs import read_instance
+from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.search_end import Interrupted, end_the_search
@@ -27,6 +27,7 @@ from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.files.writing import (
     Output,
@@ -89,9 +90,10 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
         deadline = Deadline.after(request.time_limit, begun)
         begun = None
         try:
-            instance = read_instance(file, deadline)
+            subject = read_subject(file, deadline)
+            instance = subject.graph(deadline)
             options = replace(request.options, deadline=deadline)
-            solution = _solve(instance, file, target, request, options)
+            solution = _solve(subject, file, target, request, options)
         except Interrupted:
             _say_failed(request, file, f"{file}: interrupted, nothing found yet")
             codes.append(Exit.STOPPED)
@@ -188,16 +190,18 @@ def _inputs(request: Request) -> list[Path]:
 
 
 def _solve(
-    instance: Instance,
+    subject: Subject,
     file: Path,
     target: Path | None,
     request: Request,
     options: Options,
 ) -> Solution:
     """Solve one instance and write what was found."""
+    from cellcolor.door.raw_minimum import with_raw_minimum
     from cellcolor.door.solving import start_from
     from cellcolor.solvers.checked import check_able_to_list, solve
 
+    instance = subject.graph()
     if request.every:
         check_able_to_list(request.solver, instance)
     if request.warm_start is not None:
@@ -205,6 +209,7 @@ def _solve(
         options = replace(options, start=start)
     with progress_of(file) as report, end_the_search():
         solution = solve(instance, options, request.solver, report)
+        solution = with_raw_minimum(solution, subject, options)
     if not request.every:
         if target is not None:
             _make_folder(target)

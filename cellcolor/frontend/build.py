@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +21,7 @@ from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.rounding import longest_beside_sharp
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.continuity import Coloring
+from cellcolor.frontend.reach.continuity import Coloring, find_cracks
 from cellcolor.frontend.report import BuildReport, make_report
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
@@ -82,6 +82,20 @@ class BuildResult:
             self.configurations,
             self.node_color,
             self.surface.sha256,
+        )
+
+    @property
+    def raw_surface(self) -> LabelledSurface | None:
+        """The surface with its slivers, where the sliver policy has given some up; else None."""
+        if not self.surface.given_up:
+            return None
+        stages = self.stages
+        return replace(
+            self.surface,
+            colors=stages.coloring.names,
+            vertex_colors=_vertex_colors(stages.coloring),
+            cracks=find_cracks(stages.links.edges, stages.links.linked, stages.coloring),
+            given_up=(),
         )
 
     def __eq__(self, other: object) -> bool:
