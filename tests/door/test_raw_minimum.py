@@ -10,18 +10,18 @@ from shipped import TOP
 import cellcolor
 from cellcolor.data.solution import Solution
 from cellcolor.door import raw_minimum
-from cellcolor.frontend import Scene
+from cellcolor.frontend import BuildResult, Scene
 
 SHEET = TOP / "instances" / "parts" / "perforated_sheet.toml"
 
 
 @pytest.fixture(scope="module")
-def built() -> cellcolor.BuildResult:
+def built() -> BuildResult:
     return cellcolor.build(SHEET)
 
 
 def test_the_raw_minimum_is_that_of_the_scene_without_a_policy(
-    built: cellcolor.BuildResult, tmp_path: Path
+    built: BuildResult, tmp_path: Path
 ) -> None:
     """Built anew without a policy: the same surface, and the same number, with the area."""
     scene = Scene.read(SHEET)
@@ -45,7 +45,7 @@ def test_the_raw_minimum_is_that_of_the_scene_without_a_policy(
 
 
 def test_what_is_not_found_in_time_is_not_said(
-    built: cellcolor.BuildResult, monkeypatch: pytest.MonkeyPatch
+    built: BuildResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The minimum itself stays; of the raw one only what is known."""
     monkeypatch.setattr(raw_minimum, "_SECONDS", 0.0)
