@@ -77,7 +77,8 @@ class BuildReport:
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is probably not meant, a sentence each."""
-        return self.survey.warnings + self.notes
+        hulls = (stand_in.warning for stand_in in self.stand_ins)
+        return self.survey.warnings + self.notes + tuple(text for text in hulls if text)
 
     @property
     def nothing_covered(self) -> str | None:
