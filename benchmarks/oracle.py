@@ -14,6 +14,7 @@ not as it has to be. The seed of each draw is its number.
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import os
 import re
@@ -38,7 +39,7 @@ from planners import (
 )
 from planted_plans import PLANTERS
 from planting import Case, caught
-from tampered import TAMPERERS, Kept, what_is_wrong
+from tampered import TAMPERERS, Kept, is_honest, what_is_wrong
 from valid_plans import (
     SORTS,
     any_colors,
@@ -186,13 +187,18 @@ def tampered(count: int) -> bool:
     pairs = zip(pool, [*pool[1:], pool[0]], strict=True)
     small = [Kept(*pair) for pair in pairs if len(pair[0].vertices) < LARGEST]
     made, believed, names = Counter[str](), Counter[str](), list(TAMPERERS)
-    for number in range(count):
+    for number in itertools.count():
+        if made.total() == count:
+            break
         # Shifted by one each round, so that every sort meets every surface.
         name, round_number = names[number % len(names)], number // len(names)
         kept = small[(number + round_number) % len(small)]
         random = np.random.default_rng(number)
         tamper, proves_nothing = TAMPERERS[name]
-        wrong = what_is_wrong(kept, tamper(kept, random), proves_nothing, random)
+        content = tamper(kept, random)
+        if is_honest(kept, content):
+            continue
+        wrong = what_is_wrong(kept, content, proves_nothing, random)
         made[name] += 1
         believed[name] += bool(wrong)
         for text in wrong:

@@ -25,7 +25,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.door.keeping_oracle import KeepingOracle
 from cellcolor.oracle import Proof, prove
 
-__all__ = ["TAMPERERS", "Kept", "what_is_wrong"]
+__all__ = ["TAMPERERS", "Kept", "is_honest", "what_is_wrong"]
 
 Random = np.random.Generator
 Text = str | bytes
@@ -75,8 +75,8 @@ class Kept:
         return dict(json.loads(self.honest[2]))
 
 
-Tamperer = Callable[[Kept, Random], Text | None]
-"""The file's new content; None where there is nothing to change."""
+Tamperer = Callable[[Kept, Random], Text]
+"""The file's new content."""
 
 
 def _each(change: Callable[[dict[str, Any], Kept, Random], object]) -> Tamperer:
@@ -144,7 +144,7 @@ def _fewer_counted(solution: dict[str, Any], kept: Kept, random: Random) -> None
 
 def _no_certificates(solution: dict[str, Any], kept: Kept, random: Random) -> None:  # noqa: ARG001
     for bound in solution["bounds"]:
-        bound["certificate"] = None
+        bound.pop("certificate", None)
 
 
 def _no_bounds(solution: dict[str, Any], kept: Kept, random: Random) -> None:  # noqa: ARG001
@@ -154,7 +154,7 @@ def _no_bounds(solution: dict[str, Any], kept: Kept, random: Random) -> None:  #
 def _forge_certificates(solution: dict[str, Any], kept: Kept, random: Random) -> None:  # noqa: ARG001
     """One number of each is another one."""
     for bound in solution["bounds"]:
-        places = [place for place in leaves(bound["certificate"]) if type(place[2]) is int]
+        places = [place for place in leaves(bound.get("certificate")) if type(place[2]) is int]
         if places:
             holder, key, old = places[int(random.integers(len(places)))]
             holder[key] = old + int(random.choice([-7, -2, -1, 1, 2, 7, 10**9, 10**30]))
@@ -167,7 +167,7 @@ def _longer_certificates(solution: dict[str, Any], kept: Kept, random: Random) -
     """All lists in them twice as long, and the bounds twice as high."""
     _raise(solution, kept, random)
     for bound in solution["bounds"]:
-        for holder, key, old in list(containers(bound["certificate"])):
+        for holder, key, old in list(containers(bound.get("certificate"))):
             if isinstance(old, list):
                 holder[key] = old + deepcopy(old)
 
@@ -386,10 +386,7 @@ def what_is_wrong(kept: Kept, content: Text, proves_nothing: bool, random: Rando
     One oracle has time for a proof of its own, one has nothing but the file, and the command is
     asked as well; each has to judge a good plan and one by chance as they are.
     """
-    _, name, honest = kept.honest
-    data = content if isinstance(content, bytes) else content.encode("utf-8", "surrogatepass")
-    if data == honest.encode():
-        return []
+    name, data = kept.honest[1], _encoded(content)
     plans = [kept.best, any_colors(kept.surface, random)]
     wrong = []
     for alone in (False, True):
@@ -410,19 +407,31 @@ def what_is_wrong(kept: Kept, content: Text, proves_nothing: bool, random: Rando
             except Exception as error:
                 wrong.append(f"{type(error).__name__}: {error}")
     with TemporaryDirectory() as folder:
-        surface, plan = Path(folder) / "a.surface.json", Path(folder) / "a.plan.json"
+        surface, claim = Path(folder) / "a.surface.json", Path(folder) / "a.plan.json"
         surface.write_text(kept.surface.to_json(), encoding="utf-8")
-        plan.write_text(Plan(tuple(plans[0])).to_json(), encoding="utf-8")
+        claim.write_text(Plan(tuple(plans[0])).to_json(), encoding="utf-8")
         cache = Path(folder) / "kept"
         cache.mkdir()
         (cache / name).write_bytes(data)
         with redirect_stdout(StringIO()), redirect_stderr(StringIO()) as said:
-            code = run("check", surface, plan, "--cache", cache, "--require-optimal")
+            code = run("check", surface, claim, "--cache", cache, "--require-optimal")
         # On a mesh that is too coarse for the best painting no plan is optimal.
         least = segments_counted(kept.surface, plans[0])
         if code != (0 if least == kept.fewest else 1) or said.getvalue():
             wrong.append(f"the command ends with {code}: {said.getvalue()}")
     return wrong
+
+
+def is_honest(kept: Kept, content: Text) -> bool:
+    """Whether the file says what it said before."""
+    try:
+        return bool(json.loads(_encoded(content)) == kept.document())
+    except (ValueError, RecursionError):
+        return False
+
+
+def _encoded(content: Text) -> bytes:
+    return content if isinstance(content, bytes) else content.encode("utf-8", "surrogatepass")
 
 
 def _late(surface: LabelledSurface, deadline: Deadline, **options: Any) -> Proof:
