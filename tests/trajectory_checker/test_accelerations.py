@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from examples import examples
 from forged_drives import resampled
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,6 +13,7 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import FaultKind
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
+from examples import examples
 
 MOST = 8.0  # rad/s²
 APART = 0.29  # s; a motion with 8 rad/s² is at most a t²/8 = 4.8 degrees off the line between

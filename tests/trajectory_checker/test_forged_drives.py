@@ -16,7 +16,6 @@ pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 pytest.importorskip("coal")
 
 import rasters
-from examples import examples
 from forged_drives import FORGERS, HONEST, Honest, dropped_stroke, resampled
 from hypothesis import given
 from hypothesis import strategies as st
@@ -27,6 +26,7 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.joint_motion import corners
+from examples import examples
 
 NOT_HERE = (
     "begins in motion",  # the raster has no way to the part
