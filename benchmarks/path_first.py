@@ -73,7 +73,7 @@ def counted(prepared: PreparedScene, built: BuildResult, angle: float, spacing: 
     # Points that a sliver policy gave up are left out on both sides of the comparison.
     covered = (built.node_color >= 0).any(axis=1)
     path = raster(built.surface, prepared.surface.normals, covered, angle, spacing)
-    found = prepared.inverse(path.points, -path.normals)
+    found = prepared.arm.inverse(path.points, -path.normals)
     verdicts = prepared.judge(found.reshape(-1, found.shape[2]))
     configurations = verdicts.configurations.reshape(found.shape)
     valid: Mask = (verdicts.reasons == VALID).reshape(found.shape[:2])

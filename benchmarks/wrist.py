@@ -79,7 +79,7 @@ def heights(robot: Robot, configurations: Array) -> Array:
 
 def judged(prepared: PreparedScene) -> tuple[Mask, Array]:
     """Validity (n, 8) and heights (n, 8) of all candidates, NaN without a solution."""
-    solutions = prepared.inverse(prepared.surface.vertices, -prepared.surface.normals)
+    solutions = prepared.arm.inverse(prepared.surface.vertices, -prepared.surface.normals)
     verdicts = prepared.judge(solutions.reshape(-1, 6))
     above = np.full(verdicts.reasons.shape, np.nan)
     solved = ~np.isnan(verdicts.configurations[:, 0])

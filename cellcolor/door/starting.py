@@ -155,7 +155,7 @@ def _arm(urdf: Path, tool: Path | None, tip: str, folder: Path) -> _Arm:
         InputError: none does.
     """
     from cellcolor.frontend.arm.urdf import load_urdf
-    from cellcolor.frontend.prepared import kinematics_of, robot_of
+    from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
     flange = next((link for link in _FLANGES if link in arm.parent), None) or _last_link(arm.parent)
@@ -182,7 +182,7 @@ def _arm(urdf: Path, tool: Path | None, tip: str, folder: Path) -> _Arm:
         found = _Arm(urdf, tool, keys | {"family": json.dumps(family)})
         try:
             setup = found.setup
-            return replace(found, reach=kinematics_of(setup, robot_of(setup)).reach)
+            return replace(found, reach=prepare_arm(setup).kinematics.reach)
         except InputError as error:
             fault = error
     assert fault is not None
@@ -232,6 +232,7 @@ def _best_place(
         InputError: nothing of it can be reached anywhere.
     """
     from cellcolor.data.candidate_table import VALID
+    from cellcolor.frontend.parts.placement import Placement
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
 
@@ -245,19 +246,22 @@ def _best_place(
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     best: tuple[PreparedScene, float] | None = None
+    prepared: PreparedScene | None = None
     fault: InputError | None = None
     for far, raised in product(_FARTHER, _HIGHER):
         position = far * arm.reach - middle[0], -middle[1], raised * arm.reach - low[2]
         try:
-            prepared = prepare(
-                scene.moved(position_m=(np.round(position, 3) + 0.0).tolist()), deadline
-            )
+            place = Placement(position_m=(np.round(position, 3) + 0.0).tolist())
+            if prepared is None:
+                prepared = prepare(scene.varied(placement=place), deadline)
+            else:
+                prepared = prepared.at(place)
         except InputError as error:  # such as a part that would stand in the robot
             fault = error
             continue
         surface = prepared.surface
         step = -(-len(surface.vertices) // _MOST_ASKED)
-        found = prepared.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
+        found = prepared.arm.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
         verdicts = prepared.judge(found.reshape(-1, prepared.robot.joints), deadline)
         valid = (verdicts.reasons == VALID).reshape(found.shape[:2]).any(axis=1)
         share = float(valid.mean())
@@ -293,7 +297,7 @@ def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
     from cellcolor.frontend.reach.always_touching import always_touching
 
     robot = prepared.robot
-    touching = [list(pair) for pair in always_touching(prepared.workplace.near_itself)]
+    touching = [list(pair) for pair in always_touching(prepared.arm.near_itself)]
     return {
         "touching": json.dumps(touching),
         "accelerations": json.dumps([_ACCELERATION] * robot.joints),

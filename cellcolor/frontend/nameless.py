@@ -74,7 +74,7 @@ def arranged_in_sheets(
         InputError: linked solutions are two of one vertex, or there are too many sheets.
         OutOfTime: the deadline came first.
     """
-    surface, robot, tracker = prepared.surface, prepared.robot, prepared.tracker(deadline)
+    surface, robot, tracker = prepared.surface, prepared.robot, prepared.arm.tracker(deadline)
     edges, nodes = surface.edges(), candidates.valid
     limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
     solutions = tracker.described(candidates.configurations)
@@ -83,7 +83,7 @@ def arranged_in_sheets(
     for first in range(0, len(edges), at_once):
         deadline.check()
         part = edges[first : first + at_once]
-        found = linked_pairs(surface, part, nodes, solutions, tracker, prepared.measure, limits)
+        found = linked_pairs(surface, part, nodes, solutions, tracker, prepared.arm.measure, limits)
         pairs.append(found + np.array([first, 0, 0]))
     sheets = sheets_of(surface, edges, np.concatenate(pairs), nodes, solutions)
     by_sheet = Candidates(

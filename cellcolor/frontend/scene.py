@@ -155,7 +155,7 @@ class Scene(FileTable):
         return self.collision_object
 
     def covered(self, deadline: Deadline = NEVER) -> Surface:
-        """What has to be covered, in the world; of a mesh with its normals rounded.
+        """What has to be covered, in the object's own frame; of a mesh with its normals rounded.
 
         Raises:
             InputError: there is no such surface.
@@ -167,7 +167,7 @@ class Scene(FileTable):
         if surface.faceted:
             with in_file(self.setup.file):
                 surface = rounded(surface, self.setup.task.rounding_m, deadline)
-        return surface.placed(self.placement)
+        return surface
 
     def __str__(self) -> str:
         place = ", ".join(f"{number:g}" for number in self.placement.position_m)

@@ -135,7 +135,7 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
             check_turns(len(surface.vertices), len(setup.task.turn.degrees))
     with clock.timed("inverse kinematics"):
         vertices, directions = surface.vertices[first:], -surface.normals[first:]
-        solutions = prepared.inverse(vertices, directions, deadline)
+        solutions = prepared.arm.inverse(vertices, directions, deadline)
     clock.begin("validity at the vertices")
     verdicts = prepared.judge(solutions.reshape(-1, solutions.shape[2]), deadline)
     clock.add(verdicts.seconds)
@@ -204,7 +204,7 @@ def _with_turn(prepared: PreparedScene, candidates: Candidates) -> Candidates:
         return candidates
     names, reasons = (*candidates.reason_names, TURN_NOT_DEFINED), candidates.reasons.copy()
     surface = prepared.surface
-    reasons[prepared.without_turn(surface.vertices, -surface.normals)] = len(names) - 1
+    reasons[prepared.arm.without_turn(surface.vertices, -surface.normals)] = len(names) - 1
     return replace(candidates, reasons=reasons, reason_names=names)
 
 
@@ -219,12 +219,12 @@ def _continuous_links(
     if known is not None:
         here, there = _in_both(edges, known.continuous.edges)
         linked[here], new[here] = known.continuous.linked[there], False
-    all_rows, probe = np.flatnonzero(new), partial(prepared.probe, deadline=deadline)
+    all_rows, probe = np.flatnonzero(new), partial(prepared.arm.probe, deadline=deadline)
 
     def link_part(part: slice) -> None:
         rows = all_rows[part]
         linked[rows] = link(
-            prepared.surface, edges[rows], candidates, prepared.measure, limits, probe
+            prepared.surface, edges[rows], candidates, prepared.arm.measure, limits, probe
         )
 
     _in_parts(link_part, len(all_rows), deadline)

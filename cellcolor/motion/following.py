@@ -55,14 +55,14 @@ def follow(
         OutOfTime: the deadline came first.
     """
     branches = np.full(len(samples), branch, dtype=np.intp)
-    found = prepared.follow(samples.points, -samples.normals, branches)
+    found = prepared.arm.follow(samples.points, -samples.normals, branches)
     verdicts = prepared.judge(found, deadline)
     valid = verdicts.reasons == VALID
     both = np.flatnonzero(valid[:-1] & valid[1:])
     steps = np.column_stack([both, both + 1])
     measure = Measure(
         prepared.setup.continuity,
-        prepared.workplace.conditioning.near_singular_determinant,
+        prepared.arm.conditioning.near_singular_determinant,
         prepared.kinematics.lever,
     )
     motions = follow_edges(
@@ -72,7 +72,7 @@ def follow(
         (found[both], found[both + 1]),
         (verdicts.determinants[both], verdicts.determinants[both + 1]),
         measure,
-        partial(prepared.probe, deadline=deadline),
+        partial(prepared.arm.probe, deadline=deadline),
     )
     torn = np.zeros(len(samples) - 1, dtype=bool)
     torn[both[~motions.smooth]] = True

@@ -29,7 +29,7 @@ def motion_of(prepared: PreparedScene) -> Motion:
     """
     setup, robot = prepared.setup, prepared.robot
     with in_file(setup.file):
-        prepared.check_named()
+        prepared.arm.check_named()
         if robot.task.plane:
             message = "a planar arm does not lift its tool off the part, so no motion is planned"
             raise InputError(None, "robot.kinematics", message)

@@ -83,7 +83,7 @@ def paint_scene(
         OutOfTime: the deadline came first.
         TooLarge: a painting would need too many vertices.
     """
-    prepared.check_named()  # on a refined surface sheets would be others
+    prepared.arm.check_named()  # on a refined surface sheets would be others
     clock = StageClock(deadline, progress)
     motion = prepared.setup.motion
     if tool_radius_m is None and motion is not None:

@@ -138,7 +138,9 @@ def corner_states(
     pairs = small.corners[own] * branches + branch_of[small.segment[own]][:, None]
     asked, place = np.unique(pairs, return_inverse=True)
     corner, branch = asked // branches, asked % branches
-    found = prepared.follow(small.points[corner], -small.normals[corner], branch.astype(np.intp))
+    found = prepared.arm.follow(
+        small.points[corner], -small.normals[corner], branch.astype(np.intp)
+    )
     verdicts = prepared.judge(found, deadline)
     place = place.reshape(-1, 3)
     at_corners, failed = found[place], verdicts.reasons[place]

@@ -130,7 +130,7 @@ class Transfers:
         heights = np.linspace(0.0, self._height, count + 1)[1:]
         points = tip + heights[:, None] * normal
         directions = np.tile(-normal, (count, 1))
-        found = self._prepared.follow(points, directions, np.full(count, branch, dtype=np.intp))
+        found = self._prepared.arm.follow(points, directions, np.full(count, branch, dtype=np.intp))
         solved = ~np.isnan(found[:, 0])
         found = found[: count if solved.all() else int(np.argmin(solved))]
         way = joints + np.unwrap(np.concatenate([joints[None], found]) - joints, axis=0)

@@ -71,7 +71,7 @@ def check_trajectory(
     """
     report = progress or (lambda _: None)
     robot, motion = prepared.robot, prepared.setup.motion
-    prepared.check_named()
+    prepared.arm.check_named()
     _check_task(prepared)
     _check_mesh(prepared, built)
     _check_arm(prepared, trajectory)

@@ -115,7 +115,7 @@ def excused(
         asked = np.flatnonzero(missed & region)
         for branch in np.unique(own[own >= 0]).tolist():
             of = np.full(len(asked), branch, dtype=np.intp)
-            found = prepared.follow(fine.vertices[asked], -fine.normals[asked], of)
+            found = prepared.arm.follow(fine.vertices[asked], -fine.normals[asked], of)
             asked = asked[prepared.judge(found, deadline).reasons != VALID]
         right[asked] = True
     return right

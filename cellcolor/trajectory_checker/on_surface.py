@@ -142,7 +142,7 @@ def _solutions(
     """
     kinematics = prepared.kinematics
     if not isinstance(kinematics, TurnedKinematics):
-        return prepared.inverse(tips, axes, deadline), np.zeros(len(tips), dtype=np.int64)
+        return prepared.arm.inverse(tips, axes, deadline), np.zeros(len(tips), dtype=np.int64)
     number = nearest_turns(kinematics.turn, tips, axes, across)
     return kinematics.solve_pose(tips, axes, across), number * len(kinematics.own.branches)
 

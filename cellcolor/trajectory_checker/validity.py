@@ -49,7 +49,7 @@ def judge_validity(
     # What lies between two samples with no planned move is known to be nothing.
     on_the_way = np.flatnonzero(~dense.contact & ~(unplanned[dense.sample] & (dense.way > 0)))
     setup = prepared.setup.varied(constraints={"force": False, "conditioning": False})
-    judge = Judge(replace(prepared.workplace, setup=setup))
+    judge = Judge(replace(prepared.workplace, arm=replace(prepared.arm, setup=setup)))
     reasons = _reasons(judge, dense.joints[on_the_way], deadline)
     if setup.constraints.collision:
         through = np.flatnonzero(reasons == VALID)

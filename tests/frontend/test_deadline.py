@@ -121,7 +121,7 @@ def test_a_prepared_scene_outlives_the_deadline_that_it_was_prepared_by() -> Non
     prepared = prepare(shipped("square", 50), soon)
     time.sleep(soon.left)
     with pytest.raises(OutOfTime):
-        prepared.inverse(prepared.surface.vertices, -prepared.surface.normals, soon)
+        prepared.arm.inverse(prepared.surface.vertices, -prepared.surface.normals, soon)
     with pytest.raises(OutOfTime):
         prepared.judge(np.zeros((1, 6)), soon)
     assert build_prepared(prepared, StageClock(NEVER, None)).report.reachable > 0

@@ -73,7 +73,7 @@ def test_new_vertices_are_asked_like_any_other(fine: BuildResult) -> None:
     assert len(mesh.vertices) > len(prepared.surface.vertices)
     assert np.allclose(np.linalg.norm(mesh.normals, axis=1), 1)
     # The wok is a part of a sphere: what lies on its triangles has nearly its radius's direction.
-    solutions = prepared.inverse(mesh.vertices, -mesh.normals)
+    solutions = prepared.arm.inverse(mesh.vertices, -mesh.normals)
     verdicts = prepared.judge(solutions.reshape(-1, solutions.shape[2]))
     valid = (verdicts.reasons == VALID).reshape(solutions.shape[:2])
     assert np.array_equal(valid, fine.node_color >= 0)

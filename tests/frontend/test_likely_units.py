@@ -152,7 +152,7 @@ def test_a_wrong_obstacle_or_ground_is_said(scene: Varied) -> None:
 def test_what_is_large_but_may_be_meant(scene: Varied) -> None:
     """A wing of 10 m before an arm of 1 m, and its far end."""
     wing = scene(radius_m=5.5, position_m=(5.0, 0.0, 0.0))
-    surface = wing.covered()
+    surface = wing.covered().placed(wing.placement)
     assert np.ptp(surface.vertices, axis=0).max() > 9.9
     check_part(surface, wing, 1.0)
 
@@ -166,10 +166,10 @@ def test_the_limit_is_twenty_reaches(scene: Varied, times: float) -> None:
     far = scene(position_m=(0.0, 0.0, -times * reach - 0.2))
     for varied in (large, far):
         if times < 20:
-            check_part(varied.covered(), varied, reach)
+            check_part(varied.covered().placed(varied.placement), varied, reach)
         else:
             with pytest.raises(InputError, match="times"):
-                check_part(varied.covered(), varied, reach)
+                check_part(varied.covered().placed(varied.placement), varied, reach)
 
 
 def test_no_shipped_scene_is_refused() -> None:

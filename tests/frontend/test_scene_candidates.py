@@ -51,7 +51,7 @@ def check_inverse(name: str, vertices: int, count: int) -> None:
     random = np.random.default_rng([17, NAMES.index(name)])
     rows = random.choice(len(prepared.surface.vertices), count, replace=False)
     points, directions = prepared.surface.vertices[rows], -prepared.surface.normals[rows]
-    found = prepared.inverse(points, directions)
+    found = prepared.arm.inverse(points, directions)
     solved = ~np.isnan(found[:, :, 0])
     eaik = Eaik(prepared.robot)
     apart, left_out = [], 0

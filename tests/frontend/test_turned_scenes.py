@@ -95,7 +95,7 @@ def test_solutions_without_names_have_the_turn_too() -> None:
     scene = arm_plates.plate(dh_arms.urdf("passing"), "eaik", 60)
     rule = {"along": (0.6, 0.8, 0.0)}
     given = scene.setup.varied(task={"turn": rule}, robot={"locked_joint_6_rad": None})
-    x, y, z = scene.covered().vertices[11].tolist()
+    x, y, z = scene.covered().placed(scene.placement).vertices[11].tolist()
     result = build_surface(scene.with_setup(given))
     valid = np.argwhere(result.reasons == VALID)
     assert len(valid) > 30

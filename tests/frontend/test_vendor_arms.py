@@ -13,7 +13,7 @@ from shipped import ROBOTS
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult, build_surface
-from cellcolor.frontend.prepared import robot_of
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 
@@ -52,10 +52,10 @@ def test_one_link_can_be_chosen_for_itself(tmp_path: Path) -> None:
     arm = str(write_package(tmp_path, "toy_description") / "urdf" / "arm.urdf")
     setup = Setup.read(ROBOTS / "ur5_polishing.toml").varied(robot={"arm_urdf": arm})
     one = setup.varied(robot={"mesh_collision_of": {"forearm_link": "exact"}})
-    found = {each.link: each.chosen for each in robot_of(one).stand_ins}
+    found = {each.link: each.chosen for each in prepare_arm(one).robot.stand_ins}
     assert found.pop("forearm_link") == "exact" and set(found.values()) == {"hull"}
     with pytest.raises(InputError, match="no such link") as caught:
-        robot_of(setup.varied(robot={"mesh_collision_of": {"tool_body": "exact"}}))
+        prepare_arm(setup.varied(robot={"mesh_collision_of": {"tool_body": "exact"}}))
     assert caught.value.field == "robot.mesh_collision_of.tool_body"
 
 

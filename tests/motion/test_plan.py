@@ -85,7 +85,9 @@ def test_every_sample_in_contact_is_valid_in_the_color_of_its_segment(motion: Pl
         assert color is not None
         branches = np.full(end - first, branch_of[color])
         rows = slice(first, end)
-        found = motion.prepared.follow(trajectory.points[rows], -trajectory.normals[rows], branches)
+        found = motion.prepared.arm.follow(
+            trajectory.points[rows], -trajectory.normals[rows], branches
+        )
         off = np.remainder(trajectory.joints[rows] - found + np.pi, 2 * np.pi) - np.pi
         assert np.abs(off).max() < 1e-9
 

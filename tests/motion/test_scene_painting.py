@@ -45,7 +45,7 @@ def reaches(prepared: PreparedScene, found: ScenePainting) -> bool:
     painted = found.painted
     own = [v for v, color in enumerate(painted.plan.vertex_colors) if color is not None]
     branches = branch[[painted.plan.vertex_colors[v] for v in own]]
-    joints = prepared.follow(painted.surface.vertices[own], -found.normals[own], branches)
+    joints = prepared.arm.follow(painted.surface.vertices[own], -found.normals[own], branches)
     return bool((prepared.judge(joints).reasons == VALID).all())
 
 

@@ -208,7 +208,7 @@ def _lifted(share: float, height: float) -> Forger:
         rows = np.arange(first, first + max(20, int(share * (after - first))))
         trajectory, joints = honest.trajectory, honest.trajectory.joints.copy()
         points = trajectory.points[rows] + height * trajectory.normals[rows]
-        found = honest.prepared.inverse(points, -trajectory.normals[rows])
+        found = honest.prepared.arm.inverse(points, -trajectory.normals[rows])
         turns = np.round((joints[rows, None] - found) / (2 * np.pi)) * 2 * np.pi
         off = np.abs(found + turns - joints[rows, None]).max(axis=2)
         best = np.nanargmin(np.where(np.isnan(off), np.inf, off), axis=1)
@@ -390,7 +390,7 @@ def _twice(honest: Honest, random: Random) -> Trajectory:
 def _other_branch(honest: Honest, random: Random) -> Trajectory:
     """The same poses in another configuration."""
     rows, trajectory = honest.inside(random, 80), honest.trajectory
-    found = honest.prepared.inverse(trajectory.points[rows], -trajectory.normals[rows])
+    found = honest.prepared.arm.inverse(trajectory.points[rows], -trajectory.normals[rows])
     off = found[:, :, :5] - trajectory.joints[rows, None, :5]
     off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
     there = np.flatnonzero(~np.isnan(off).any(axis=0) & (off.min(axis=0) > 0.05))
@@ -453,7 +453,7 @@ def _needless(honest: Honest, random: Random) -> Trajectory:
     heights = np.concatenate([up, down])
     points = trajectory.points[row] + heights[:, None] * trajectory.normals[row]
     normals = np.tile(trajectory.normals[row], (len(points), 1))
-    found = honest.prepared.inverse(points, -normals)
+    found = honest.prepared.arm.inverse(points, -normals)
     own = trajectory.joints[row]
     turns = np.round((own - found) / (2 * np.pi)) * 2 * np.pi
     off = np.abs(found + turns - own).max(axis=2)

@@ -110,7 +110,7 @@ def _joined(lines: list[Array]) -> Array:
 
 
 def _followed(prepared: PreparedScene, points: Array, normals: Array, branch: int) -> Array:
-    return prepared.follow(points, -normals, np.full(len(points), branch, dtype=np.intp))
+    return prepared.arm.follow(points, -normals, np.full(len(points), branch, dtype=np.intp))
 
 
 Rows = tuple[Array, Array, Array, Index]

@@ -13,7 +13,7 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.prepared import family_of, robot_of
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 
 REGULAR = 1e-5  # of reach^3; nearer to a singularity two solutions are about to meet
@@ -46,8 +46,8 @@ class Arm:
     @classmethod
     def of(cls, setup: Setup) -> Arm:
         """The one that a setup names."""
-        robot = robot_of(setup)
-        return cls(robot, family_of(setup)(robot, setup.robot))
+        arm = prepare_arm(setup)
+        return cls(arm.robot, arm.kinematics)
 
     def solved(self, points: Array, directions: Array) -> list[Array]:
         """Joints 1 to 5 (s, 5) of all solutions of each pose, rad."""

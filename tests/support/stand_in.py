@@ -123,9 +123,9 @@ def _driven(prepared: PreparedScene, built: BuildResult, paths: tuple[ToolPath, 
 
     for path in paths:
         branches = np.full(len(path.points), branch_of[path.color])
-        arms = prepared.follow(path.points, -path.normals, branches)
+        arms = prepared.arm.follow(path.points, -path.normals, branches)
         above = path.points[[0, -1]] + RETRACT * path.normals[[0, -1]]
-        ends = prepared.follow(above, -path.normals[[0, -1]], branches[[0, -1]])
+        ends = prepared.arm.follow(above, -path.normals[[0, -1]], branches[[0, -1]])
         ends = np.where(np.isnan(ends), arms[[0, -1]], ends)
         go(2.0, -1, ends[0], above[0], path.normals[0])
         steps = np.linalg.norm(np.diff(path.points, axis=0), axis=1)

@@ -10,7 +10,7 @@ import trimesh
 from shipped import ROBOTS
 
 from cellcolor.frontend.arm.body import Body
-from cellcolor.frontend.prepared import robot_of
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 
 PACKAGE = "kuka_kr6_support"
@@ -22,7 +22,7 @@ def write_package(folder: Path) -> Path:
     (package / "urdf").mkdir(parents=True)
     (package / "meshes").mkdir()
     (package / "package.xml").write_text(f"<package><name>{PACKAGE}</name></package>")
-    robot = robot_of(Setup.read(ROBOTS / "kr6_polishing.toml"))
+    robot = prepare_arm(Setup.read(ROBOTS / "kr6_polishing.toml")).robot
     of_link: dict[str, list[Body]] = {}
     for body in robot.bodies:
         of_link.setdefault(body.link, []).append(body)

@@ -7,9 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
+
+from examples import examples
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 pytest.importorskip("coal")
@@ -111,7 +112,7 @@ def test_a_tool_that_is_tilted() -> None:
     for degrees, tilted in ((0.8, False), (1.2, True)):
         turn = math.radians(degrees)
         direction = -(math.cos(turn) * normal + math.sin(turn) * across)
-        (found,) = prepared.inverse(built.surface.vertices[[vertex]], direction[None])
+        (found,) = prepared.arm.inverse(built.surface.vertices[[vertex]], direction[None])
         held = at(built, vertex, found[branch])
         assert held.color.tolist() == [-1 if tilted else color]
         if tilted:

@@ -39,7 +39,7 @@ def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
 def moved(points: Array, normals: Array, samples: slice) -> Trajectory:
     """The cap's trajectory with other poses at some samples, in the same branch."""
     prepared, _, trajectory = rasters.cap()
-    found = prepared.inverse(points, -normals)
+    found = prepared.arm.inverse(points, -normals)
     off = found - trajectory.joints[samples][:, None]
     turns = np.round(off / (2 * np.pi)) * 2 * np.pi
     off, found = np.abs(off - turns).max(axis=2), found - turns
@@ -129,7 +129,7 @@ def test_between_distant_samples_too() -> None:
 def test_a_change_of_branch_in_contact() -> None:
     prepared, _, trajectory = rasters.cap()
     at = slice(middle(), trajectory.strokes[0][1])
-    found = prepared.inverse(trajectory.points[at], -trajectory.normals[at])
+    found = prepared.arm.inverse(trajectory.points[at], -trajectory.normals[at])
     off = np.abs(np.remainder(found - trajectory.joints[at][:, None] + np.pi, 2 * np.pi) - np.pi)
     own = np.nanargmin(off.max(axis=2), axis=1)
     joints = trajectory.joints.copy()
@@ -191,7 +191,7 @@ def test_cracks_that_are_crossed() -> None:
 def on_the_way(trajectory: Trajectory) -> str:
     """The name of the branch of the first sample."""
     prepared = rasters.cap()[0]
-    found = prepared.inverse(trajectory.points[:1], -trajectory.normals[:1])[0]
+    found = prepared.arm.inverse(trajectory.points[:1], -trajectory.normals[:1])[0]
     off = np.abs(np.remainder(found - trajectory.joints[0] + np.pi, 2 * np.pi) - np.pi)
     return prepared.kinematics.branches[int(np.nanargmin(off.max(axis=1)))]
 

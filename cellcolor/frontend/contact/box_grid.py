@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Literal
 
-import fcl
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -17,7 +16,6 @@ from cellcolor.frontend.arm.polyhedron import one_of_each_part
 from cellcolor.frontend.contact.fcl_bodies import mesh_model
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.solids import Solid
-from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length
 
@@ -90,32 +88,28 @@ class BoxGridObstacle(Obstacle):
         """The filled cells."""
         vertices, faces = self.shell(folder, deadline)
         middles = (self.cells(folder, deadline) + 0.5) * self.cell_m
-        turn, origin = rotation_from_rpy(*self.rpy_rad), np.array(self.position_m)
         tree, half = cKDTree(middles), self.cell_m / 2
         nearest = min(_NEIGHBORS, len(middles))
 
         def distances(points: Array) -> tuple[Array, Array]:
             """A cube lies between the balls about its middle through sides and corners."""
-            to_middle, _ = tree.query((points - origin) @ turn)
+            to_middle, _ = tree.query(points)
             return np.maximum(to_middle - np.sqrt(3) * half, 0.0), np.maximum(to_middle - half, 0.0)
 
         def near(points: Array, reach: float) -> tuple[Array, Array]:  # noqa: ARG001
             """A cell that is not among the nearest has a middle at least as far as theirs."""
-            local = (points - origin) @ turn
-            to_middle, cell = tree.query(local, k=[*range(1, nearest + 1)])
-            beyond = np.maximum(np.abs(local[:, None] - middles[cell]) - half, 0.0)
+            to_middle, cell = tree.query(points, k=[*range(1, nearest + 1)])
+            beyond = np.maximum(np.abs(points[:, None] - middles[cell]) - half, 0.0)
             to_cell = np.linalg.norm(beyond, axis=2).min(axis=1)
             if nearest == len(middles):
                 return to_cell, to_cell
             others = np.maximum(to_middle[:, -1] - np.sqrt(3) * half, 0.0)
             return np.minimum(to_cell, others), to_cell
 
-        placed = self.placed(vertices)
-        model = mesh_model(placed, faces)
         extent = sorted(np.ptp(vertices, axis=0).tolist())
-        shape = fcl.CollisionObject(model, fcl.Transform())
-        parts = one_of_each_part(placed, faces)
-        return Solid(shape, extent[1], distances, near, parts)
+        parts = one_of_each_part(vertices, faces)
+        solid = Solid(mesh_model(vertices, faces), extent[1], distances, near, parts)
+        return solid.placed(self)
 
 
 def _outer_sides(cells: Index) -> Mask:

@@ -49,14 +49,14 @@ class HalfSpaceObstacle(Obstacle):
             return distance, distance
 
         shape = fcl.Halfspace(np.array(below.normal), below.offset_m)
-        return _Below(fcl.CollisionObject(shape, fcl.Transform()), np.inf, distances, below)
+        return _Below(shape, np.inf, distances, below)
 
 
 class _Below(Solid):
     """A half space for bodies of all kinds; fcl crashes when asked for triangles near one."""
 
     def __init__(
-        self, shape: fcl.CollisionObject, width: float, distances: Distances, below: HalfSpace
+        self, shape: fcl.CollisionGeometry, width: float, distances: Distances, below: HalfSpace
     ) -> None:
         super().__init__(shape, width, distances)
         self._below = below

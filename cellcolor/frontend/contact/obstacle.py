@@ -40,7 +40,7 @@ class Obstacle(Placement):
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:
         """What the arm is held against, in the world; arguments and errors as of the shell."""
         vertices, faces = self.shell(folder, deadline)
-        return mesh_solid(self.placed(vertices), faces, deadline)
+        return mesh_solid(vertices, faces, deadline).placed(self)
 
 
 OBSTACLES: Registry[Obstacle] = Registry(

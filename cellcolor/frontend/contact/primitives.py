@@ -14,7 +14,6 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.solids import Solid
-from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length
 
@@ -51,15 +50,12 @@ class Primitive(Obstacle):
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:  # noqa: ARG002
         """The filled shape."""
-        turn, center = rotation_from_rpy(*self.rpy_rad), np.array(self.position_m)
 
         def distances(points: Array) -> tuple[Array, Array]:
-            beyond = self._outside((points - center) @ turn)
-            distance = np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
+            distance = np.linalg.norm(np.maximum(self._outside(points), 0.0), axis=1)
             return distance, distance
 
-        placed = fcl.CollisionObject(self._shape(), fcl.Transform(turn, center))
-        return Solid(placed, sorted(self._extents())[1], distances)
+        return Solid(self._shape(), sorted(self._extents())[1], distances).placed(self)
 
 
 class BoxObstacle(Primitive):

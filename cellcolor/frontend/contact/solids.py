@@ -30,6 +30,7 @@ from cellcolor.frontend.contact.fcl_bodies import (
     touch_thing,
 )
 from cellcolor.frontend.contact.samples import sample_mesh
+from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.surface import Faces
 
 __all__ = ["Distances", "Solid", "mesh_solid"]
@@ -51,7 +52,7 @@ Near = Callable[[Array, float], tuple[Array, Array]]
 
 
 class Solid:
-    """A thing in the world, for fcl and as bounds of distances from points.
+    """A thing that stands still, for fcl and as bounds of distances from points.
 
     A mesh is a shell: a body wholly inside a closed one does not touch it. That cannot happen
     unnoticed to an arm whose bodies touch one another in a row and of which a part is outside.
@@ -61,17 +62,34 @@ class Solid:
 
     def __init__(
         self,
-        shape: fcl.CollisionObject,
+        shape: fcl.CollisionGeometry,
         width: float,
         distances: Distances,
         near: Near | None = None,
         parts: Array | None = None,
     ) -> None:
-        """``parts`` has a point (k, 3) of each part of it; the middle of the shape without."""
+        """In its own frame; ``parts`` has a point (k, 3) of each part of it, the origin without."""
         self.width = width
+        self._shape, self._parts = shape, np.zeros((1, 3)) if parts is None else parts
         self._distances, self._near = distances, near
-        middle = np.array([shape.getTranslation()])
-        self._thing = Thing(shape, middle if parts is None else parts)
+        self._thing = Thing(fcl.CollisionObject(shape, fcl.Transform()), self._parts)
+
+    def placed(self, placement: Placement) -> Solid:
+        """It, put in place from its own frame; nothing of it is built anew."""
+        turn, origin = rotation_from_rpy(*placement.rpy_rad), np.array(placement.position_m)
+        distances, near = self._distances, self._near
+
+        def distances_there(points: Array) -> tuple[Array, Array]:
+            return distances((points - origin) @ turn)
+
+        def near_there(points: Array, reach: float) -> tuple[Array, Array]:
+            assert near is not None
+            return near((points - origin) @ turn, reach)
+
+        there = Solid(self._shape, self.width, distances_there, near and near_there)
+        shape = fcl.CollisionObject(self._shape, fcl.Transform(turn, origin))
+        there._thing = Thing(shape, placement.placed(self._parts))
+        return there
 
     def hits(self, robot: Robot, ends: Array, poses: Poses | None = None) -> Mask:
         """Whether any moving body touches the solid, (n,).
@@ -188,7 +206,7 @@ class Solid:
 
 
 def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Solid:
-    """A triangle mesh in the world.
+    """A triangle mesh in its own frame.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -234,6 +252,5 @@ def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Sol
         """
         return np.sqrt(np.maximum(np.maximum(to_sample, 0.0) ** 2 - slack**2, 0.0))
 
-    shape = fcl.CollisionObject(model, fcl.Transform())
     parts = one_of_each_part(vertices, faces)
-    return Solid(shape, sorted(extent.tolist())[1], distances, near, parts)
+    return Solid(model, sorted(extent.tolist())[1], distances, near, parts)

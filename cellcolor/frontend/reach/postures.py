@@ -9,58 +9,45 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.conditioning import Conditioning
 from cellcolor.frontend.arm.kinematics import Poses, forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import body_ends
 from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.contact.tip import Tip
-from cellcolor.frontend.contact.wider import wider
+from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.setup import Setup
 
 __all__ = ["Postures", "Workplace"]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Workplace:
-    """The arm, what it has to do, and what stands around it in the world.
+    """An arm with a part before it, and what stands around them in the world.
 
     Attributes:
-        conditioning: the thresholds for this arm.
+        arm: and what it has to do.
         ground: None without one.
         obstacles: see :class:`~cellcolor.frontend.contact.solids.Solid`.
         target: the object, as what must not be hit.
         tip: the region where the tool works.
     """
 
-    robot: Robot
-    setup: Setup
-    conditioning: Conditioning
+    arm: PreparedArm
     ground: HalfSpace | None
     obstacles: tuple[Solid, ...]
     target: Solid
     tip: Tip
 
-    @cached_property
-    def near_object(self) -> Robot:
-        """The robot with all that the setup's margin keeps free of the object."""
-        return wider(self.robot, self.setup.margins.to_object_m)
+    @property
+    def robot(self) -> Robot:
+        """Arm and tool."""
+        return self.arm.robot
 
-    @cached_property
-    def near_obstacles(self) -> Robot:
-        """The same of obstacles."""
-        return wider(self.robot, self.setup.margins.to_obstacles_m)
-
-    @cached_property
-    def near_ground(self) -> Robot:
-        """The same of the ground."""
-        return wider(self.robot, self.setup.margins.to_ground_m)
-
-    @cached_property
-    def near_itself(self) -> Robot:
-        """The same of other links: of two that keep a distance each keeps half of it."""
-        return wider(self.robot, self.setup.margins.between_links_m / 2)
+    @property
+    def setup(self) -> Setup:
+        """What the arm has to do."""
+        return self.arm.setup
 
 
 @dataclass(frozen=True)

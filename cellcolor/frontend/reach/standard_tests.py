@@ -96,7 +96,7 @@ class Manipulability(StandardTest):
         """Those below the threshold."""
         place = postures.workplace
         measure = manipulability(postures.linear, place.robot.task)
-        return np.asarray(measure < place.conditioning.min_manipulability)
+        return np.asarray(measure < place.arm.conditioning.min_manipulability)
 
 
 class TaskDeterminant(StandardTest):
@@ -112,7 +112,7 @@ class TaskDeterminant(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those below the threshold."""
-        least = postures.workplace.conditioning.min_task_determinant
+        least = postures.workplace.arm.conditioning.min_task_determinant
         return np.asarray(postures.determinant < least)
 
 
@@ -130,7 +130,7 @@ class GroundContact(StandardTest):
         if place.ground is None:
             return np.zeros(len(postures), dtype=bool)
         exempt = place.setup.robot.may_touch_ground
-        robot = place.near_ground
+        robot = place.arm.near_ground
         return hits_ground(robot, postures.ends_of(robot), place.ground, exempt, postures.poses)
 
 
@@ -144,7 +144,7 @@ class SelfCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which two links overlap."""
-        robot = postures.workplace.near_itself
+        robot = postures.workplace.arm.near_itself
         return hits_itself(robot, postures.ends_of(robot), postures.poses)
 
 
@@ -158,7 +158,7 @@ class ObstacleCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which an obstacle is hit."""
-        robot, hit = postures.workplace.near_obstacles, np.zeros(len(postures), dtype=bool)
+        robot, hit = postures.workplace.arm.near_obstacles, np.zeros(len(postures), dtype=bool)
         ends = postures.ends_of(robot)
         for obstacle in postures.workplace.obstacles:
             left = postures.without(hit)
@@ -176,7 +176,7 @@ class ObjectCollision(StandardTest):
 
     def failed(self, postures: Postures) -> Mask:
         """Those in which the object is hit."""
-        robot = postures.workplace.near_object
+        robot = postures.workplace.arm.near_object
         return postures.workplace.target.hits(robot, postures.ends_of(robot), postures.poses)
 
 

@@ -220,7 +220,7 @@ def _finite(limits: Array) -> list[float | None]:
 
 
 def _limits(prepared: PreparedScene) -> dict[str, Any]:
-    least, robot = prepared.workplace.conditioning, prepared.robot
+    least, robot = prepared.arm.conditioning, prepared.robot
     tested = prepared.setup.constraints.conditioning
     return {
         "lower": _finite(robot.lower),

@@ -62,7 +62,7 @@ def reasons(scene: Varied, size: float, shares: bool) -> NDArray[np.uint8]:
         target_vertices=300,
     )
     prepared = prepare(wok)
-    candidates = prepared.inverse(prepared.surface.vertices, -prepared.surface.normals)
+    candidates = prepared.arm.inverse(prepared.surface.vertices, -prepared.surface.normals)
     return prepared.judge(candidates.reshape(-1, 6)).reasons
 
 

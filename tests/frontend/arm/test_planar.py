@@ -10,7 +10,6 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from bent_tools import BENT, tip_frame, tip_frames, tool
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import wrapped
@@ -36,6 +35,7 @@ from cellcolor.frontend.arm.task_space import FREE_IN_PLANE, GIVEN_IN_PLANE
 from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.setup import RobotFiles, Turn
+from examples import examples
 
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 SCENE = TOP / "instances" / "planar" / "kr6_r700_z200_plate.toml"

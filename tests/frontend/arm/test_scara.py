@@ -9,7 +9,6 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from bent_tools import tip_frame, tip_frames
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from refused_setups import refused_setup
@@ -50,6 +49,7 @@ from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.setup import RobotFiles, Turn
 from cellcolor.motion.scene_painting import color_costs
 from cellcolor.pictures.arm import arm_at
+from examples import examples
 
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 SCENE = TOP / "instances" / "planar" / "cobra600_pipe.toml"
@@ -277,7 +277,7 @@ def test_the_tool_comes_from_outside_whatever_the_normal(built: BuildResult) -> 
         direction = np.array([[np.sin(tilt), 0, -np.cos(tilt)]])
         assert np.isnan(prepared.kinematics.solve(point, direction)).all() != there
         # At 90 degrees the rule's vector is along the normal, and says all the same what it says.
-        assert not prepared.without_turn(point, direction).any()
+        assert not prepared.arm.without_turn(point, direction).any()
 
 
 def test_a_plan_in_joints_is_held_to_meters(built: BuildResult) -> None:

@@ -15,7 +15,7 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import body_ends, hits_itself
-from cellcolor.frontend.prepared import robot_of
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.setup import Setup
 
 UR = ("ur3e", "ur5e", "ur10e", "ur16e")
@@ -42,7 +42,7 @@ def setup_of(name: str) -> Setup:
 
 
 def robot(name: str) -> Robot:
-    return robot_of(setup_of(name))
+    return prepare_arm(setup_of(name)).robot
 
 
 def test_files_are_what_the_tables_give() -> None:
@@ -125,7 +125,7 @@ def test_at_home_nothing_is_hit_and_the_tool_looks_down(name: str) -> None:
 
 def test_the_scara_is_that_of_the_published_constants() -> None:
     """By Denavit-Hartenberg: d1 387, a1 325, a2 275 mm; down from joint 3 on, 210 of stroke."""
-    arm = robot_of(Setup.read(ROBOTS / "cobra600_dispensing.toml"))
+    arm = prepare_arm(Setup.read(ROBOTS / "cobra600_dispensing.toml")).robot
     model, data = arm.model, arm.model.createData()
     flange = model.getFrameId("flange")
     for q in np.random.default_rng(1).uniform([-3, -3, 0, -3], [3, 3, 0.21, 3], (20, 4)):

@@ -125,7 +125,7 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
     prepared = prepare(SCENES / f"{name}.toml")
     surface, robot = prepared.surface, prepared.robot
     edges, random = surface.edges(), np.random.default_rng(5)
-    solutions = prepared.inverse(surface.vertices, -surface.normals)
+    solutions = prepared.arm.inverse(surface.vertices, -surface.normals)
     found = prepared.judge(solutions.reshape(-1, 6))
     valid = (found.reasons == Reason.VALID).reshape(-1, 8)
     ends = found.tracked.reshape(-1, *valid.shape, 3)
@@ -135,7 +135,7 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
 
     def test(points: Array, directions: Array, at: Array) -> tuple[Array, Array]:
         asked.append(np.column_stack([points, directions]))
-        verdicts = prepared.judge(prepared.follow(points, directions, of[at]))
+        verdicts = prepared.judge(prepared.arm.follow(points, directions, of[at]))
         return verdicts.reasons == Reason.VALID, verdicts.tracked
 
     def axis_points(q: Array, share: Array) -> Array:
@@ -160,7 +160,7 @@ def test_no_body_moves_far_between_tested_points(name: str) -> None:
         start, goal = (np.append(surface.vertices[v], -surface.normals[v]) for v in edge[0])
         order = np.argsort(np.linalg.norm(inner[:, :3] - start[:3], axis=1))
         way = np.array([start, *inner[order], goal])
-        joints = prepared.inverse(way[:, :3], way[:, 3:])[:, branch]
+        joints = prepared.arm.inverse(way[:, :3], way[:, 3:])[:, branch]
         for share in (np.zeros(len(robot.bodies)), random.uniform(0, 1, len(robot.bodies))):
             path = np.array([axis_points(q, share) for q in joints])
             moved = np.linalg.norm(np.diff(path, axis=0), axis=2)
@@ -207,8 +207,8 @@ def test_a_branch_followed_alone_is_the_same() -> None:
     prepared = prepare(WOK)
     points, directions = prepared.surface.vertices, -prepared.surface.normals
     branches = np.random.default_rng(2).integers(8, size=len(points))
-    expected = prepared.inverse(points, directions)[np.arange(len(points)), branches]
-    found = prepared.follow(points, directions, branches)
+    expected = prepared.arm.inverse(points, directions)[np.arange(len(points)), branches]
+    found = prepared.arm.follow(points, directions, branches)
     np.testing.assert_array_equal(found, expected)
     assert np.isfinite(found).all(axis=1).mean() > 0.5
-    assert prepared.follow(points[:0], directions[:0], branches[:0]).shape == (0, 6)
+    assert prepared.arm.follow(points[:0], directions[:0], branches[:0]).shape == (0, 6)

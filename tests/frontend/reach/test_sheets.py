@@ -58,7 +58,8 @@ class Unnamed:
 def both(scene: Scene) -> tuple[Stages, Stages]:
     """What comes out with names and without."""
     prepared = prepare(scene)
-    unnamed = replace(prepared, kinematics=Unnamed(prepared.kinematics))
+    arm = replace(prepared.arm, kinematics=Unnamed(prepared.kinematics))
+    unnamed = replace(prepared, workplace=replace(prepared.workplace, arm=arm))
     return run_stages(prepared, StageClock(NEVER, None)), run_stages(
         unnamed, StageClock(NEVER, None)
     )
@@ -132,18 +133,18 @@ def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
 def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     """All solutions (n, s, joints) of a scene, the valid ones (n, s), and links (l, 3) of them."""
     surface = prepared.surface
-    found = prepared.inverse(surface.vertices, -surface.normals)
+    found = prepared.arm.inverse(surface.vertices, -surface.normals)
     verdicts = prepared.judge(found.reshape(-1, 6))
     nodes = (verdicts.reasons == 0).reshape(found.shape[:2])
-    solutions = prepared.tracker().described(verdicts.configurations.reshape(found.shape))
+    solutions = prepared.arm.tracker().described(verdicts.configurations.reshape(found.shape))
     limits = prepared.robot.lower, prepared.robot.upper
     pairs = linked_pairs(
         surface,
         surface.edges(),
         nodes,
         solutions,
-        prepared.tracker(),
-        prepared.measure,
+        prepared.arm.tracker(),
+        prepared.arm.measure,
         limits,
     )
     return solutions.joints, nodes, pairs

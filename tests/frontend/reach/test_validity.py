@@ -15,7 +15,7 @@ from world import World
 
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.prepared import robot_of
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
@@ -33,7 +33,7 @@ def test_reasons_agree_with_an_independent_loop(setup: Setup, scene: Varied, wea
         half_angle_rad=1.5,
         position_m=(0.39, 0.03, 0.09),
     )
-    result, robot = build_surface(wok), robot_of(wok.setup)
+    result, robot = build_surface(wok), prepare_arm(wok.setup).robot
     surface = result.surface
     world = World(robot, surface.vertices, surface.faces)
     unclear = 0

@@ -65,7 +65,7 @@ def follow(prepared: PreparedScene, way: list[int], branch: int) -> tuple[Array,
     rows = np.repeat(np.arange(len(edges)), pieces)
     at = np.concatenate([np.arange(count) / count for count in pieces] or [np.zeros(0)])
     points, directions = along_edges(prepared.surface, edges[rows], at)
-    return points, directions, prepared.follow(points, directions, np.full(len(points), branch))
+    return points, directions, prepared.arm.follow(points, directions, np.full(len(points), branch))
 
 
 def largest_part(
@@ -76,7 +76,7 @@ def largest_part(
     between = (1 - at) * points[piece] + at * points[piece + 1]
     turned = (1 - at) * directions[piece] + at * directions[piece + 1]
     turned /= np.linalg.norm(turned, axis=1, keepdims=True)
-    joints = prepared.follow(between, turned, np.full(len(at), branch))
+    joints = prepared.arm.follow(between, turned, np.full(len(at), branch))
     return float(joint_step(joints[:-1], joints[1:]).max())
 
 
@@ -168,7 +168,7 @@ def check_everywhere(name: str, vertices: int) -> None:
         np.repeat(edges[links], count - 1, axis=0),
         np.tile(np.arange(1, count) / count, len(links)),
     )
-    joints = prepared.follow(points, directions, np.repeat(branch, count - 1))
+    joints = prepared.arm.follow(points, directions, np.repeat(branch, count - 1))
     on_links = prepared.judge(joints).reasons
 
     row_of = {(start, end): row for row, (start, end) in enumerate(edges.tolist())}
@@ -183,7 +183,7 @@ def check_everywhere(name: str, vertices: int) -> None:
     points = (weights @ surface.vertices[corners]).reshape(-1, 3)
     normals = (weights @ surface.normals[corners]).reshape(-1, 3)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
-    joints = prepared.follow(points, -normals, np.repeat(branch, len(weights)))
+    joints = prepared.arm.follow(points, -normals, np.repeat(branch, len(weights)))
     in_faces = prepared.judge(joints).reasons
 
     print(
@@ -218,6 +218,6 @@ def test_an_obstacle_between_two_vertices_is_met() -> None:
     points, directions = along_edges(
         prepared.surface, np.repeat(edges[rows], len(way), axis=0), np.tile(way, len(rows))
     )
-    joints = prepared.follow(points, directions, np.full(len(points), branch))
+    joints = prepared.arm.follow(points, directions, np.full(len(points), branch))
     assert len(rows) > 2000
     assert (prepared.judge(joints).reasons == Reason.VALID).all()

@@ -1,0 +1,272 @@
+"""An arm prepared: what its setup names, read once, wherever a part stands before it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array, Mask
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.conditioning import Conditioning, conditioning, task_determinants
+from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
+from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
+from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot
+from cellcolor.frontend.arm.task_space import TaskSpace
+from cellcolor.frontend.arm.tool_turn import turn_at
+from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
+from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
+from cellcolor.frontend.contact.wider import wider
+from cellcolor.frontend.reach.smooth import Measure
+from cellcolor.frontend.reach.tracking import Tracker
+from cellcolor.frontend.setup import Setup
+from cellcolor.frontend.tables import in_file
+
+__all__ = ["PreparedArm", "prepare_arm"]
+
+_AT_ONCE = 20_000  # points; inverse kinematics keeps some kilobytes for each
+
+
+@dataclass(frozen=True, eq=False)
+class PreparedArm:
+    """An arm and its task: what can be asked without any part, obstacle or ground.
+
+    Attributes:
+        setup: the arm's files, and what it has to do.
+        robot: arm and tool.
+        kinematics: the arm's inverse kinematics.
+        conditioning: the thresholds for this arm.
+    """
+
+    setup: Setup
+    robot: Robot
+    kinematics: InverseKinematics
+    conditioning: Conditioning
+
+    @cached_property
+    def near_object(self) -> Robot:
+        """The robot with all that the setup's margin keeps free of the object."""
+        return wider(self.robot, self.setup.margins.to_object_m)
+
+    @cached_property
+    def near_obstacles(self) -> Robot:
+        """The same of obstacles."""
+        return wider(self.robot, self.setup.margins.to_obstacles_m)
+
+    @cached_property
+    def near_ground(self) -> Robot:
+        """The same of the ground."""
+        return wider(self.robot, self.setup.margins.to_ground_m)
+
+    @cached_property
+    def near_itself(self) -> Robot:
+        """The same of other links: of two that keep a distance each keeps half of it."""
+        return wider(self.robot, self.setup.margins.between_links_m / 2)
+
+    def inverse(self, points: Array, directions: Array, deadline: Deadline = NEVER) -> Array:
+        """All branches (n, branches, joints) in rad, or all solutions if they have no names.
+
+        See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        parts = []
+        for first in range(0, len(points), _AT_ONCE):
+            deadline.check()
+            rows = slice(first, first + _AT_ONCE)
+            parts.append(self.kinematics.solve(points[rows], directions[rows]))
+        most = max([1, *(part.shape[1] for part in parts)])
+        found = np.full((len(points), most, self.robot.joints), np.nan)
+        for number, part in enumerate(parts):
+            first = number * _AT_ONCE
+            found[first : first + len(part), : part.shape[1]] = part
+        return found
+
+    @property
+    def measure(self) -> Measure:
+        """By what motions along mesh edges are measured."""
+        near_singular = self.conditioning.near_singular_determinant
+        policy, own, slides = self.setup.continuity, self.kinematics, self.robot.slides
+        if not slides.any():
+            return Measure(policy, near_singular, own.lever)
+        return Measure(policy, near_singular, own.lever, slides, own.reach)
+
+    def tracker(self, deadline: Deadline = NEVER) -> Tracker:
+        """Follows solutions that have no names, until a deadline (OutOfTime)."""
+        limits = self.conditioning if self.setup.constraints.conditioning else None
+        solve = partial(self.inverse, deadline=deadline)
+        return Tracker(self.robot, solve, self.measure, limits)
+
+    def check_named(self) -> None:
+        """Refuse an arm whose solutions have no names.
+
+        Raises:
+            InputError: it has no branches.
+        """
+        if not self.kinematics.branches:
+            raise InputError(
+                None,
+                "robot.kinematics",
+                "the solutions of this arm have no names: its colors can be found and its minimum "
+                "solved, but without names nothing is painted, planned or judged on the arm",
+            )
+
+    def without_turn(self, points: Array, directions: Array) -> Mask:
+        """Where the setup gives the tool's turn by a rule that says nothing there, (n,)."""
+        turn = self.setup.task.turn
+        if turn is None:
+            return np.zeros(len(points), dtype=bool)
+        taken = self.kinematics.taken(directions)
+        from_behind = np.isnan(taken[:, 0]) & ~np.isnan(directions[:, 0])
+        return np.isnan(turn_at(turn, points, taken)[:, 0]) & ~from_behind
+
+    def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
+        """One branch for each point, (n, joints) in rad, NaN where it has no solution."""
+        return self.kinematics.solve(points, directions, branches)[:, 0]
+
+    def probe(
+        self,
+        points: Array,
+        directions: Array,
+        branches: NDArray[np.intp],
+        deadline: Deadline = NEVER,
+    ) -> tuple[Array, Array]:
+        """Well-conditioned configurations; see :data:`~cellcolor.frontend.reach.smooth.Probe`.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        deadline.check()
+        found = self.follow(points, directions, branches)
+        limits = self.conditioning if self.setup.constraints.conditioning else None
+        return found, task_determinants(self.robot, found, limits)
+
+
+def prepare_arm(setup: Setup) -> PreparedArm:
+    """Read the URDFs that a setup names.
+
+    Raises:
+        InputError: one cannot be used, or a key of the setup does not fit it; names the file.
+    """
+    with in_file(setup.file):
+        robot = _robot(setup)
+        kinematics = _kinematics(setup, robot)
+        limits = conditioning(setup, kinematics.reach, robot)
+    return PreparedArm(setup, robot, kinematics, limits)
+
+
+def _family(setup: Setup) -> type[InverseKinematics]:
+    """The family of arms that a setup names.
+
+    Raises:
+        InputError: there is no such family, or it cannot be imported.
+    """
+    try:
+        return KINEMATICS.find(setup.robot.kinematics)
+    except InputError as error:
+        raise InputError(None, "robot.kinematics", error.message) from error
+
+
+def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
+    """The arm's inverse kinematics for the task of its setup.
+
+    Raises:
+        InputError: the arm is not of the family that the setup names.
+    """
+    family, turn = _family(setup), setup.task.turn
+    kinematics = (
+        family(robot, setup.robot)
+        if turn is None
+        else TurnedKinematics(family, robot, setup.robot, turn)
+    )
+    if family.prismatic and not kinematics.branches:
+        message = "with a prismatic joint that moves the solutions of an arm need names (branches)"
+        raise InputError(None, "robot.kinematics", message)
+    return kinematics
+
+
+def _robot(setup: Setup) -> Robot:
+    files, folder = setup.robot, setup.folder
+    arm = _urdf(files.arm_urdf, "arm_urdf", folder)
+    tool = _urdf(files.tool_urdf, "tool_urdf", folder)
+    family = _family(setup)
+    robot = load_robot(
+        arm,
+        files.flange_link,
+        tool,
+        files.tip_link,
+        family.joints,
+        mounted=(files.mount_position_m, files.mount_rpy_rad),
+        fixed_joints=files.fixed_joints,
+        shapes=Shapes(
+            files.mesh_collision,
+            files.mesh_collision_of,
+            tuple(folder / name for name in files.package_folders),
+        ),
+        may_touch=files.may_touch,
+        force=setup.constraints.force,
+        prismatic=family.prismatic,
+    )
+    robot = replace(robot, task=_task(setup, family))
+    _check_last_joint(robot)
+    unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
+    if unknown:
+        raise InputError(None, "robot.may_touch_ground", f"no solid link {min(unknown)!r}")
+    return robot
+
+
+def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
+    """What is asked of an arm of the family: no less than its joints can do, and no more."""
+    name, joints, given = setup.robot.kinematics, family.joints, setup.task.turn is not None
+    task = family.given_turn if given else family.free_turn
+    if task is None:
+        message = (
+            f"arms of the family {name!r} are redundant if the tool's turn is free: give it "
+            "(task.turn), or fix the joint that makes it ([robot.fixed_joints]) and name a family "
+            "without that joint: 'planar-2r' for 'planar-3r', 'scara-rrp' for 'scara'"
+        )
+        raise InputError(None, "robot.kinematics", message)
+    if given and joints < task.joints:
+        message = (
+            f"with the tool's turn given the task has {task.dimensions} dimensions, and arms of "
+            f"the family {name!r} have {joints} joints: leave the turn free"
+        )
+        raise InputError(None, "task.turn", message)
+    if joints > task.most_joints:
+        message = (
+            f"arms of the family {name!r} are redundant: {joints} joints, at most "
+            f"{task.most_joints} for a task of {task.dimensions} dimensions; those that are too "
+            "many can be fixed ([robot.fixed_joints]), for a family of fewer joints"
+        )
+        raise InputError(None, "robot.kinematics", message)
+    return task
+
+
+def _check_last_joint(robot: Robot) -> None:
+    """Refuse a joint that only turns the tool where its turn is free, and no joint is locked.
+
+    Raises:
+        InputError: the arm is redundant.
+    """
+    task = robot.task
+    turns_tool = task.most_joints > task.joints >= robot.joints
+    if turns_tool and not robot.slides[-1] and is_tool_on_last_axis(pose_at_zero(robot)):
+        name = robot.joint_names[-1]
+        raise InputError(
+            str(robot.files[0]),
+            f"joint[{name}]",
+            "the arm is redundant: this joint only turns the tool about its axis, and that turn is "
+            f"free; fix it ([robot.fixed_joints], as {name} = 0.0) and name a family without it",
+        )
+
+
+def _urdf(named: str, key: str, folder: Path) -> Urdf:
+    """The URDF in a file, or the one that is there itself; then errors name the key."""
+    if named.lstrip().startswith("<"):
+        return parse_urdf(named, Path(key), folder)
+    return load_urdf(folder / named)
