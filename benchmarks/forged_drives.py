@@ -35,7 +35,9 @@ def main(count: int, seed: int, start: int) -> int:
     """Plan, forge, judge and print."""
     begun = time.process_time()
     plans = [cellcolor.plan(name) for name in SCENES]
-    drives = [Honest(made.prepared, made.trajectory, made.solution.lift_offs) for made in plans]
+    drives = [
+        Honest(made.built.prepared, made.trajectory, made.solution.lift_offs) for made in plans
+    ]
     good = start > 0 or honest_accepted(plans, drives)
     forged, refused, none = Counter[str](), Counter[str](), Counter[str]()
     names = list(FORGERS)
@@ -80,7 +82,7 @@ def honest_accepted(plans: list[PlannedScene], drives: list[Honest]) -> bool:
 def judged(made: PlannedScene, trajectory: Trajectory) -> TrajectoryVerdict:
     """The verdict, with the proved minimum beside it."""
     least = made.solution.lift_offs
-    return check_trajectory(made.prepared, made.built, trajectory, minimum_lift_offs=least)
+    return check_trajectory(made.built.prepared, made.built, trajectory, minimum_lift_offs=least)
 
 
 if __name__ == "__main__":
