@@ -93,6 +93,9 @@ class Oracle:
         self._subject = open_subject(source, Deadline.of(time_limit))
         self._options: dict[str, Any] = {"strands": strands, "workers": workers, "seed": seed}
         self._known = bounds
+        self._proof = None if bounds is None else Proof(bounds)
+        self._painting: BetterPainting | None = None
+        self._painted = False
         self._without_painting = 0.0
         """Seconds in which the better painting was not finished; 0 if that was not tried."""
         self.surface: LabelledSurface = self._subject.surface
@@ -115,14 +118,10 @@ class Oracle:
         Raises:
             InputError: a cell of the surface is not planar, or an option is out of its range.
         """
-        if "_proof" not in self.__dict__:
-            if self._known is not None:
-                self.__dict__["_proof"] = Proof(self._known)
-            else:
-                with _in_file(None if self._subject.path is None else str(self._subject.path)):
-                    self.__dict__["_proof"] = prove(self.surface, deadline, **self._options)
-        proof: Proof = self.__dict__["_proof"]
-        return proof
+        if self._proof is None:
+            with _in_file(None if self._subject.path is None else str(self._subject.path)):
+                self._proof = prove(self.surface, deadline, **self._options)
+        return self._proof
 
     @property
     def best(self) -> BetterPainting | None:
@@ -134,9 +133,8 @@ class Oracle:
 
         So a suite of plans does not pay the time limit again for every one of them.
         """
-        if "_painting" in self.__dict__:
-            known: BetterPainting | None = self.__dict__["_painting"]
-            return known
+        if self._painted:
+            return self._painting
         proof = self.prove(deadline)
         seconds = deadline.left
         if self._without_painting and seconds < 2 * self._without_painting:
@@ -151,7 +149,7 @@ class Oracle:
                 return None
             except TooLarge:
                 pass
-        self.__dict__["_painting"] = found
+        self._painting, self._painted = found, True
         return found
 
     @overload
@@ -232,7 +230,7 @@ class Oracle:
         if best is not None:
             improvement = improvement_of(self.surface, found.segment_of, best)
         about["kept_lower"] = proof.kept_lower
-        late = best is None and given is not None and "_painting" not in self.__dict__
+        late = best is None and given is not None and not self._painted
         return Verdict((), segments, bounds, improvement=improvement, late=late, **about)
 
     def _of_path(self, found: PathColors, deadline: Deadline | None) -> PathVerdict:
@@ -262,7 +260,7 @@ class Oracle:
         )
 
     def __repr__(self) -> str:
-        proved = f", {self.__dict__['_proof'].bounds}" if "_proof" in self.__dict__ else ""
+        proved = "" if self._proof is None else f", {self._proof.bounds}"
         return f"<{type(self).__name__} of {self.surface.name!r}{proved}>"
 
     @cached_property

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from os import PathLike
 from pathlib import Path
@@ -34,7 +34,7 @@ Solvable: TypeAlias = Union[
 """A scene, a labelled surface or an instance: its file, its shipped name, or the value."""
 
 
-@dataclass(frozen=True)
+@dataclass(unsafe_hash=True)
 class Subject:
     """A scene, a labelled surface or an instance, opened.
 
@@ -49,6 +49,7 @@ class Subject:
     built: BuildResult | None = None
     given_surface: LabelledSurface | None = None
     given_instance: Instance | None = None
+    _decomposed: Decomposition | None = field(default=None, init=False, repr=False, compare=False)
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -67,10 +68,13 @@ class Subject:
         """
         if self.given_instance is not None:
             return self.given_instance
-        if "_decomposed" not in self.__dict__:
-            self.__dict__["_decomposed"] = self.decomposed(self._reference, deadline)
-        made: Decomposition = self.__dict__["_decomposed"]
-        return made.instance
+        return self._made(deadline).instance
+
+    def _made(self, deadline: Deadline = NEVER) -> Decomposition:
+        """The decomposition of the surface, made once."""
+        if self._decomposed is None:
+            self._decomposed = self.decomposed(self._reference, deadline)
+        return self._decomposed
 
     def decomposed(self, reference: str | None, deadline: Deadline = NEVER) -> Decomposition:
         """The decomposition of the surface, made anew; see :meth:`graph`.
@@ -94,9 +98,7 @@ class Subject:
         if self.given_instance is not None and self.given_instance.surface is not None:
             instance = self.given_instance
             return locate(self.surface, instance, self.given_instance.surface.vertex_cell)
-        self.graph()
-        made: Decomposition = self.__dict__["_decomposed"]
-        return made
+        return self._made()
 
     @cached_property
     def reasons(self) -> CandidateTable:

@@ -181,7 +181,7 @@ def test_a_last_joint_that_moves_the_tip_is_compared() -> None:
     tip = built.robot.tip.copy()
     tip[:3, 3] += 0.005 * np.cross(built.robot.axis[-1], tip[:3, 1])
     place = built.prepared.workplace
-    place = replace(place, robot=replace(built.robot, tip=tip))
+    place = replace(place, arm=replace(place.arm, robot=replace(built.robot, tip=tip)))
     beside = replace(built, prepared=replace(built.prepared, workplace=place))
     for arm, apart in ((built, 0.0), (beside, 0.2)):
         assert at(arm, vertex, turned).apart[0] == pytest.approx(apart, abs=1e-9)
