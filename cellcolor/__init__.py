@@ -27,6 +27,7 @@ _ROOMS = {
     "cellcolor.data.trajectory": ("Trajectory",),
     "cellcolor.data.trajectory_verdict": ("Fault", "TrajectoryVerdict"),
     "cellcolor.deadline": ("Deadline", "OutOfTime"),
+    "cellcolor.door.asking": ("tradeoff",),
     "cellcolor.door.covering": ("cover",),
     "cellcolor.door.drawing": ("Drawing",),
     "cellcolor.door.judging": ("check", "judge", "proven_range"),
@@ -45,6 +46,8 @@ _ROOMS = {
     "cellcolor.errors": ("CellcolorError", "ContradictionError", "InputError", "TooLarge"),
     "cellcolor.oracle": ("PathVerdict", "ProvenRange", "Verdict"),
     "cellcolor.painting.paint": ("Painted",),
+    "cellcolor.questions.front": ("Front", "FrontPoint"),
+    "cellcolor.questions.places": ("Box",),
     "cellcolor.tool_paths.cover": ("Covered",),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
@@ -52,6 +55,7 @@ _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 __all__ = [
     "OUTSIDE",
     "Bound",
+    "Box",
     "Cell",
     "CellDivision",
     "CellcolorError",
@@ -64,6 +68,8 @@ __all__ = [
     "Drawing",
     "Edge",
     "Fault",
+    "Front",
+    "FrontPoint",
     "InputError",
     "Instance",
     "JointPlan",
@@ -103,6 +109,7 @@ __all__ = [
     "show",
     "show_versions",
     "solve",
+    "tradeoff",
 ]
 
 

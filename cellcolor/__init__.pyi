@@ -21,6 +21,7 @@ from cellcolor.data.trajectory_verdict import Fault as Fault
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict as TrajectoryVerdict
 from cellcolor.deadline import Deadline as Deadline
 from cellcolor.deadline import OutOfTime as OutOfTime
+from cellcolor.door.asking import tradeoff as tradeoff
 from cellcolor.door.covering import cover as cover
 from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.judging import check as check
@@ -51,5 +52,8 @@ from cellcolor.oracle import PathVerdict as PathVerdict
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
 from cellcolor.painting.paint import Painted as Painted
+from cellcolor.questions.front import Front as Front
+from cellcolor.questions.front import FrontPoint as FrontPoint
+from cellcolor.questions.places import Box as Box
 from cellcolor.tool_paths.cover import Covered as Covered
 from cellcolor.version import __version__ as __version__

@@ -7,7 +7,6 @@ from itertools import combinations
 
 import networkx as nx
 import pytest
-from examples import examples
 from hypothesis import given
 from library import PAPER
 from meshes import drawn, surfaces
@@ -15,6 +14,7 @@ from meshes import drawn, surfaces
 import cellcolor
 from cellcolor import Instance, LabelledSurface
 from cellcolor.data.proof_wording import witness_in_words
+from examples import examples
 
 
 def connected(instance: Instance, one: int, other: int) -> bool:

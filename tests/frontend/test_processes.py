@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,6 +20,7 @@ from cellcolor.frontend import Scene, build_surface, processes, stages
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.reach import validity
+from examples import examples
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="one process only elsewhere")
 

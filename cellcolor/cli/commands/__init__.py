@@ -1,5 +1,6 @@
 """The commands and their options. What they do is imported only when one of them runs."""
 
+from cellcolor.cli.commands.ask import tradeoff
 from cellcolor.cli.commands.bench import bench
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.library import import_, library
@@ -25,4 +26,5 @@ __all__ = [
     "repair",
     "show",
     "solve",
+    "tradeoff",
 ]

@@ -1,0 +1,72 @@
+"""``cellcolor tradeoff``: what fewer lift-offs cover, for a terminal or another program."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from cellcolor.cli.exits import Exit
+from cellcolor.cli.inputs import read_subject
+from cellcolor.cli.progress import stages_of
+from cellcolor.cli.terminal import complain, print_json, say
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.questions.places import read_place, read_weights
+
+
+@dataclass(frozen=True, slots=True)
+class TradeoffRequest:
+    """What the command line asked for.
+
+    Attributes:
+        source: a scene, a labelled surface or an instance.
+        weights: a file with the weights of the vertices.
+        required, left_alone: places, see :func:`~cellcolor.questions.places.read_place`.
+        share: of which the fewest lift-offs are asked, 0 to 1.
+        as_json: a JSON object for each point instead of lines.
+        workers, seed, deadline: of the search.
+    """
+
+    source: Path
+    weights: str | None
+    required: str | None
+    left_alone: str | None
+    share: float | None
+    as_json: bool
+    workers: int | None
+    seed: int
+    deadline: Deadline
+
+
+def ask_tradeoff(request: TradeoffRequest) -> Exit:
+    """Print a front, or the point of it that covers a share."""
+    from cellcolor.door.asking import tradeoff
+
+    required = None if request.required is None else read_place(request.required, "--required")
+    alone = None if request.left_alone is None else read_place(request.left_alone, "--left-alone")
+    weights = None if request.weights is None else read_weights(request.weights)
+    try:
+        subject = read_subject(request.source, request.deadline)
+        with stages_of(request.source, "asking") as report:
+            front = tradeoff(
+                subject,
+                weights=weights,
+                required=required,
+                left_alone=alone,
+                time_limit=request.deadline,
+                workers=request.workers,
+                seed=request.seed,
+                progress=report,
+            )
+    except OutOfTime:
+        complain(f"{request.source}: the time limit came before any division was known")
+        return Exit.STOPPED
+    except InputError as error:
+        raise error if error.file else error.in_file(str(request.source)) from error
+    points = front.points if request.share is None else (front.at_least(request.share),)
+    for point in points:
+        if request.as_json:
+            print_json({"file": str(request.source)} | point.to_document())
+        else:
+            say(point)
+    return Exit.DONE if all(point.proved for point in points) else Exit.STOPPED

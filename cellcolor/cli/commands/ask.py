@@ -1,0 +1,61 @@
+"""The commands that ask what a lift-off costs, and what fewer of them cover."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import click
+
+from cellcolor.cli.commands.group import cellcolor
+from cellcolor.cli.commands.options import INPUT, SEED, TIME_LIMIT
+
+__all__ = ["tradeoff"]
+
+_PLACE = "a box x,y,z,x,y,z (lowest and highest corner, m), or a JSON file with a mask."
+
+
+@cellcolor.command()
+@click.argument("source", metavar="SCENE|SURFACE|INSTANCE", type=INPUT)
+@click.option(
+    "--share",
+    metavar="S",
+    type=click.FloatRange(0, 1),
+    help="Print only the fewest lift-offs that cover this share, 0 to 1.",
+)
+@click.option(
+    "--weights",
+    metavar="FILE.json",
+    help="A JSON file with a number for each vertex, which its area is multiplied by.",
+)
+@click.option("--required", metavar="PLACE", help=f"What has to be covered: {_PLACE}")
+@click.option("--left-alone", metavar="PLACE", help=f"What must not be covered: {_PLACE}")
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object for each point.")
+@click.option("--workers", metavar="N", type=click.IntRange(1, 1000), help="CP-SAT's workers.")
+@SEED
+@TIME_LIMIT
+def tradeoff(
+    source: Path,
+    share: float | None,
+    weights: str | None,
+    required: str | None,
+    left_alone: str | None,
+    as_json: bool,
+    workers: int | None,
+    seed: int,
+    time_limit: float | None,
+) -> int:
+    """Print the largest share of area that each number of lift-offs covers, with proof.
+
+    The share is one of the area that can be covered and is not left alone.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.ask import TradeoffRequest, ask_tradeoff
+    from cellcolor.deadline import Deadline
+
+    deadline = Deadline.after(time_limit, begun)
+    request = TradeoffRequest(
+        source, weights, required, left_alone, share, as_json, workers, seed, deadline
+    )
+    return ask_tradeoff(request)

@@ -1,0 +1,177 @@
+"""``cellcolor.tradeoff``: for each number of lift-offs the largest share that can be covered.
+
+The best k color regions bound what k segments cover (:mod:`cellcolor.questions.most_covered`). If
+the cells that these regions cover, and no others, are solved with k segments, that is the most for
+any division of the surface. Where regions are in each other's way it is not, and a CP-SAT model in
+which cells may be left out settles it for the search space ``paper``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+from dataclasses import replace
+
+from cellcolor.data.instance import Instance
+from cellcolor.data.restricted import without_cells
+from cellcolor.data.solution import Solution
+from cellcolor.deadline import OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.questions.front import Front, FrontPoint
+from cellcolor.questions.most_covered import most_covered
+from cellcolor.solvers import checked
+from cellcolor.solvers.bounds.cover import color_regions
+from cellcolor.solvers.cpsat.model.leaving_out import least_left_out
+from cellcolor.solvers.interface import Options
+
+__all__ = ["front_of"]
+
+_WHOLE = 2**40
+"""What all cells weigh together as integers, for CP-SAT: a share is told to 1e-12."""
+
+
+def front_of(
+    instance: Instance,
+    options: Options,
+    *,
+    weights: Sequence[float] | None = None,
+    required: Collection[int] = (),
+    progress: Callable[[str], None] | None = None,
+) -> Front:
+    """What each number of lift-offs covers at most, up to the fewest that cover everything.
+
+    Args:
+        instance: the topological graph.
+        options: deadline, workers and seed; the search space is ``paper``.
+        weights: of each cell; None for its area, or 1 for each where an area is not known.
+        required: cells that have to be covered.
+        progress: told what is being done.
+
+    Returns:
+        The front. A point that was not proved in time says what is proved.
+
+    Raises:
+        InputError: a weight is negative or no number, or a required cell is none of the instance.
+        OutOfTime: the deadline came before any division of the whole was known.
+    """
+    own = _weights(instance, weights)
+    for cell in required:
+        if not 0 <= cell < len(instance.cells):
+            raise InputError(None, "required", f"there is no cell {cell}")
+    whole, total = _integers(own), sum(own)
+    report = progress or (lambda _: None)
+    report("fewest segments")
+    solution = checked.solve(instance, replace(options, deadline=options.deadline.share(0.5)))
+    if solution.segments is None:
+        if instance.nothing_to_cover:
+            return Front(instance, (), total)
+        raise OutOfTime
+    asked = _Asked(instance, whole, frozenset(required), options, solution)
+    points: list[FrontPoint] = []
+    for segments in range(1, solution.segments):
+        report(f"the most of {segments} segments")
+        try:
+            point = asked.most_of(segments, points[-1] if points else None)
+        except OutOfTime:
+            break
+        if point is not None and (not points or point.covered_share > points[-1].covered_share):
+            points.append(point)
+    everything = FrontPoint(solution.segments, 1.0, 1.0, (), solution)
+    return Front(instance, (*points, everything), total)
+
+
+class _Asked:
+    """A graph, with what its cells weigh."""
+
+    def __init__(
+        self,
+        instance: Instance,
+        weights: Sequence[int],
+        required: frozenset[int],
+        options: Options,
+        whole: Solution,
+    ) -> None:
+        """``whole`` is a solution of all cells."""
+        self._instance, self._weights, self._required = instance, weights, required
+        self._options, self._whole = options, whole
+        self._regions = color_regions(instance)
+
+    def most_of(self, segments: int, fewer: FrontPoint | None) -> FrontPoint | None:
+        """What so many segments cover at most; None if they do not cover what is required.
+
+        Args:
+            segments: how many.
+            fewer: the best of fewer segments, as far as there is one.
+
+        Raises:
+            OutOfTime: the deadline came before anything was known.
+        """
+        deadline = self._options.deadline
+        best = most_covered(self._regions, self._weights, segments, self._required, deadline)
+        if best is None:
+            return None
+        total = sum(self._weights)
+        at_most = best.at_most
+        if self._whole.surface_lower_bound > segments:
+            # Not everything: some cell is left out, and it is left out whole.
+            at_most = min(at_most, total - min(self._weights))
+        found = self._covering(best.cells, segments)
+        holds_for_surface = True
+        if found is None or found[0] < at_most:
+            paper = least_left_out(
+                self._instance, self._weights, segments, self._required, self._options
+            )
+            if paper is not None:
+                cells = frozenset(range(len(self._weights))) - paper[0]
+                other = self._covering(cells, segments)
+                found = max(filter(None, (found, other)), key=lambda one: one[0], default=None)
+                if paper[1] < at_most:
+                    at_most, holds_for_surface = paper[1], False
+        if found is None:
+            if fewer is None:
+                return None
+            return replace(fewer, segments=segments)
+        weight, left_out, solution = found
+        return FrontPoint(
+            segments, weight / total, at_most / total, left_out, solution, holds_for_surface
+        )
+
+    def _covering(
+        self, cells: Collection[int], segments: int
+    ) -> tuple[int, tuple[int, ...], Solution] | None:
+        """A division of some cells with so many segments: weight, what is left out, and itself."""
+        left_out = tuple(sorted(set(range(len(self._weights))) - set(cells)))
+        if not left_out:  # the whole needs more
+            return None
+        rest, _ = without_cells(self._instance, left_out)
+        deadline = self._options.deadline.share(0.5)
+        solution = checked.solve(rest, replace(self._options, deadline=deadline))
+        if solution.segments is None or solution.segments > segments:
+            return None
+        return sum(self._weights[cell] for cell in cells), left_out, solution
+
+
+def _weights(instance: Instance, given: Sequence[float] | None) -> list[float]:
+    """What each cell weighs.
+
+    Raises:
+        InputError: there are too few or too many, or one is negative or no number.
+    """
+    if given is None:
+        areas = [cell.area for cell in instance.cells]
+        known = [area for area in areas if area is not None]
+        return known if len(known) == len(areas) and sum(known) > 0 else [1.0] * len(areas)
+    if len(given) != len(instance.cells):
+        message = f"must be one for each of {len(instance.cells)} cells, are {len(given)}"
+        raise InputError(None, "weights", message)
+    for cell, weight in enumerate(given):
+        if not 0 <= weight < float("inf"):
+            message = f"must be a number from 0 on, is {weight!r}"
+            raise InputError(None, f"weights[{cell}]", message)
+    if given and sum(given) == 0:
+        raise InputError(None, "weights", "are all 0: there is nothing to weigh")
+    return list(given)
+
+
+def _integers(weights: Sequence[float]) -> list[int]:
+    whole = sum(weights)
+    return [round(weight / whole * _WHOLE) for weight in weights]

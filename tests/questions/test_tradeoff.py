@@ -1,0 +1,161 @@
+"""Lift-offs against area: the front, against trying everything."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from commands import json_lines, run
+from exhaustive_fronts import front_by_subsets, front_by_vertices
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from meshes import drawn
+
+import cellcolor
+from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.restricted import without_cells
+from cellcolor.decomposition import decomposition_of
+from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.questions.front import Front
+from cellcolor.questions.tradeoff import front_of
+from cellcolor.solvers.interface import Options
+from examples import examples
+
+SEEDS = st.integers(0, 10**6)
+WEIGHTS = st.lists(st.integers(0, 7), min_size=6, max_size=6)
+RIM = {"size": 4, "colors": 2, "coverage": (0.8, 1.0), "rim": 4}
+WAVES = {"size": 4, "colors": 3, "waves": 0.5}
+
+
+def most(front: Front, segments: int) -> float:
+    """The share that so many segments cover."""
+    return max((p.covered_share for p in front if p.segments <= segments), default=0.0)
+
+
+@examples(15)
+@given(seed=SEEDS, cells=st.integers(1, 6), more=st.integers(0, 4), weights=WEIGHTS)
+def test_the_front_is_the_one_that_trying_every_set_of_cells_finds(
+    seed: int, cells: int, more: int, weights: list[int]
+) -> None:
+    instance = planar_graph(seed, cells, cells + more, 3)
+    own = weights[: len(instance.cells)]
+    assume(sum(own) > 0)
+    front = front_of(instance, Options(), weights=own)
+    for segments, weight in front_by_subsets(instance, own).items():
+        assert most(front, segments) * sum(own) == pytest.approx(weight)
+
+
+@examples(6)
+@given(seed=st.integers(0, 500), rim=st.booleans(), weights=st.integers(0, 10**6))
+def test_no_coloring_of_vertices_covers_more_than_a_point_says(
+    seed: int, rim: bool, weights: int
+) -> None:
+    surface = blobs(seed, **(RIM if rim else WAVES))
+    found = decomposition_of(surface)
+    own = np.random.default_rng(weights).integers(0, 6, len(surface.vertices))
+    cell = np.array(found.vertex_cell)
+    inside = cell != OUTSIDE
+    per_cell = np.bincount(cell[inside], own[inside], len(found.instance.cells))
+    assume(per_cell.sum() > 0)
+    front = front_of(found.instance, Options(), weights=per_cell.tolist())
+    best = front_by_vertices(surface, own.tolist())
+    for point in front:
+        if point.holds_for_surface and point.segments in best:
+            assert best[point.segments] <= point.at_most_share * per_cell.sum() + 1e-6
+
+
+def test_cells_left_out_are_outside() -> None:
+    row = cellcolor.decompose("half_pipe")
+    rest, kept = without_cells(row, [0, 3])
+    assert kept == [c for c in range(len(row.cells)) if c not in (0, 3)]
+    for new, old in enumerate(kept):
+        assert rest.cells[new].loops == row.cells[old].loops
+        assert rest.cells[new].colors == row.cells[old].colors
+        for dart in (dart for loop in rest.cells[new].loops for dart in loop):
+            beyond = row.across(dart)
+            assert rest.across(dart) == (kept.index(beyond) if beyond in kept else OUTSIDE)
+
+
+STRIP = drawn("AAAABBBBBBCC AAAABBBBBBCC", {"A": [0], "B": [1], "C": [2]})
+"""Three colors side by side, of 8, 12 and 4 vertices."""
+
+
+def test_the_largest_parts_come_first() -> None:
+    """By hand: one segment covers B, two cover A and B; areas are those of the vertices."""
+    areas = STRIP.vertex_areas
+    share = {
+        name: sum(areas[v] for v, own in enumerate(STRIP.vertex_colors) if own == (color,))
+        for color, name in enumerate("ABC")
+    }
+    whole = sum(share.values())
+    front = cellcolor.tradeoff(STRIP)
+    assert [point.lift_offs for point in front] == [0, 1, 2]
+    expected = [share["B"] / whole, (share["A"] + share["B"]) / whole, 1.0]
+    assert [point.covered_share for point in front] == pytest.approx(expected)
+    assert front.proved_for_surface
+    assert front.at_least(expected[0]).lift_offs == 0
+    assert front.at_least(expected[0] + 0.01).lift_offs == 1
+    # A lift-off that costs more than C is worth is not made.
+    assert front.cheapest(1.0, 0.5 / (1 - expected[1])).lift_offs == 1
+    assert front.cheapest(1.0, 2.0 / (1 - expected[1])).lift_offs == 2
+
+
+def test_weights_and_places() -> None:
+    urgent = np.array([9.0 if own == (2,) else 1.0 for own in STRIP.vertex_colors])
+    first = cellcolor.tradeoff(STRIP, weights=urgent).points[0]
+    assert STRIP.vertex_colors[0] != (2,) and first.left_out == (0, 1)  # only C is covered
+    right = cellcolor.Box((9.5, -9.0, -9.0), (99.0, 99.0, 9.0))
+    needed = cellcolor.tradeoff(STRIP, required=right)
+    # One segment covers what is required and nothing else; two take B as well.
+    assert [point.left_out for point in needed] == [(0, 1), (0,), ()]
+    without = cellcolor.tradeoff(STRIP, left_alone=right)
+    assert [point.lift_offs for point in without] == [0, 1]
+    mask = [bool(own == (2,)) for own in STRIP.vertex_colors]
+    assert str(cellcolor.tradeoff(STRIP, left_alone=mask)) == str(without)
+
+
+@pytest.mark.parametrize(
+    ("given", "field"),
+    [
+        ({"weights": [1.0]}, "weights"),
+        ({"weights": [-1.0] * 24}, "weights[0]"),
+        ({"weights": [float("nan")] * 24}, "weights[0]"),
+        ({"weights": [0.0] * 24}, "weights"),
+        ({"required": [True] * 23}, "required"),
+        ({"left_alone": [1] * 24}, "left_alone"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(given: dict[str, Any], field: str) -> None:
+    with pytest.raises(cellcolor.InputError) as found:
+        cellcolor.tradeoff(STRIP, **given)
+    assert found.value.field == field
+
+
+def test_an_empty_box_is_refused() -> None:
+    with pytest.raises(cellcolor.InputError, match="empty"):
+        cellcolor.Box((0, 0, 1), (1, 1, 0))
+
+
+def test_the_command_prints_a_row_for_each_point(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file = tmp_path / "strip.surface.json"
+    file.write_text(STRIP.to_json())
+    assert run("tradeoff", file, "--json") == 0
+    rows = json_lines(capsys.readouterr().out)
+    front = cellcolor.tradeoff(STRIP)
+    assert [row["covered_share"] for row in rows] == [p.covered_share for p in front]
+    assert [row["lift_offs"] for row in rows] == [0, 1, 2]
+    assert all(row["proved_for_surface"] is True for row in rows)
+    assert run("tradeoff", file, "--share", "0.5") == 0
+    assert capsys.readouterr().out.startswith("0 lift-offs: 5")
+    mask = tmp_path / "mask.json"
+    mask.write_text('{"mask": [true]}')
+    for wrong, said in (
+        (("--required", mask), "of another mesh"),
+        (("--left-alone", "1,2,3,0,0,0"), "the box is empty"),
+        (("--weights", mask), "mask.json: weights: must be a list"),
+        (("--required", tmp_path / "none.json"), "No such file"),
+    ):
+        assert run("tradeoff", file, *wrong) == 2
+        assert said in capsys.readouterr().err
