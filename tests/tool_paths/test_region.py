@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from examples import examples
 from flat import one_segment, slit, square, whole
 from hypothesis import given
 from hypothesis import strategies as st
 from painted_at_random import SHAPES, painted_at_random
 
-from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
+from cellcolor.mesh.small_triangles import small_areas
+from cellcolor.tool_paths.region import Region, regions_of
+from examples import examples
 
 
 def euler(region: Region) -> int:
@@ -95,7 +96,7 @@ def test_parts_have_the_area_of_their_vertices(seed: int, shape: str) -> None:
         area = sum(region.mesh.areas.sum() for region in own)
         mine = painting.surface.vertex_areas[painting.segment_of == segment].sum()
         assert area == pytest.approx(mine)
-    areas = small_triangle_areas(painting.surface)
+    areas = small_areas(painting.surface.mesh)
     for region in regions:
         assert region.mesh.areas == pytest.approx(areas[region.small])
         assert (region.mesh.faces == region.small // 6).all()

@@ -8,7 +8,7 @@ from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.data.mesh import directed_edges
+from cellcolor.mesh.oriented import directed_edges
 from cellcolor.errors import InputError
 from cellcolor.frontend import sizes
 from cellcolor.frontend.parts.bisect import bisected

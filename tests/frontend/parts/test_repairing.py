@@ -9,7 +9,7 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.data.mesh import directed_edges
+from cellcolor.mesh.oriented import directed_edges
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import flat_faces, merged, repeated_faces, without_flat
 from cellcolor.frontend.parts.crossings import MOST_FACES, crossing_pairs
