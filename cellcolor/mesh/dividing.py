@@ -12,7 +12,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["bisected", "cut", "halved", "new_points", "with_longest_sides"]
+__all__ = ["bisected_corners", "cut", "halved", "new_points", "with_longest_sides"]
 
 _Pieces = dict[tuple[bool, bool, bool], list[tuple[int, int, int]]]
 """By which of the sides ab, bc, ca are cut: the corners of the pieces. 0, 1, 2 are a, b, c, and 3,
@@ -101,7 +101,7 @@ def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
         marked[missing] = True
 
 
-def bisected(mesh: TriangleMesh, marked: Mask) -> Index:
+def bisected_corners(mesh: TriangleMesh, marked: Mask) -> Index:
     """The triangles (p, 3) once marked edges are bisected, in each the longest side first.
 
     Args:

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.parts.surface import Faces, face_normals
-from cellcolor.frontend.parts.topology import edge_table
+from cellcolor.frontend.parts.surface import Faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["flat_faces", "merged", "repeated_corners", "repeated_faces", "used", "without_flat"]
 
@@ -59,7 +59,7 @@ def flat_faces(vertices: Array, faces: Faces) -> Mask:
 
     That is ten times what the four-byte numbers of STL and PLY files make of a face without height.
     """
-    doubled = np.linalg.norm(face_normals(vertices, faces), axis=1)
+    doubled = 2 * TriangleMesh(vertices, faces).areas
     corners = vertices[faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
     return np.asarray(doubled <= _FLAT * longest**2)
@@ -84,8 +84,7 @@ def without_flat(vertices: Array, faces: Faces) -> Faces:
 
 def _parted_beside(vertices: Array, faces: Faces, flat: Mask) -> Faces:
     """One pass over flat faces; a face takes part in one change at most."""
-    table = edge_table(faces)
-    _, sides = table.pairs()
+    _, sides = TriangleMesh(vertices, faces).pairs
     beside = np.full(3 * len(faces), -1, dtype=np.int64)
     beside[sides[:, 0]], beside[sides[:, 1]] = sides[:, 1], sides[:, 0]
     touched = np.zeros(len(faces), dtype=bool)

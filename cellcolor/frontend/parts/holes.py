@@ -10,17 +10,17 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.topology import EdgeTable, edge_table, grouped
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
-__all__ = ["MOST_EDGES", "border_groups", "filling", "loops"]
+__all__ = ["MOST_EDGES", "border_groups", "borders", "filling", "loops"]
 
 MOST_EDGES = 250  # of a hole that is filled; the work grows with the third power
 
 
-def border_groups(table: EdgeTable) -> tuple[Index, Index]:
+def border_groups(mesh: TriangleMesh) -> tuple[Index, Index]:
     """The edges (b,) of one face only, and the group (b,) of each: those that hang together."""
-    border = np.flatnonzero(table.count == 1)
-    ends = table.ends[border]
+    border = np.flatnonzero(mesh.triangles_at == 1)
+    ends = mesh.edges[border]
     _, number = np.unique(ends, return_inverse=True)
     number = number.reshape(-1, 2)
     group = grouped(int(number.max(initial=-1)) + 1, number)
@@ -28,11 +28,15 @@ def border_groups(table: EdgeTable) -> tuple[Index, Index]:
     return border, np.asarray(own, dtype=np.int64)
 
 
-def loops(faces: Faces) -> list[list[int]]:
+def borders(mesh: TriangleMesh) -> int:
+    """How many borders there are: groups of edges of one face that hang together."""
+    return int(border_groups(mesh)[1].max(initial=-1)) + 1
+
+
+def loops(mesh: TriangleMesh) -> list[list[int]]:
     """The border loops of a manifold, each against the winding of its faces, so as to fill it."""
-    table = edge_table(faces)
-    following = np.roll(faces, -1, axis=1)
-    border = table.count[table.of_face] == 1
+    faces, following = mesh.corners, np.roll(mesh.corners, -1, axis=1)
+    border = mesh.triangles_at[mesh.edge_of_side] == 1
     after = dict(zip(following[border].tolist(), faces[border].tolist(), strict=True))
     found = []
     while after:

@@ -10,9 +10,18 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import in_meters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.remesh import refine, repair
-from cellcolor.frontend.parts.surface import Faces, Surface, face_normals
+from cellcolor.frontend.parts.cleaning import (
+    merged,
+    repeated_corners,
+    repeated_faces,
+    used,
+    without_flat,
+)
+from cellcolor.frontend.parts.refining import refine
+from cellcolor.frontend.parts.surface import Faces, Surface
+from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
 from cellcolor.frontend.sizes import check_vertices
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["mesh_surface", "summed_normals"]
 
@@ -36,7 +45,10 @@ def mesh_surface(
         faces: (m, 3) vertex indices, counter-clockwise as seen from outside.
         meters_per_unit: of the coordinates.
         max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
-        mend: see :func:`~cellcolor.frontend.parts.remesh.repair`.
+        mend: merge vertices in one place, drop useless faces and vertices, make the winding
+            consistent. A closed mesh is turned outside out. Of an open one the side that most
+            faces have is kept; which side is the outside nobody but its owner knows. What is
+            still wrong afterwards (edges that are not manifold, holes) stays.
         deadline: when to give up.
 
     Raises:
@@ -55,7 +67,7 @@ def mesh_surface(
     if mend and len(faces) and np.isfinite(vertices).all():
         # Sizes first: a triangle that is far too long for a unit looks like one without area.
         _check_size(vertices[np.unique(faces)], meters_per_unit)
-        vertices, faces = repair(vertices, faces)
+        vertices, faces = _repaired(vertices, faces)
     if not len(faces):
         raise InputError(None, "faces", "there are none")
     _check_size(vertices, meters_per_unit)
@@ -71,10 +83,11 @@ def mesh_surface(
     if max_edge_m is not None:
         size = in_meters((np.ptp(vertices, axis=0) * meters_per_unit).tolist(), " x ")
         try:
-            vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit, deadline)
+            finer = refine(TriangleMesh(vertices, faces), max_edge_m / meters_per_unit, deadline)
         except InputError as error:
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
+        vertices, faces = finer.points, finer.corners
     deadline.check()
     normals = summed_normals(vertices, faces)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
@@ -83,6 +96,15 @@ def mesh_surface(
         raise InputError(None, f"vertices[{vertex}]", "has no normal: its faces cancel out")
     normals /= size
     return Surface(vertices * meters_per_unit, faces, normals, faceted=True)
+
+
+def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+    vertices, faces = merged(vertices, faces)
+    faces = faces[~repeated_corners(faces)]
+    faces = faces[~repeated_faces(faces)]
+    vertices, faces = used(vertices, without_flat(vertices, faces))
+    faces = turned(faces, against_the_others(TriangleMesh(vertices, faces))[0])
+    return vertices, turned(faces, inside_out(TriangleMesh(vertices, faces)))
 
 
 def _check_size(vertices: Array, meters_per_unit: float) -> None:
@@ -111,7 +133,7 @@ def _check_elements(vertices: Array, faces: Faces) -> None:
         vertex = int(np.argmax(twin))
         other = int(first[index.reshape(-1)[vertex]])
         raise InputError(None, f"vertices[{vertex}]", f"in one place with vertex {other}")
-    double_area = np.linalg.norm(face_normals(vertices, faces), axis=1)
+    double_area = 2 * TriangleMesh(vertices, faces).areas
     longest = np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2).max(1)
     flat = double_area <= 1e-9 * longest**2
     if flat.any():
@@ -124,8 +146,7 @@ def summed_normals(vertices: Array, faces: Faces) -> Array:
     trimesh's own vertex normals have length 1 already, and so do not tell faces that cancel out.
     """
     angles = trimesh.triangles.angles(vertices[faces])
-    unit = face_normals(vertices, faces)
-    unit /= np.linalg.norm(unit, axis=1, keepdims=True)
+    unit = TriangleMesh(vertices, faces).triangle_normals
     normals = np.zeros_like(vertices)
     np.add.at(normals, faces, angles[:, :, None] * unit[:, None])
     return normals

@@ -4,23 +4,23 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Index, Mask
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.topology import EdgeTable, edge_table, grouped, parts_of
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
 __all__ = ["against_the_others", "inside_out", "turned"]
 
 
-def against_the_others(faces: Faces, table: EdgeTable) -> tuple[Mask, Mask]:
+def against_the_others(mesh: TriangleMesh) -> tuple[Mask, Mask]:
     """The faces (m,) to be turned so that all neighbors wind alike, and those of one-sided parts.
 
     Neighbors are two faces with an edge that no other has. Of each part the fewer are turned. A
     part is one-sided, as a Moebius strip is, if no turning makes its neighbors wind alike.
     """
-    count = len(faces)
-    _, sides = table.pairs()
+    count, ascending = len(mesh.corners), mesh.ascending.ravel()
+    _, sides = mesh.pairs
     first, second = sides[:, 0] // 3, sides[:, 1] // 3
-    alike = table.forward.ravel()[sides[:, 0]] != table.forward.ravel()[sides[:, 1]]
+    alike = ascending[sides[:, 0]] != ascending[sides[:, 1]]
     # Every face is there twice, as it is (f) and turned (count + f); linked is what goes together.
     other = np.where(alike, second, second + count)
     mirrored = np.where(alike, second + count, second)
@@ -37,15 +37,15 @@ def against_the_others(faces: Faces, table: EdgeTable) -> tuple[Mask, Mask]:
     return turn & ~one_sided, one_sided
 
 
-def inside_out(vertices: Array, faces: Faces, table: EdgeTable | None = None) -> Mask:
+def inside_out(mesh: TriangleMesh) -> Mask:
     """The faces (m,) of closed parts with a negative volume; neighbors wind alike."""
-    if not len(faces):
+    if not len(mesh.corners):
         return np.zeros(0, dtype=bool)
-    table = edge_table(faces) if table is None else table
-    part = parts_of(faces, table)
+    part = mesh.parts()
     open_ = np.zeros(int(part.max(initial=-1)) + 1, dtype=bool)
-    open_[part[(table.count[table.of_face] != 2).any(axis=1)]] = True
-    a, b, c = (vertices[faces[:, k]] - vertices.mean(axis=0) for k in range(3))
+    open_[part[(mesh.triangles_at[mesh.edge_of_side] != 2).any(axis=1)]] = True
+    points = mesh.points - mesh.points.mean(axis=0)
+    a, b, c = (points[mesh.corners[:, k]] for k in range(3))
     volume = np.bincount(part, np.einsum("ij,ij->i", a, np.cross(b, c)), minlength=len(open_))
     return np.asarray(((volume < 0) & ~open_)[part])
 
