@@ -51,10 +51,6 @@ def small_areas(mesh: TriangleMesh) -> Array:
 
 def small_triangle_at(mesh: TriangleMesh, triangle: int, point: Array) -> int:
     """The number of the small triangle of a triangle that a point (3,) on it lies in."""
-    a, b, c = mesh.points[mesh.corners[triangle]]
-    first, second, off = b - a, c - a, point - a
-    gram = np.array([[first @ first, first @ second], [first @ second, second @ second]])
-    at_b, at_c = np.linalg.solve(gram, [first @ off, second @ off])
-    shares = [1.0 - at_b - at_c, at_b, at_c]
+    (shares,) = mesh.shares(np.array([triangle]), point[None])
     corner = int(np.argmax(shares))
     return 6 * triangle + 2 * corner + int(shares[corner - 1] > shares[(corner + 1) % 3])

@@ -148,12 +148,37 @@ class TriangleMesh:
         lengths = np.linalg.norm(sums, axis=1, keepdims=True)
         return _fixed(np.where(lengths > 0, sums / np.where(lengths > 0, lengths, 1.0), [0, 0, 1]))
 
+    def shares(self, triangles: Index, points: Array) -> Array:
+        """The barycentric coordinates (p, 3) of points (p, 3), each on a triangle (p,)."""
+        a, b, c = (self.points[self.corners[triangles, corner]] for corner in range(3))
+        inverse = np.linalg.pinv(np.stack([b - a, c - a], axis=2))
+        shares = np.einsum("kij,kj->ki", inverse, points - a)
+        return np.column_stack([1 - shares.sum(axis=1), shares])
+
     @cached_property
     def border(self) -> Mask:
         """(n,) whether a point is on an edge of one triangle only."""
         on_border = np.zeros(len(self.points), dtype=bool)
         on_border[self.edges[self.triangles_at == 1]] = True
         return _fixed(on_border)
+
+    def border_loops(self) -> list[list[int]]:
+        """The borders of a manifold, by their smallest points.
+
+        Each goes against the winding of its triangles, as one beyond the border would be wound.
+        """
+        following = self.corners[:, [1, 2, 0]]
+        alone = self.triangles_at[self.edge_of_side] == 1
+        after = dict(zip(following[alone].tolist(), self.corners[alone].tolist(), strict=True))
+        found = []
+        while after:
+            first, point = after.popitem()
+            loop = [first]
+            while point != first:
+                loop.append(point)
+                point = after.pop(point)
+            found.append(loop)
+        return sorted(found, key=min)
 
     @property
     def euler(self) -> int:

@@ -79,7 +79,7 @@ def laid_out(
         covered = lay(np.array(sorted(reasons), dtype=np.int64))
         courses, failing = [], {}
         for path in covered.paths.paths:
-            samples = with_normals_of(sampled(path), surface.vertices, surface.faces, normals)
+            samples = with_normals_of(sampled(path), surface.mesh, normals)
             course = Course(path, samples, follow(prepared, samples, branch, deadline))
             courses.append(course)
             for at, why in _failures(course.followed, prepared.judge.reason_names):

@@ -13,7 +13,6 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
@@ -41,22 +40,6 @@ class Region:
     color: int
     mesh: Triangles
     small: Index
-
-    @cached_property
-    def border_loops(self) -> tuple[Index, ...]:
-        """Vertices of each border, in order, the region on the left; none if it is closed."""
-        sides = self.mesh.corners[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2)
-        known = {(a, b) for a, b in sides.tolist()}
-        after = {a: b for a, b in known if (b, a) not in known}
-        loops = []
-        while after:
-            start, vertex = after.popitem()
-            loop = [start]
-            while vertex != start:
-                loop.append(vertex)
-                vertex = after.pop(vertex)
-            loops.append(np.array(loop, dtype=np.int64))
-        return tuple(loops)
 
 
 def regions_of(

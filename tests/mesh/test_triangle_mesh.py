@@ -133,6 +133,37 @@ def test_closed_meshes_as_trimesh_has_them(seed: int, degrees: float, turned: fl
     assert {tuple(ends) for ends in sharp.tolist()} == {tuple(ends) for ends in apart.tolist()}
 
 
+@given(SEEDS, st.integers(0, 5))
+def test_borders_go_round_the_holes_that_were_made(seed: int, most: int) -> None:
+    """The triangles around some points are left out; none of these holes touch."""
+    ball = bumpy_ball(seed)
+    graph = nx.Graph(ball.edges.tolist())
+    expected: list[set[int]] = []
+    left_out: set[int] = set()
+    for point in np.random.default_rng(seed).permutation(len(ball.points)).tolist()[:most]:
+        if left_out.isdisjoint(nx.ego_graph(graph, point, 2)):
+            left_out |= set(nx.ego_graph(graph, point, 1))
+            expected.append(set(graph[point]))
+    centers = {p for p in left_out if not any(p in ring for ring in expected)}
+    kept = [corners for corners in ball.corners.tolist() if centers.isdisjoint(corners)]
+    loops = TriangleMesh(ball.points, np.array(kept)).border_loops()
+    assert [set(loop) for loop in loops] == sorted(expected, key=min)
+    wound = {(i, j) for a, b, c in kept for i, j in ((a, b), (b, c), (c, a))}
+    for loop in loops:
+        assert len(loop) == len(set(loop))
+        for i, j in zip(loop, loop[1:] + loop[:1], strict=True):
+            assert (j, i) in wound and (i, j) not in wound
+
+
+@given(SEEDS, st.integers(1, 5))
+def test_shares_are_those_that_a_point_was_made_with(seed: int, count: int) -> None:
+    mesh, rng = bumpy_ball(seed), np.random.default_rng(seed)
+    shares = rng.dirichlet([1.0, 1.0, 1.0], count)
+    triangles = rng.integers(len(mesh.corners), size=count)
+    points = (shares[:, :, None] * mesh.points[mesh.corners[triangles]]).sum(axis=1)
+    assert np.allclose(mesh.shares(triangles, points), shares)
+
+
 def test_what_is_computed_cannot_be_changed() -> None:
     """It is kept: whoever changed it would change it for all."""
     mesh = bumpy_ball(0)

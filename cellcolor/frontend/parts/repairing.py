@@ -19,7 +19,7 @@ from cellcolor.frontend.parts.cleaning import (
     used,
     without_flat,
 )
-from cellcolor.frontend.parts.holes import MOST_EDGES, filling, loops
+from cellcolor.frontend.parts.holes import MOST_EDGES, filling
 from cellcolor.frontend.parts.mesh import summed_normals
 from cellcolor.frontend.parts.splitting import split
 from cellcolor.frontend.parts.surface import Faces
@@ -235,7 +235,7 @@ def _filled(
     edges = {(i, j) for i, j in mesh.edges.tolist()}
     added: list[Faces] = []
     left = 0
-    for loop in loops(mesh):
+    for loop in mesh.border_loops():
         deadline.check()
         points = vertices[loop]
         length = float(np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1).sum())

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import flat_faces, merged, repeated_faces, without_flat
 from cellcolor.frontend.parts.crossings import MOST_FACES, crossing_pairs
-from cellcolor.frontend.parts.holes import filling, loops
+from cellcolor.frontend.parts.holes import filling
 from cellcolor.frontend.parts.inspection import facts_of
 from cellcolor.frontend.parts.repairing import Mending, mended
 from cellcolor.frontend.parts.shapes import disc_mesh
@@ -167,7 +167,7 @@ def test_a_hole_is_filled_with_least_area(seed: int, count: int) -> None:
     x, y = points[:, 0], points[:, 1]
     shoelace = 0.5 * abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))
     assert mesh.area == pytest.approx(shoelace)
-    (loop,) = loops(TriangleMesh(points, faces))
+    (loop,) = TriangleMesh(points, faces).border_loops()
     assert loop != list(range(count)) and set(loop) == set(range(count))
 
 
