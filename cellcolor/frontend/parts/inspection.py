@@ -11,17 +11,19 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
     flat_faces,
+    inside_out,
     merged,
     repeated_corners,
     repeated_faces,
+    turned,
 )
 from cellcolor.frontend.parts.crossings import crossing_pairs
 from cellcolor.frontend.parts.holes import border_groups
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.splitting import fans
 from cellcolor.frontend.parts.surface import SHARP, Faces
-from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Component", "FaultyPlaces", "Hole", "MeshFacts", "facts_of"]

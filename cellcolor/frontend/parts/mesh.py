@@ -11,15 +11,17 @@ from cellcolor.data.wording import in_meters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
+    inside_out,
     merged,
     repeated_corners,
     repeated_faces,
+    turned,
     used,
     without_flat,
 )
 from cellcolor.frontend.parts.refining import refine
 from cellcolor.frontend.parts.surface import Faces, Surface
-from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
 from cellcolor.frontend.sizes import check_vertices
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -73,29 +75,29 @@ def mesh_surface(
     _check_size(vertices, meters_per_unit)
     check_vertices(len(vertices))
     # The labelled surface's own rules, held here before any work is done.
-    bare = LabelledSurface("part", (), vertices, faces, ((),) * len(vertices))
+    LabelledSurface("part", (), vertices, faces, ((),) * len(vertices))
     deadline.check()
-    _check_elements(vertices, faces)
-    if all((j, i) in bare.left_of for i, j in bare.left_of):  # closed
+    mesh = TriangleMesh(vertices, faces)
+    _check_elements(mesh)
+    if not mesh.border.any():  # closed
         corners = vertices[faces]
         if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
             raise InputError(None, "faces", "closed mesh inside out: its volume is negative")
     if max_edge_m is not None:
         size = in_meters((np.ptp(vertices, axis=0) * meters_per_unit).tolist(), " x ")
         try:
-            finer = refine(TriangleMesh(vertices, faces), max_edge_m / meters_per_unit, deadline)
+            mesh = refine(mesh, max_edge_m / meters_per_unit, deadline)
         except InputError as error:
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
-        vertices, faces = finer.points, finer.corners
     deadline.check()
-    normals = summed_normals(vertices, faces)
+    normals = summed_normals(mesh)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
         vertex = np.argmin(size)
         raise InputError(None, f"vertices[{vertex}]", "has no normal: its faces cancel out")
     normals /= size
-    return Surface(vertices * meters_per_unit, faces, normals, faceted=True)
+    return Surface(mesh.points * meters_per_unit, mesh.corners, normals, faceted=True)
 
 
 def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
@@ -122,31 +124,30 @@ def _check_size(vertices: Array, meters_per_unit: float) -> None:
         raise InputError(None, "vertices", message)
 
 
-def _check_elements(vertices: Array, faces: Faces) -> None:
-    used = np.zeros(len(vertices), dtype=bool)
-    used[faces] = True
-    if not used.all():
-        raise InputError(None, f"vertices[{np.argmin(used)}]", "belongs to no face")
+def _check_elements(mesh: TriangleMesh) -> None:
+    vertices = mesh.points
+    there = np.zeros(len(vertices), dtype=bool)
+    there[mesh.corners] = True
+    if not there.all():
+        raise InputError(None, f"vertices[{np.argmin(there)}]", "belongs to no face")
     _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
     twin = first[index.reshape(-1)] != np.arange(len(vertices))
     if twin.any():
         vertex = int(np.argmax(twin))
         other = int(first[index.reshape(-1)[vertex]])
         raise InputError(None, f"vertices[{vertex}]", f"in one place with vertex {other}")
-    double_area = 2 * TriangleMesh(vertices, faces).areas
-    longest = np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2).max(1)
-    flat = double_area <= 1e-9 * longest**2
+    longest = mesh.lengths[mesh.edge_of_side].max(axis=1)
+    flat = 2 * mesh.areas <= 1e-9 * longest**2
     if flat.any():
         raise InputError(None, f"faces[{np.argmax(flat)}]", "has no area")
 
 
-def summed_normals(vertices: Array, faces: Faces) -> Array:
+def summed_normals(mesh: TriangleMesh) -> Array:
     """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
 
     trimesh's own vertex normals have length 1 already, and so do not tell faces that cancel out.
     """
-    angles = trimesh.triangles.angles(vertices[faces])
-    unit = TriangleMesh(vertices, faces).triangle_normals
-    normals = np.zeros_like(vertices)
-    np.add.at(normals, faces, angles[:, :, None] * unit[:, None])
+    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
+    normals = np.zeros_like(mesh.points)
+    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
     return normals

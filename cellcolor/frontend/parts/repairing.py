@@ -12,10 +12,13 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
     flat_faces,
+    inside_out,
     merged,
     repeated_corners,
     repeated_faces,
+    turned,
     used,
     without_flat,
 )
@@ -23,7 +26,6 @@ from cellcolor.frontend.parts.holes import MOST_EDGES, filling
 from cellcolor.frontend.parts.mesh import summed_normals
 from cellcolor.frontend.parts.splitting import split
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["LEAST_SHARE", "Change", "Mending", "Telling", "area_of", "mended"]
@@ -263,6 +265,6 @@ def _filled(
 
 def _without_folds(vertices: Array, faces: Faces, added: list[Faces]) -> list[Faces]:
     """Fillings of holes but those that fold back onto the faces around, as in a slit."""
-    normals = summed_normals(vertices, np.concatenate([faces, *added]))
+    normals = summed_normals(TriangleMesh(vertices, np.concatenate([faces, *added])))
     folded = np.linalg.norm(normals, axis=1) < _UPRIGHT
     return [new for new in added if not folded[new].any()]

@@ -10,14 +10,21 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.cleaning import flat_faces, merged, repeated_faces, without_flat
+from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
+    flat_faces,
+    inside_out,
+    merged,
+    repeated_faces,
+    turned,
+    without_flat,
+)
 from cellcolor.frontend.parts.crossings import MOST_FACES, crossing_pairs
 from cellcolor.frontend.parts.holes import filling
 from cellcolor.frontend.parts.inspection import facts_of
 from cellcolor.frontend.parts.repairing import Mending, mended
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.splitting import split
-from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
