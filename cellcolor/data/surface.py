@@ -13,12 +13,13 @@ from pydantic import ConfigDict, TypeAdapter
 
 from cellcolor.data.cells_and_edges import check_color_names
 from cellcolor.data.comparing import same_members
-from cellcolor.data.mesh import directed_edges
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, plain, settle, validate_python
+from cellcolor.mesh.oriented import directed_edges
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 if TYPE_CHECKING:
     import cellcolor
@@ -189,34 +190,27 @@ class LabelledSurface:
     def left_of(self) -> dict[tuple[int, int], int]:
         """``{(i, j): k}`` for every triangle (i, j, k).
 
-        See :func:`~cellcolor.data.mesh.directed_edges`.
+        See :func:`~cellcolor.mesh.oriented.directed_edges`.
         """
         return directed_edges(self.faces, len(self.vertices))
 
     @cached_property
+    def mesh(self) -> TriangleMesh:
+        """The mesh alone, with what follows from it."""
+        return TriangleMesh(self.vertices, self.faces)
+
+    @property
     def vertex_areas(self) -> NDArray[np.float64]:
         """Square metres (n,) that each vertex owns: a third of each of its triangles."""
-        corners = self.vertices[self.faces]
-        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        thirds = np.repeat(np.linalg.norm(doubled, axis=1) / 6.0, 3)
-        areas = np.bincount(self.faces.ravel(), thirds, len(self.vertices)).astype(np.float64)
-        areas.setflags(write=False)
-        return areas
+        return self.mesh.vertex_areas
 
-    @cached_property
+    @property
     def vertex_normals(self) -> NDArray[np.float64]:
         """Outward unit normals (n, 3) of the mesh: of the triangles around, weighed by area.
 
         A vertex without triangles, or with triangles that cancel out, has (0, 0, 1).
         """
-        corners = self.vertices[self.faces]
-        doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals = np.zeros_like(self.vertices)
-        np.add.at(normals, self.faces, doubled[:, None, :])
-        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-        normals = np.where(lengths > 0, normals / np.where(lengths > 0, lengths, 1.0), [0, 0, 1])
-        normals.setflags(write=False)
-        return normals
+        return self.mesh.vertex_normals
 
     @cached_property
     def crack_colors(self) -> dict[tuple[int, int], frozenset[int]]:

@@ -12,7 +12,8 @@ import numpy as np
 import trimesh
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.parts.surface import Faces, Surface, every_edge, face_normals
+from cellcolor.frontend.parts.surface import Faces, Surface
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Survey", "survey"]
 
@@ -58,28 +59,25 @@ class Survey:
 
 def survey(surface: Surface, viewpoints: Array) -> Survey:
     """Measure the placed surface, seen from some points (v, 3) in the world, m."""
-    vertices, faces = surface.vertices, surface.faces
+    vertices, faces, mesh = surface.vertices, surface.faces, surface.mesh
     nearest = trimesh.triangles.closest_point(vertices[faces], np.zeros((len(faces), 3)))
     return Survey(
         tuple((vertices.max(axis=0) - vertices.min(axis=0)).tolist()),
         float(np.linalg.norm(nearest, axis=1).min()),
-        _from_behind(vertices, faces, viewpoints) if _is_open(faces) else 0.0,
+        _from_behind(mesh, viewpoints) if mesh.border.any() else 0.0,
     )
 
 
-def _is_open(faces: Faces) -> bool:
-    return 3 * len(faces) < 2 * len(every_edge(faces))
-
-
-def _from_behind(vertices: Array, faces: Faces, viewpoints: Array) -> float:
+def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
     """Of the points that are seen from anywhere, the share whose front is not seen."""
-    points, face = _spread(vertices, faces)
+    vertices, faces = mesh.points, mesh.corners
+    points, face = _spread(mesh)
     model = fcl.BVHModel()
     model.beginModel(len(faces), len(vertices))
     model.addSubModel(vertices, faces)
     model.endModel()
     shape = fcl.CollisionObject(model, fcl.Transform())
-    normals = face_normals(vertices, faces)[face]
+    normals = mesh.area_vectors[face]
     seen, front = np.zeros((2, len(points)), dtype=bool)
     for eye in viewpoints:
         visible = np.array([_visible(shape, eye, point) for point in points])
@@ -88,12 +86,11 @@ def _from_behind(vertices: Array, faces: Faces, viewpoints: Array) -> float:
     return float((seen & ~front).sum() / max(seen.sum(), 1))
 
 
-def _spread(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+def _spread(mesh: TriangleMesh) -> tuple[Array, Faces]:
     """Points (k, 3) all over the surface, each for as much area, and the face (k,) of each."""
-    corners = vertices[faces]
-    areas = np.linalg.norm(face_normals(vertices, faces), axis=1)
+    corners, areas = mesh.points[mesh.corners], mesh.areas
     wanted = (np.arange(_POINTS) + 0.5) / _POINTS * areas.sum()
-    face = np.minimum(np.searchsorted(np.cumsum(areas), wanted), len(faces) - 1)
+    face = np.minimum(np.searchsorted(np.cumsum(areas), wanted), len(areas) - 1)
     u, v = np.random.default_rng(0).random((2, _POINTS))
     u, v = np.where(u + v > 1, 1 - u, u), np.where(u + v > 1, 1 - v, v)
     weights = np.stack([1 - u - v, u, v], axis=1)

@@ -73,10 +73,8 @@ def raster(
 
 def _across(surface: LabelledSurface, angle: float) -> Array:
     """The unit vector (3,) on which planes stand."""
-    corners = surface.vertices[surface.faces]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    sight = doubled.sum(axis=0)
-    if np.linalg.norm(sight) < _CLOSED * np.linalg.norm(doubled, axis=1).sum():
+    sight = surface.mesh.area_vectors.sum(axis=0)
+    if np.linalg.norm(sight) < _CLOSED * 2 * surface.mesh.areas.sum():
         sight = np.array([0.0, 0.0, 1.0])
     # The two other right singular vectors of the line of sight are a basis of the plane.
     plane = np.linalg.svd(sight[None])[2][1:]

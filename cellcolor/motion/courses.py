@@ -13,9 +13,10 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.mesh.small_triangles import small_triangle_at
 from cellcolor.motion.following import Followed, follow
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
-from cellcolor.motion.small_triangles import JUMP, small_triangle_at
+from cellcolor.motion.small_triangles import JUMP
 from cellcolor.tool_paths.cover import Covered
 
 __all__ = ["Course", "Courses", "laid_out"]
@@ -78,12 +79,12 @@ def laid_out(
         covered = lay(np.array(sorted(reasons), dtype=np.int64))
         courses, failing = [], {}
         for path in covered.paths.paths:
-            samples = with_normals_of(sampled(path), surface.vertices, surface.faces, normals)
+            samples = with_normals_of(sampled(path), surface.mesh, normals)
             course = Course(path, samples, follow(prepared, samples, branch, deadline))
             courses.append(course)
             for at, why in _failures(course.followed, prepared.judge.reason_names):
                 face, point = int(samples.faces[at]), samples.points[at]
-                failing[small_triangle_at(surface, face, point)] = why
+                failing[small_triangle_at(surface.mesh, face, point)] = why
         if failing.keys() <= reasons.keys():
             break
         reasons = failing | reasons

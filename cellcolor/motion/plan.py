@@ -26,7 +26,6 @@ from cellcolor.motion.small_triangles import (
     SmallTriangles,
     corner_states,
     left_out_parts,
-    small_triangles,
 )
 from cellcolor.motion.transfers import Transfers
 from cellcolor.painting.paint import Painted
@@ -105,7 +104,7 @@ def plan_motion(
     check_spacing(surface, segment_of, motion.spacing_m)
     branch_of = built.stages.cleaned.coloring.branch
     with clock.timed("corners of small triangles"):
-        small = small_triangles(surface.vertices, surface.faces, normals, segment_of)
+        small = SmallTriangles.of(surface.mesh, normals, segment_of)
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
         states = corner_states(prepared, small, own_branch, deadline)
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.tool_paths import ToolPath
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["DISTANCE", "TURN", "Samples", "angles_between", "sampled", "with_normals_of"]
 
@@ -45,7 +46,7 @@ def angles_between(first: Array, second: Array) -> Array:
     return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
 
 
-def with_normals_of(samples: Samples, vertices: Array, faces: Index, normals: Array) -> Samples:
+def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Samples:
     """The same points with the normals that a surface has there.
 
     Those of a path are interpolated from point to point. Where a normal turns quickly, as beside a
@@ -53,17 +54,11 @@ def with_normals_of(samples: Samples, vertices: Array, faces: Index, normals: Ar
 
     Args:
         samples: of a path on the surface.
-        vertices: (n, 3) m.
-        faces: (m, 3).
-        normals: (n, 3) outward unit normals at the vertices.
+        mesh: the surface's.
+        normals: (n, 3) outward unit normals at its vertices.
     """
-    corners = faces[samples.faces]
-    origin, one, other = (vertices[corners[:, k]] for k in range(3))
-    along = np.stack([one - origin, other - origin], axis=2)  # (k, 3, 2)
-    inverse = np.linalg.pinv(along)
-    weights = np.einsum("kij,kj->ki", inverse, samples.points - origin)
-    weights = np.column_stack([1 - weights.sum(axis=1), weights])
-    turned = np.einsum("ki,kij->kj", weights, normals[corners])
+    shares = mesh.shares(samples.faces, samples.points)
+    turned = np.einsum("ki,kij->kj", shares, normals[mesh.corners[samples.faces]])
     turned /= np.linalg.norm(turned, axis=1, keepdims=True)
     return Samples(samples.points, turned, samples.faces)
 

@@ -15,7 +15,7 @@ from cellcolor.motion.courses import Course, Courses, laid_out
 from cellcolor.motion.following import joint_limits, whole_turns
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
-from cellcolor.motion.windings import Walls, closed_edges, parts_of, walls_of
+from cellcolor.motion.windings import Walls, parts_of, walls_of
 from cellcolor.tool_paths.cover import Covered
 
 __all__ = ["Ground", "SegmentStrokes", "strokes_of"]
@@ -96,10 +96,11 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
     limits = joint_limits(prepared)
     if all(whole_turns(stroke.joints, *limits) is not None for stroke in strokes):
         return SegmentStrokes(courses, strokes, None)
-    cracks = [(crack.i, crack.j) for crack in ground.surface.cracks if color in crack.colors]
+    cracks = [crack for crack in ground.surface.cracks if color in crack.colors]
+    closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
     left_out = np.array(sorted(courses.reasons), dtype=np.int64)
-    parts = parts_of(small, ground.states, segment, left_out, closed_edges(small, cracks))
-    walls = walls_of(parts, small.edges, limits, ground.deadline)
+    parts = parts_of(small, ground.states, segment, left_out, closed)
+    walls = walls_of(parts, small.whole, limits, ground.deadline)
     parted = len(strokes)
     courses = courses_with(walls.edges, courses.reasons)
     name = prepared.robot.joint_names[walls.joint]

@@ -1,8 +1,6 @@
 """The small triangles of a painted mesh, and what the arm can do at their corners.
 
-A triangle of the mesh falls into six: between each of its corners, the middles of its sides and
-its centroid. Numbers 6 f + 2 k and 6 f + 2 k + 1 are those at the corner k of the triangle f, and
-belong to the segment that this corner is in (``docs/motion.md``).
+A small triangle (``cellcolor.mesh.small_triangles``) belongs to the segment of its first corner.
 """
 
 from __future__ import annotations
@@ -14,10 +12,11 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import LeftOut
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.mesh.small_triangles import small_areas, small_triangles, unit_everywhere
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import CIRCLE
 from cellcolor.union_find import UnionFind
 
@@ -27,8 +26,6 @@ __all__ = [
     "SmallTriangles",
     "corner_states",
     "left_out_parts",
-    "small_triangle_at",
-    "small_triangles",
 ]
 
 JUMP = "discontinuity"
@@ -37,25 +34,39 @@ JUMP = "discontinuity"
 
 @dataclass(frozen=True)
 class SmallTriangles:
-    """The small triangles of a mesh of n vertices, k edges and m triangles.
+    """The small triangles of a painted mesh of k edges and m triangles.
 
     Attributes:
-        points: (n + k + m, 3) vertices, middles of edges, centroids, m.
-        normals: (n + k + m, 3) outward unit normals there.
-        edges: (k, 2) vertices, the smaller one first, in lexicographic order.
+        whole: the painted mesh.
+        points: (p, 3) vertices, middles of edges, centroids, m.
+        normals: (p, 3) outward unit normals there.
         corners: (6 m, 3) which points each small triangle has; the mesh's vertex first.
         side: (6 m,) the edge of the mesh that it touches.
         segment: (6 m,) -1 where the vertex has no color.
         areas: (6 m,) m^2.
     """
 
+    whole: TriangleMesh
     points: Array
     normals: Array
-    edges: Index
     corners: Index
     side: Index
     segment: Index
     areas: Array
+
+    @classmethod
+    def of(cls, whole: TriangleMesh, normals: Array, segment_of: Index) -> SmallTriangles:
+        """Those of a mesh with outward unit normals (n, 3) and the segment (n,) of each vertex."""
+        fine, side = small_triangles(whole)
+        return cls(
+            whole,
+            fine.points,
+            unit_everywhere(whole, normals),
+            fine.corners,
+            side,
+            segment_of[fine.corners[:, 0]],
+            small_areas(whole),
+        )
 
 
 @dataclass(frozen=True)
@@ -78,48 +89,6 @@ class CornerStates:
         found = {int(at): JUMP for at in np.flatnonzero(self.wound)}
         failed = np.flatnonzero(self.reasons != VALID)
         return found | {int(at): names[self.reasons[at]] for at in failed}
-
-
-def small_triangles(
-    vertices: Array, faces: Index, normals: Array, segment_of: Index
-) -> SmallTriangles:
-    """Cut every triangle into six.
-
-    Args:
-        vertices: (n, 3) m.
-        faces: (m, 3).
-        normals: (n, 3) outward unit normals.
-        segment_of: (n,) the segment of each vertex, -1 without color.
-    """
-    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2)  # (m, 3, 2), k to k + 1
-    edges, side = np.unique(np.sort(sides.reshape(-1, 2), axis=1), axis=0, return_inverse=True)
-    side = side.reshape(-1, 3)
-    count, middles = len(vertices), len(edges)
-    centroids = count + middles + np.arange(len(faces))
-    corners = np.empty((len(faces), 3, 2, 3), dtype=np.int64)
-    touched = np.empty((len(faces), 3, 2), dtype=np.int64)
-    for k in range(3):
-        before = side[:, k - 1]
-        corners[:, k, 0] = np.column_stack([faces[:, k], count + side[:, k], centroids])
-        corners[:, k, 1] = np.column_stack([faces[:, k], centroids, count + before])
-        touched[:, k] = np.column_stack([side[:, k], before])
-
-    def everywhere(values: Array) -> Array:
-        return np.concatenate([values, values[edges].mean(axis=1), values[faces].mean(axis=1)])
-
-    turned = everywhere(normals)
-    lengths = np.linalg.norm(turned, axis=1, keepdims=True)
-    spans = vertices[faces[:, 1:]] - vertices[faces[:, :1]]
-    areas = np.linalg.norm(np.cross(spans[:, 0], spans[:, 1]), axis=1) / 12
-    return SmallTriangles(
-        everywhere(vertices),
-        turned / np.where(lengths > 0, lengths, 1.0),
-        edges,
-        corners.reshape(-1, 3),
-        touched.ravel(),
-        np.repeat(segment_of[faces].ravel(), 2),
-        np.repeat(areas, 6),
-    )
 
 
 def corner_states(
@@ -159,17 +128,6 @@ def corner_states(
 def nearest(first: Array, second: Array) -> Array:
     """From angles to others modulo full circles: the shorter way, rad."""
     return np.asarray(np.remainder(second - first + np.pi, CIRCLE) - np.pi)
-
-
-def small_triangle_at(surface: LabelledSurface, face: int, point: Array) -> int:
-    """The number of the small triangle of a triangle that a point (3,) on it lies in."""
-    a, b, c = surface.vertices[surface.faces[face]]
-    first, second, off = b - a, c - a, point - a
-    gram = np.array([[first @ first, first @ second], [first @ second, second @ second]])
-    at_b, at_c = np.linalg.solve(gram, [first @ off, second @ off])
-    shares = [1.0 - at_b - at_c, at_b, at_c]
-    corner = int(np.argmax(shares))
-    return 6 * face + 2 * corner + int(shares[corner - 1] > shares[(corner + 1) % 3])
 
 
 def left_out_parts(small: SmallTriangles, reasons: dict[int, str]) -> tuple[LeftOut, ...]:

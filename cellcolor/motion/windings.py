@@ -10,21 +10,19 @@ different turns there is a wall. What the tree has reached stays connected.
 
 from __future__ import annotations
 
-from collections.abc import Collection
 from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import product
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 from cellcolor.motion.following import CIRCLE
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 
-__all__ = ["Parts", "Walls", "closed_edges", "parts_of", "walls_of"]
+__all__ = ["Parts", "Walls", "parts_of", "walls_of"]
 
 _ROOTS = 12  # vertices that trees are grown from, one after the other
 _MARGIN = 0.02  # rad; what samples between corners of small triangles may reach beyond these
@@ -42,7 +40,7 @@ class Parts:
         steps: (s, 2) parts that one can step between.
         turns: (s, joints) by how many full circles angles that start as the inverse kinematics has
             them at the first vertex of a step are turned against those at the second.
-        edge: (s,) the mesh edge that is crossed, as rows of :attr:`SmallTriangles.edges`.
+        edge: (s,) the number of the mesh edge that is crossed.
         lengths: (s,) of the side that is crossed, m.
     """
 
@@ -96,7 +94,7 @@ def parts_of(
     pairs.append(np.column_stack([by_half[:-1], by_half[1:]])[same])
     together = np.concatenate(pairs)
     together = together[kept[together].all(axis=1)]
-    label = _components(len(kept), together)
+    label = grouped(len(kept), together)
     _, part = np.unique(label[own], return_inverse=True)
     part_of = np.full(len(kept), -1, dtype=np.int64)
     part_of[own] = part
@@ -127,7 +125,9 @@ def parts_of(
     )
 
 
-def walls_of(parts: Parts, edges: Index, limits: tuple[Array, Array], deadline: Deadline) -> Walls:
+def walls_of(
+    parts: Parts, mesh: TriangleMesh, limits: tuple[Array, Array], deadline: Deadline
+) -> Walls:
     """Walls between which the joints of a segment stay inside their limits.
 
     Of all trees that are grown, one that reaches the largest area is taken, and of these the one
@@ -135,7 +135,7 @@ def walls_of(parts: Parts, edges: Index, limits: tuple[Array, Array], deadline: 
 
     Args:
         parts: of the segment.
-        edges: (k, 2) the mesh edges.
+        mesh: the mesh.
         limits: lower and upper (joints,) of the joints, rad.
         deadline: when to give up.
 
@@ -154,8 +154,8 @@ def walls_of(parts: Parts, edges: Index, limits: tuple[Array, Array], deadline: 
         left &= ~tree.reached
     walls |= group[one] != group[other]
     rows = np.unique(parts.edge[walls])
-    connected = int(_components(len(parts.places), parts.steps).max(initial=-1)) + 1
-    pairs = tuple([(int(a), int(b)) for a, b in edges[rows]])
+    connected = int(grouped(len(parts.places), parts.steps).max(initial=-1)) + 1
+    pairs = tuple([(int(a), int(b)) for a, b in mesh.edges[rows]])
     return Walls(pairs, int(group.max(initial=0)) <= connected, grower.joint)
 
 
@@ -281,20 +281,3 @@ def _spread(places: Array, members: Index) -> list[int]:
         chosen.append(int(members[int(np.argmax(away))]))
         away = np.minimum(away, np.linalg.norm(places[members] - places[chosen[-1]], axis=1))
     return chosen
-
-
-def _components(count: int, pairs: Index) -> Index:
-    graph = coo_matrix((np.ones(len(pairs), dtype=np.int8), (*pairs.T,)), (count, count))
-    return np.asarray(connected_components(graph, directed=False)[1])
-
-
-def closed_edges(
-    small: SmallTriangles,
-    cracked: Collection[tuple[int, int]],
-) -> Mask:
-    """Which mesh edges (k,) are cracks or walls, named by their ends."""
-    number = {(a, b): row for row, (a, b) in enumerate(small.edges.tolist())}
-    closed = np.zeros(len(small.edges), dtype=bool)
-    for a, b in cracked:
-        closed[number[min(a, b), max(a, b)]] = True
-    return closed

@@ -43,7 +43,7 @@ def steps_by_edge(
         for a, b in curve.steps:
             dart_of[a, b] = edge
             dart_of.setdefault((b, a), -edge)
-    count, old_count = len(refined.vertices), len(refined.old.vertices)
+    count, old_count = len(refined.mesh.points), len(refined.old.vertices)
     origin = refined.stands_for.tolist()
     found: dict[int, list[Step]] = {}
     for curve in curves:

@@ -20,16 +20,13 @@ class Nearby:
 
     Attributes:
         surface: the labelled surface.
-        edges: (k, 2) its mesh edges, the smaller vertex first.
+        edges: (k, 2) its mesh edges.
         areas: (n,) m² that each vertex owns.
     """
 
     def __init__(self, surface: LabelledSurface) -> None:
         self.surface = surface
-        self.areas = surface.vertex_areas
-        corners = surface.faces
-        pairs = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])
-        self.edges: Index = np.unique(np.sort(pairs, axis=1), axis=0)
+        self.areas, self.edges = surface.vertex_areas, surface.mesh.edges
         count = len(surface.vertices)
         self._keys = _two_steps(self.edges, count)
         self._first = np.searchsorted(self._keys, np.arange(count + 1) * count)
@@ -38,8 +35,7 @@ class Nearby:
     @cached_property
     def mean_edge(self) -> float:
         """Mean length of the mesh edges, m."""
-        ends = self.surface.vertices[self.edges]
-        return float(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1).mean())
+        return float(self.surface.mesh.lengths.mean())
 
     @cached_property
     def around(self) -> list[list[int]]:
@@ -92,5 +88,6 @@ def _two_steps(edges: Index, count: int) -> Index:
     behind = end[np.repeat(first[end], number) + place]
     from_a = np.repeat(start, number)
     distinct = from_a != behind
-    keys = [start * count + end, from_a[distinct] * count + behind[distinct]]
-    return np.unique(np.concatenate(keys))
+    keys = np.concatenate([start * count + end, from_a[distinct] * count + behind[distinct]])
+    keys.sort()
+    return keys[np.diff(keys, prepend=-1) > 0]

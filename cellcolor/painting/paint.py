@@ -140,7 +140,7 @@ def paint(
         curves = mesh.borders.curves(deadline)
         steps = steps_by_edge(refined, decomposition.curves, curves)
         gates, short = choose_gates(subcells, divided, steps)
-        narrow = np.zeros(len(refined.vertices), dtype=bool)
+        narrow = np.zeros(len(refined.mesh.points), dtype=bool)
         for edge in short:
             ends = [vertex for step in steps[edge] for vertex in step]
             narrow[ends] = True

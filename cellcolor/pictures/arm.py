@@ -16,8 +16,8 @@ from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.plane import HalfSpace
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.interface import Given, Source
-from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
@@ -106,7 +106,7 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
             f"Joints: {joints}",
             f"Vertex [m]: {place}",
         ),
-        _free_view(robot, poses, vertex_normals(*mesh)[vertex]),
+        _free_view(robot, poses, result.surface.vertex_normals[vertex]),
     )
 
 
@@ -171,10 +171,8 @@ def _turned(start: Array, end: Array, profile: list[tuple[float, float, float]])
         for low in range(0, len(points) - _AROUND, _AROUND)
     ]
     triangles = np.concatenate(strips).astype(np.int64)
-    corners = points[triangles]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     # Half of the triangles at the two poles have no area.
-    return points, triangles[np.linalg.norm(doubled, axis=1) > 1e-15]
+    return points, triangles[TriangleMesh(points, triangles).areas > 5e-16]
 
 
 def obstacle_mesh(obstacle: Obstacle, folder: Path) -> _Mesh:

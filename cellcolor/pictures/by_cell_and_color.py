@@ -133,8 +133,8 @@ def shares(surface: LabelledSurface, labels: Labels, count: int) -> list[str]:
 def neighboring(surface: LabelledSurface, labels: Labels, count: int) -> dict[int, set[int]]:
     """The classes next to each class 0 … count - 1 over mesh edges; others are not counted."""
     found: dict[int, set[int]] = {label: set() for label in range(count)}
-    ends = labels[np.array(list(surface.left_of), dtype=np.int64).reshape(-1, 2)]
-    for a, b in np.unique(np.concatenate([ends, ends[:, ::-1]]), axis=0).tolist():
+    ends = labels[surface.mesh.edges]
+    for a, b in sorted(set(map(tuple, np.concatenate([ends, ends[:, ::-1]]).tolist()))):
         if a != b and a in found and b in found:
             found[a].add(b)
     return found

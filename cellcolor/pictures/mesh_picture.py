@@ -22,7 +22,6 @@ __all__ = [
     "VertexClass",
     "draw_surface",
     "mesh_picture_parts",
-    "vertex_normals",
 ]
 
 Labels = NDArray[np.int64]
@@ -61,7 +60,7 @@ class SurfaceView:
 def draw_surface(surface: LabelledSurface, view: SurfaceView) -> Picture3D:
     """The surface as the view wants it."""
     vertices, faces = surface.vertices, surface.faces
-    normals = vertex_normals(vertices, faces)
+    normals = surface.vertex_normals
     points, triangles, owner = mesh_picture_parts(vertices, faces, view.labels)
     layers = []
     for number, own_class in enumerate(view.classes):
@@ -116,17 +115,6 @@ def mesh_picture_parts(
     )
 
 
-def vertex_normals(vertices: Array, faces: Labels) -> Array:
-    """Outward unit normals (n, 3), weighted by the faces' areas."""
-    corners = vertices[faces]
-    doubled = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.zeros_like(vertices)
-    np.add.at(normals, faces, doubled[:, None])
-    lengths = np.linalg.norm(normals, axis=1, keepdims=True)
-    unit: Array = normals / np.where(lengths > 0, lengths, 1)
-    return unit
-
-
 def _lines(
     vertices: Array,
     faces: Labels,
@@ -175,13 +163,10 @@ def _numbers(surface: LabelledSurface, view: SurfaceView, normals: Array) -> lis
 
 def _depth(surface: LabelledSurface, labels: Labels) -> Labels:
     """Mesh edges from each vertex to the nearest border of its class or of the mesh."""
-    ends = np.array(list(surface.left_of), dtype=np.int64).reshape(-1, 2)
-    first, second = ends[:, 0], ends[:, 1]
-    rim = [a for a, b in surface.left_of if (b, a) not in surface.left_of]
-    rim += [b for a, b in surface.left_of if (b, a) not in surface.left_of]
+    first, second = surface.mesh.edges.T
     depth = np.full(len(labels), -1, dtype=np.int64)
-    different = labels[first] != labels[second]
-    depth[np.concatenate([first[different], second[different], np.array(rim, dtype=int)])] = 0
+    depth[surface.mesh.border] = 0
+    depth[surface.mesh.edges[labels[first] != labels[second]]] = 0
     if not (depth == 0).any():
         return np.zeros(len(labels), dtype=np.int64)
     level = 0

@@ -19,6 +19,7 @@ from mpl_toolkits.mplot3d.axes3d import Axes3D
 
 from cellcolor.arrays import Array
 from cellcolor.files.writing import MARKER
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.palette import INK
 from cellcolor.pictures.picture import Layer, Picture2D, Picture3D
 
@@ -148,9 +149,7 @@ def _shades(layer: Layer) -> Array:
     """A color (m, 4) for each triangle."""
     color = np.tile(np.array([*to_rgb(layer.rgb), 1.0]), (len(layer.triangles), 1))
     if layer.solid:
-        corners = layer.points[layer.triangles]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
+        normals = np.nan_to_num(TriangleMesh(layer.points, layer.triangles).triangle_normals)
         color[:, :3] *= 0.775 + 0.225 * (normals @ _LIGHT)[:, None]
     return color
 

@@ -17,7 +17,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.pictures.interface import Given, Source
-from cellcolor.pictures.mesh_picture import vertex_normals
 from cellcolor.pictures.palette import INK, LINES
 from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
 
@@ -150,7 +149,7 @@ def places_on(surface: LabelledSurface, decomposition: Decomposition) -> Array:
     sums = np.zeros((count, 3))
     np.add.at(sums, cells[inside], surface.vertices[inside])
     middles = sums / np.bincount(cells[inside], minlength=count)[:, None]
-    front = vertex_normals(surface.vertices, surface.faces).mean(axis=0)
+    front = surface.vertex_normals.mean(axis=0)
     if np.linalg.norm(front) < 0.2:  # closed: no side is the front
         front = np.array([0.0, 0.0, 1.0])
     front = front / np.linalg.norm(front)

@@ -8,6 +8,7 @@ import numpy as np
 
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.lab.families.meshes import grid_faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Rectangle", "sheet"]
 
@@ -40,23 +41,20 @@ def sheet(
     colors = [tuple(np.flatnonzero(own).tolist()) for own in reached.reshape(rows * columns, -1)]
     faces = grid_faces(rows, columns)
     y, x = np.mgrid[0:rows, 0:columns]
+    points = np.stack([x.ravel(), y.ravel(), np.zeros(rows * columns)], axis=1).astype(np.float64)
     return LabelledSurface(
         "sheet",
         tuple(f"c{color}" for color in range(len(reach))),
-        np.stack([x.ravel(), y.ravel(), np.zeros(rows * columns)], axis=1).astype(np.float64),
+        points,
         faces,
         tuple(colors),
         tuple(
             Crack(i, j, shared)
-            for i, j in sorted({tuple(sorted(pair)) for pair in _edges(faces.tolist())})
+            for i, j in TriangleMesh(points, faces).edges.tolist()
             if (shared := tuple(sorted({*colors[i]} & {*colors[j]})))
             and any(_crosses(i, j, columns, crack) for crack in cracks)
         ),
     )
-
-
-def _edges(faces: Sequence[Sequence[int]]) -> list[tuple[int, int]]:
-    return [pair for a, b, c in faces for pair in ((a, b), (b, c), (c, a))]
 
 
 def _crosses(i: int, j: int, columns: int, crack: tuple[int, int, int]) -> bool:

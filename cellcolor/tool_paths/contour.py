@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
+from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.joined_loops import join_loops
 from cellcolor.tool_paths.level_lines import Sliced, level_lines, slice_along
@@ -78,10 +77,7 @@ def _heights_of_cores(sliced: Sliced, levels: Array) -> Array:
     """How far each vertex inside an innermost loop is from it; 0 for all other vertices."""
     between = sliced.level < 0
     ends = sliced.mesh.edges
-    own = ends[between[ends].all(axis=1)]
-    count = len(between)
-    graph = coo_matrix((np.ones(len(own), dtype=np.int8), tuple(own.T)), (count, count))
-    part = connected_components(graph, directed=False)[1]
+    part = grouped(len(between), ends[between[ends].all(axis=1)])
     number = np.searchsorted(levels, sliced.values) - 1  # the level below a vertex
     inner = ends[(between[ends[:, 0]] != between[ends[:, 1]])]
     inner = np.where(between[inner[:, :1]], inner, inner[:, ::-1])  # from between onto a line

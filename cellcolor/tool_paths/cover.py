@@ -14,9 +14,10 @@ from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.mesh.small_triangles import small_areas
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
-from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
+from cellcolor.tool_paths.region import Region, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.spurs import with_spurs
 
@@ -183,7 +184,7 @@ def _left_out(
     if not len(numbers):
         return []
     corners = surface.faces[numbers // 6, numbers % 6 // 2]
-    areas = small_triangle_areas(surface)[numbers]
+    areas = small_areas(surface.mesh)[numbers]
     found = []
     for segment in np.unique(segment_of[corners]).tolist():
         own = segment_of[corners] == segment

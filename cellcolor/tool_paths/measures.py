@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
+from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
 
@@ -86,7 +86,6 @@ def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, lis
     areas = mesh.vertex_areas
     area = float(areas.sum())
     visits = visits_of(laid, spacing)
-    alone = np.bincount(mesh.edge_of_side.ravel(), minlength=len(mesh.edges)) == 1
     measures = PathMeasures(
         area,
         float(lengths.sum()),
@@ -97,12 +96,10 @@ def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, lis
         float(lengths.sum() * spacing / area),
         sharp_turns(steps),
         float(lengths.max()),
-        float(mesh.lengths[alone].sum()),
+        float(mesh.lengths[mesh.triangles_at == 1].sum()),
     )
     far = distances > 0.75 * spacing
-    place = connected_components(
-        mesh.graph(edges=np.asarray(far[mesh.edges].all(axis=1))), directed=False
-    )[1]
+    place = grouped(len(far), mesh.edges[far[mesh.edges].all(axis=1)])
     left = []
     for number in np.unique(place[far]):
         members = np.flatnonzero(far & (place == number))

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
+from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.distances import off_border, ways_from
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
@@ -59,8 +59,7 @@ def _targets(mesh: Triangles, distances: Array, spacing: float) -> list[tuple[in
     far = distances > _FAR * spacing
     if not far.any():
         return []
-    graph = mesh.graph(edges=np.asarray(far[mesh.edges].all(axis=1)))
-    place = connected_components(graph, directed=False)[1]
+    place = grouped(len(far), mesh.edges[far[mesh.edges].all(axis=1)])
     found = []
     vertices = np.flatnonzero(far)
     for number in np.unique(place[vertices]):

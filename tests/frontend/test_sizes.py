@@ -19,8 +19,9 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface, sizes
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.remesh import refine
+from cellcolor.frontend.parts.refining import refine
 from cellcolor.frontend.scene import Scene
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 Varied = Callable[..., Scene]
 
@@ -91,15 +92,15 @@ def test_what_is_refused_would_have_been_too_much(seed: int, longest: float) -> 
     """The estimate is no more than what halving gives, so nothing that fits is refused."""
     corners = np.random.default_rng(seed).uniform(0, 1, (4, 3))
     faces = np.array([[0, 1, 2], [1, 0, 3]])
-    vertices, _ = refine(corners, faces, longest)
+    vertices = refine(TriangleMesh(corners, faces), longest).points
     most = sizes.MOST_VERTICES
     try:
         sizes.MOST_VERTICES = len(vertices)
-        assert len(refine(corners, faces, longest)[0]) == len(vertices)
+        assert len(refine(TriangleMesh(corners, faces), longest).points) == len(vertices)
         sizes.MOST_VERTICES = len(vertices) - 1
         if len(vertices) > 4:
             with pytest.raises(InputError, match="vertices"):
-                refine(corners, faces, longest)
+                refine(TriangleMesh(corners, faces), longest)
     finally:
         sizes.MOST_VERTICES = most
 
@@ -115,5 +116,6 @@ def test_a_mesh_too_coarse_for_what_stands_there(scene: Varied) -> None:
     plate = BoxObstacle(size_m=(0.002, 0.03, 0.2), position_m=(0.45, 0.1, 0.3))
     (warning,) = build_surface(coarse.with_obstacle(plate)).report.warnings
     assert "obstacle[0] is 0.03 m wide" in warning
-    fine = coarse.with_object(refine(square, faces, 0.04))
+    finer = refine(TriangleMesh(square, faces), 0.04)
+    fine = coarse.with_object((finer.points, finer.corners))
     assert build_surface(fine).report.warnings == ()

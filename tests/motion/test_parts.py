@@ -14,6 +14,7 @@ from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
 from cellcolor.motion.following import Followed, whole_turns
 from cellcolor.motion.order import ordered
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
@@ -220,7 +221,7 @@ def test_normals_are_those_of_the_surface_beside_a_sharp_edge() -> None:
     path = ToolPath(0, 0, ends, own, np.zeros(1, dtype=np.int64))
     faces = np.array([[0, 1, 2]])
     given = sampled(path)
-    samples = with_normals_of(given, vertices, faces, normals)
+    samples = with_normals_of(given, TriangleMesh(vertices, faces), normals)
     x = samples.points[:, 0] / 0.02
     expected = np.column_stack([x, np.zeros_like(x), 1 - x])
     expected /= np.linalg.norm(expected, axis=1, keepdims=True)

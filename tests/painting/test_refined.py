@@ -26,7 +26,7 @@ def test_the_graph_stays_what_it_was(
     rng = np.random.default_rng(seed)
     refined = unrefined(surface)
     for _ in range(rounds):
-        refined = refined.halved(rng.random(len(refined.vertices)) < share)
+        refined = refined.halved(rng.random(len(refined.mesh.points)) < share)
     finer = refined.surface()
     count = len(surface.vertices)
     # Places are values like any other: what is interpolated from the old ones is where it is.

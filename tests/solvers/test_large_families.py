@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.instance import OUTSIDE, Instance
-from cellcolor.data.mesh import directed_edges
+from cellcolor.mesh.oriented import directed_edges
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab.families import (

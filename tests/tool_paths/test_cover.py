@@ -18,8 +18,9 @@ from cellcolor.data.plan import Plan
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import grid_faces
+from cellcolor.mesh.small_triangles import small_areas
 from cellcolor.tool_paths.cover import Covered, check_spacing, cover
-from cellcolor.tool_paths.region import regions_of, small_triangle_areas
+from cellcolor.tool_paths.region import regions_of
 from cellcolor.tool_paths.registry import PATTERNS, pattern_names
 from examples import examples
 
@@ -58,7 +59,7 @@ def assert_on_segments(pattern: str, seed: int, shape: str, spacing: float) -> N
     # grids some are exactly as large as that, where rounding decides.
     areas = np.zeros(len(painting.colors))
     corners = painting.segment_of[painting.surface.faces].ravel()
-    thirds = np.repeat(small_triangle_areas(painting.surface)[::6] * 2, 3)
+    thirds = np.repeat(small_areas(painting.surface.mesh)[::6] * 2, 3)
     np.add.at(areas, corners[corners >= 0], thirds[corners >= 0])
     segments = [path.segment for path in found.paths.paths]
     assert len(segments) == len(set(segments))
@@ -99,7 +100,7 @@ def test_walls_and_what_is_left_out_are_kept_off(
     regions = regions_of(*painting, walls, left_out)
     large = [region for region in regions if region.mesh.areas.sum() >= 0.1**2 / 4]
     assert len(found.paths.paths) == len(large)
-    areas = small_triangle_areas(painting.surface)
+    areas = small_areas(painting.surface.mesh)
     listed = sum(place.area_m2 for place in found.uncovered if place.cause.startswith("left out"))
     assert listed == pytest.approx(areas[np.unique(left_out)].sum())
     small = [place for place in found.uncovered if place.cause.startswith("a part smaller")]

@@ -21,7 +21,7 @@ def grid(rows: int, columns: int, step: float) -> Triangles:
     points = np.stack([x.ravel(), y.ravel(), np.zeros(rows * columns)], axis=1)
     up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
     faces = grid_faces(rows, columns)
-    return Triangles(points, up, faces, np.arange(len(faces)))
+    return Triangles(points, faces, up, np.arange(len(faces)))
 
 
 def lines(rows: range, columns: int) -> list[int]:
@@ -83,7 +83,7 @@ def test_circles_on_a_disc() -> None:
     for ring in (4, 14, 24, 34):
         walk += [between * around for between in range(ring - 9, ring)] if walk else []
         walk += [ring * around + k % around for k in range(around + 1)]
-    found, left = measure(Laid(Triangles(points, up, faces, np.arange(len(faces))), walk), 0, 0.1)
+    found, left = measure(Laid(Triangles(points, faces, up, np.arange(len(faces))), walk), 0, 0.1)
     length = sum(2 * 60 * 2 * r * np.sin(np.pi / around) for r in (0.05, 0.15, 0.25, 0.35))
     assert found.length_m == pytest.approx(length + 3 * 0.1)
     # All within 0.05 m of a circle, but for the outermost 0 m: the disc is 0.4 m.
@@ -119,7 +119,7 @@ def test_the_back_of_a_sheet_is_not_covered() -> None:
     rim = [[a, a + rows * columns, a + 1] for a in range(columns - 1)]
     rim += [[a + 1, a + rows * columns, a + 1 + rows * columns] for a in range(columns - 1)]
     faces = np.vstack([front.corners, front.corners[:, ::-1] + rows * columns, rim])
-    mesh = Triangles(points, np.vstack([up, -up]), faces, np.arange(len(faces)))
+    mesh = Triangles(points, faces, np.vstack([up, -up]), np.arange(len(faces)))
     found, _ = measure(Laid(mesh, lines(range(1, 20, 2), columns)), 0, 0.1)
     assert found.covered == pytest.approx(0.5, abs=0.05)
     assert found.mean_visits == pytest.approx(0.5, abs=0.05)

@@ -10,31 +10,31 @@ from hypothesis import given
 from hypothesis import strategies as st
 from painted_at_random import SHAPES, painted_at_random
 
-from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
+from cellcolor.mesh.small_triangles import small_areas
+from cellcolor.tool_paths.region import Region, regions_of
 
 
 def euler(region: Region) -> int:
     """Vertices minus edges plus triangles."""
-    mesh = region.mesh
-    return len(mesh.points) - len(mesh.edges) + len(mesh.corners)
+    return region.mesh.euler
 
 
 @pytest.mark.parametrize(("shape", "characteristic"), [("sphere", 2), ("torus", 0)])
 def test_a_closed_segment_has_no_border(shape: str, characteristic: int) -> None:
     (region,) = regions_of(*whole(shape))
-    assert region.border_loops == () and euler(region) == characteristic
+    assert region.mesh.border_loops() == [] and euler(region) == characteristic
 
 
 def test_a_disc_and_an_annulus() -> None:
     (disc,) = regions_of(*square(5))
-    assert len(disc.border_loops) == 1 and euler(disc) == 1
+    assert len(disc.mesh.border_loops()) == 1 and euler(disc) == 1
     assert disc.mesh.areas.sum() == pytest.approx(1.0)
     # Without the middle vertex an annulus, whose inner border runs around that vertex's part.
     painting = square(5)
     segment_of = painting.segment_of.copy()
     segment_of[12] = -1
     (annulus,) = regions_of(painting.surface, segment_of, [0], painting.normals)
-    assert len(annulus.border_loops) == 2 and euler(annulus) == 0
+    assert len(annulus.mesh.border_loops()) == 2 and euler(annulus) == 0
 
 
 def test_a_segment_of_one_vertex_is_its_fan() -> None:
@@ -51,10 +51,10 @@ def test_a_slit_is_a_border_that_parts_nothing() -> None:
     # From row 2 to row 5 of 9: two ends inside, so it makes a hole without area.
     painting = square(9, slit(9, 4, range(2, 6)))
     (region,) = regions_of(*painting)
-    assert len(region.border_loops) == 2 and euler(region) == 0
+    assert len(region.mesh.border_loops()) == 2 and euler(region) == 0
     assert region.mesh.areas.sum() == pytest.approx(1.0)
     # Every point on it is there twice, but for the two ends.
-    inner = max(region.border_loops, key=lambda loop: -len(loop))
+    inner = max(region.mesh.border_loops(), key=lambda loop: -len(loop))
     places = np.round(region.mesh.points[inner], 9)
     assert len(np.unique(places, axis=0)) == len(inner) // 2 + 1
 
@@ -95,12 +95,12 @@ def test_parts_have_the_area_of_their_vertices(seed: int, shape: str) -> None:
         area = sum(region.mesh.areas.sum() for region in own)
         mine = painting.surface.vertex_areas[painting.segment_of == segment].sum()
         assert area == pytest.approx(mine)
-    areas = small_triangle_areas(painting.surface)
+    areas = small_areas(painting.surface.mesh)
     for region in regions:
         assert region.mesh.areas == pytest.approx(areas[region.small])
         assert (region.mesh.faces == region.small // 6).all()
         # A border is left by the way it is entered: the mesh is a manifold.
-        border = np.concatenate([*region.border_loops, np.zeros(0, dtype=np.int64)])
+        border = np.concatenate([*region.mesh.border_loops(), np.zeros(0)])
         assert len(border) == len(np.unique(border)) == region.mesh.border.sum()
 
 
@@ -114,6 +114,5 @@ def test_refining_keeps_area_shape_and_place(seed: int, shape: str, longest: flo
         for face in np.unique(region.mesh.faces)[:20]:
             before = region.mesh.areas[region.mesh.faces == face].sum()
             assert fine.areas[fine.faces == face].sum() == pytest.approx(before)
-        shape_of = Region(region.segment, region.color, fine, region.small)
-        assert euler(shape_of) == euler(region)
-        assert len(shape_of.border_loops) == len(region.border_loops)
+        assert fine.euler == euler(region)
+        assert len(fine.border_loops()) == len(region.mesh.border_loops())

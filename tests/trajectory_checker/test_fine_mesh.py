@@ -15,7 +15,8 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
-from cellcolor.frontend.parts.surface import Surface, every_edge, face_normals
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
 
 
@@ -29,7 +30,7 @@ def bumpy(seed: int, count: int = 5) -> Surface:
     a, b, c, d = (part.ravel() for part in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
     faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
     normals = np.zeros_like(vertices)
-    np.add.at(normals, faces, face_normals(vertices, faces)[:, None])
+    np.add.at(normals, faces, TriangleMesh(vertices, faces).area_vectors[:, None])
     return Surface(vertices, faces, normals / np.linalg.norm(normals, axis=1, keepdims=True))
 
 
@@ -39,14 +40,12 @@ def test_refined_meshes_conform(seed: int, longest: float) -> None:
     surface = bumpy(seed)
     fine = refined(surface, longest, NEVER)
     sides = np.concatenate([fine.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
-    ends = fine.vertices[every_edge(fine.triangles)]
-    assert np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).max() <= longest
+    made = TriangleMesh(fine.vertices, fine.triangles)
+    assert made.lengths.max() <= longest
     # Every directed edge once: each edge has one triangle on each side, or is on the border.
     assert len(np.unique(sides, axis=0)) == len(sides)
-    euler = len(fine.vertices) - len(every_edge(fine.triangles)) + len(fine.triangles)
-    assert euler == 1  # a disc, so nowhere torn
-    whole = np.linalg.norm(face_normals(surface.vertices, surface.faces), axis=1).sum() / 2
-    assert fine.areas.sum() == pytest.approx(whole)
+    assert made.euler == 1  # a disc, so nowhere torn
+    assert fine.areas.sum() == pytest.approx(surface.mesh.areas.sum())
     # Each corner is where its barycentric coordinates in the given face say.
     given_corners = surface.vertices[surface.faces[fine.face]]
     assert np.allclose(fine.vertices[fine.triangles], fine.corners @ given_corners)

@@ -10,7 +10,8 @@ from __future__ import annotations
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.parts.surface import Faces, every_edge
+from cellcolor.frontend.parts.surface import Faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["sample_mesh"]
 
@@ -30,7 +31,7 @@ def sample_mesh(vertices: Array, faces: Faces, slack: float, most: int) -> tuple
         slack: wanted, m.
         most: about so many points besides the vertices; more slack is taken to stay below.
     """
-    edges = every_edge(faces)
+    edges = TriangleMesh(vertices, faces).edges
     corners = vertices[faces]
     sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)  # ab, bc, ca
     # Turned so that the longest side is the one from a to b.

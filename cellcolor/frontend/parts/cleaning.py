@@ -1,14 +1,27 @@
-"""Vertices in one place merged, and faces dropped that are there twice or have no area."""
+"""Simple faults mended: vertices in one place, faces there twice or without area, the winding.
+
+Faces are made to wind alike, and outward where that can be known.
+"""
 
 from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.parts.surface import Faces, face_normals
-from cellcolor.frontend.parts.topology import edge_table
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.frontend.parts.surface import Faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
-__all__ = ["flat_faces", "merged", "repeated_corners", "repeated_faces", "used", "without_flat"]
+__all__ = [
+    "against_the_others",
+    "flat_faces",
+    "inside_out",
+    "merged",
+    "repeated_corners",
+    "repeated_faces",
+    "turned",
+    "used",
+    "without_flat",
+]
 
 _SAME = 1e-8  # of the mesh's size; vertices so near to each other are in one place
 _FLAT = 1e-6  # of the longest side's square; a doubled area that counts as none
@@ -59,7 +72,7 @@ def flat_faces(vertices: Array, faces: Faces) -> Mask:
 
     That is ten times what the four-byte numbers of STL and PLY files make of a face without height.
     """
-    doubled = np.linalg.norm(face_normals(vertices, faces), axis=1)
+    doubled = 2 * TriangleMesh(vertices, faces).areas
     corners = vertices[faces]
     longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
     return np.asarray(doubled <= _FLAT * longest**2)
@@ -84,8 +97,7 @@ def without_flat(vertices: Array, faces: Faces) -> Faces:
 
 def _parted_beside(vertices: Array, faces: Faces, flat: Mask) -> Faces:
     """One pass over flat faces; a face takes part in one change at most."""
-    table = edge_table(faces)
-    _, sides = table.pairs()
+    _, sides = TriangleMesh(vertices, faces).pairs
     beside = np.full(3 * len(faces), -1, dtype=np.int64)
     beside[sides[:, 0]], beside[sides[:, 1]] = sides[:, 1], sides[:, 0]
     touched = np.zeros(len(faces), dtype=bool)
@@ -110,3 +122,49 @@ def _parted_beside(vertices: Array, faces: Faces, flat: Mask) -> Faces:
         if middle != c:  # else two flat faces lie back to back
             added += [(a, middle, c), (middle, b, c)]
     return np.concatenate([faces[keep], np.array(added, dtype=np.int64).reshape(-1, 3)])
+
+
+def against_the_others(mesh: TriangleMesh) -> tuple[Mask, Mask]:
+    """The faces (m,) to be turned so that all neighbors wind alike, and those of one-sided parts.
+
+    Neighbors are two faces with an edge that no other has. Of each part the fewer are turned. A
+    part is one-sided, as a Moebius strip is, if no turning makes its neighbors wind alike.
+    """
+    count, ascending = len(mesh.corners), mesh.ascending.ravel()
+    _, sides = mesh.pairs
+    first, second = sides[:, 0] // 3, sides[:, 1] // 3
+    alike = ascending[sides[:, 0]] != ascending[sides[:, 1]]
+    # Every face is there twice, as it is (f) and turned (count + f); linked is what goes together.
+    other = np.where(alike, second, second + count)
+    mirrored = np.where(alike, second + count, second)
+    links = np.concatenate(
+        [np.column_stack([first, other]), np.column_stack([first + count, mirrored])]
+    )
+    group = grouped(2 * count, links)
+    as_it_is, turned_over = group[:count], group[count:]
+    chosen = np.minimum(as_it_is, turned_over)
+    kept = as_it_is == chosen
+    votes = np.bincount(chosen, np.where(kept, 1.0, -1.0), minlength=len(group))
+    turn = kept ^ (votes[chosen] >= 0)
+    one_sided = as_it_is == turned_over
+    return turn & ~one_sided, one_sided
+
+
+def inside_out(mesh: TriangleMesh) -> Mask:
+    """The faces (m,) of closed parts with a negative volume; neighbors wind alike."""
+    if not len(mesh.corners):
+        return np.zeros(0, dtype=bool)
+    part = mesh.parts()
+    open_ = np.zeros(int(part.max(initial=-1)) + 1, dtype=bool)
+    open_[part[(mesh.triangles_at[mesh.edge_of_side] != 2).any(axis=1)]] = True
+    points = mesh.points - mesh.points.mean(axis=0)
+    a, b, c = (points[mesh.corners[:, k]] for k in range(3))
+    volume = np.bincount(part, np.einsum("ij,ij->i", a, np.cross(b, c)), minlength=len(open_))
+    return np.asarray(((volume < 0) & ~open_)[part])
+
+
+def turned(faces: Faces, which: Mask | Index) -> Faces:
+    """Faces, some of them wound the other way round."""
+    changed = faces.copy()
+    changed[which] = changed[which][:, ::-1]
+    return changed

@@ -14,9 +14,9 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.surface import Surface, face_normals
-from cellcolor.frontend.parts.topology import edge_table, face_areas, parts_of
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.tables import IN_RADIANS, Position, Table, Vector
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Cover"]
 
@@ -110,7 +110,7 @@ class Cover(Table):
         if not chosen.any():
             raise InputError(None, "cover", f"chooses none of {count(len(chosen), 'face')}")
         faces = whole.faces[chosen]
-        if (edge_table(faces).count != 1).all():
+        if not TriangleMesh(whole.vertices, faces).border.any():
             raise InputError(None, "cover", "chooses a closed surface: a patch has a border")
         used, compact = np.unique(faces, return_inverse=True)
         compact = compact.reshape(-1, 3).astype(np.int64)
@@ -129,11 +129,9 @@ class Cover(Table):
     def chosen(self, whole: Surface, folder: Path = Path()) -> Mask:
         """Which faces (m,) of the object are chosen; see :meth:`patch`."""
         chosen = np.ones(len(whole.faces), dtype=bool)
-        normals = face_normals(whole.vertices, whole.faces)
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         if self.normal is not None:
             along = np.array(self.normal.direction) / np.linalg.norm(self.normal.direction)
-            chosen &= _angles(normals, along) <= self.normal.within_rad
+            chosen &= _angles(whole.mesh.triangle_normals, along) <= self.normal.within_rad
         if self.box is not None:
             corners = whole.vertices[whole.faces]
             inside = (corners >= self.box.low_m) & (corners <= self.box.high_m)
@@ -141,14 +139,14 @@ class Cover(Table):
         if self.component is not None:
             chosen &= self._component(whole)
         if self.region is not None:
-            chosen &= _grown(whole, normals, self.region)
+            chosen &= _grown(whole, self.region)
         if self.faces_file is not None:
             chosen &= _listed(folder / self.faces_file, len(chosen))
         return chosen
 
     def _component(self, whole: Surface) -> Mask:
-        part = parts_of(whole.faces, edge_table(whole.faces))
-        area = np.bincount(part, face_areas(whole.vertices, whole.faces))
+        part = whole.mesh.parts()
+        area = np.bincount(part, whole.mesh.areas)
         if self.component is None or self.component >= len(area):
             message = f"there is no component {self.component}: the object has {len(area)}"
             raise InputError(None, "cover.component", message)
@@ -161,14 +159,14 @@ def _angles(normals: Array, other: Array) -> Array:
     return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
 
 
-def _grown(whole: Surface, normals: Array, region: Region) -> Mask:
+def _grown(whole: Surface, region: Region) -> Mask:
     """The faces on the same side of all sharp edges as the face nearest to the seed."""
-    table = edge_table(whole.faces)
-    edges, sides = table.pairs()
-    sharp = np.zeros(len(table.ends), dtype=bool)
-    turned = _angles(normals[sides[:, 0] // 3], normals[sides[:, 1] // 3])
+    mesh = whole.mesh
+    edges, sides = mesh.pairs
+    sharp = np.zeros(len(mesh.edges), dtype=bool)
+    turned = _angles(*(mesh.triangle_normals[side // 3] for side in sides.T))
     sharp[edges] = turned > region.sharp_rad
-    part = parts_of(whole.faces, table, sharp)
+    part = mesh.parts(sharp)
     return np.asarray(part == part[_nearest_face(whole, np.array(region.seed_m))])
 
 

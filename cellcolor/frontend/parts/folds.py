@@ -12,9 +12,8 @@ import trimesh
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.cleaning import flat_faces, used
-from cellcolor.frontend.parts.sharp import sharp_edges
-from cellcolor.frontend.parts.surface import Faces, face_normals
-from cellcolor.frontend.parts.topology import edge_table
+from cellcolor.frontend.parts.surface import Faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["fold_angle", "folds", "unfolded"]
 
@@ -22,13 +21,13 @@ _LEAST, _MOST = np.radians(150.0), np.radians(175.0)
 _DEGREES = np.radians(1.0)
 
 
-def fold_angle(vertices: Array, faces: Faces) -> float:
+def fold_angle(mesh: TriangleMesh) -> float:
     """From where on two faces count as folded, rad.
 
     That is what no edge of this mesh has, from 150 degrees up, and 175 at most.
     """
     angles = np.arange(_LEAST, _MOST + _DEGREES / 2, _DEGREES)
-    sharper = [len(sharp_edges(vertices, faces, angle)) > 0 for angle in angles[:-1]]
+    sharper = [len(mesh.sharp_edges(angle)) > 0 for angle in angles[:-1]]
     return float(angles[sharper.index(False) if False in sharper else -1])
 
 
@@ -65,10 +64,8 @@ def unfolded(
 def folds(vertices: Array, faces: Faces, angle: float) -> list[Index]:
     """The vertices of each flat face, and of each pair of faces that are folded."""
     flat = flat_faces(vertices, faces)
-    table = edge_table(faces)
-    _, sides = table.pairs()
-    pairs = sides // 3
-    normals = face_normals(vertices, faces)
+    mesh = TriangleMesh(vertices, faces)
+    pairs, normals = mesh.pairs[1] // 3, mesh.area_vectors
     turned = _turned(normals[pairs[:, 0]], normals[pairs[:, 1]], angle) & ~flat[pairs].any(axis=1)
     return [*faces[flat], *map(np.unique, faces[pairs[turned]])]
 
@@ -91,8 +88,8 @@ class _Patch:
         for face, corners in self.corners.items():
             for corner in corners:
                 self.faces_of[corner].add(face)
-        table = edge_table(faces)
-        self.fixed = set(table.ends[table.count != 2].ravel().tolist())
+        mesh = TriangleMesh(vertices, faces)
+        self.fixed = set(mesh.edges[mesh.triangles_at != 2].ravel().tolist())
 
     def faces(self) -> Faces:
         return np.array(list(self.corners.values()), dtype=np.int64).reshape(-1, 3)
@@ -160,7 +157,7 @@ class _Patch:
                     pairs.append((twin, number))
                 of_edge[edge] = number
         at = np.array(pairs, dtype=np.int64).reshape(-1, 2)
-        normals = face_normals(self.vertices, rows)
+        normals = TriangleMesh(self.vertices, rows).area_vectors
         turned = _turned(normals[at[:, 0]], normals[at[:, 1]], self.angle)
         return int(flat.sum()) + int((turned & ~flat[at].any(axis=1)).sum())
 

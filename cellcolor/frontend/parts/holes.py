@@ -1,4 +1,4 @@
-"""Holes of a mesh: its border loops, and faces that close them.
+"""Holes of a mesh: its borders, and faces that close them.
 
 A hole is filled with the triangulation of least area among its own vertices, as Barequet and
 Sharir do ("Filling gaps in the boundary of a polyhedron", 1995).
@@ -10,39 +10,24 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.topology import EdgeTable, edge_table, grouped
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
-__all__ = ["MOST_EDGES", "border_groups", "filling", "loops"]
+__all__ = ["MOST_EDGES", "border_groups", "borders", "filling"]
 
 MOST_EDGES = 250  # of a hole that is filled; the work grows with the third power
 
 
-def border_groups(table: EdgeTable) -> tuple[Index, Index]:
+def border_groups(mesh: TriangleMesh) -> tuple[Index, Index]:
     """The edges (b,) of one face only, and the group (b,) of each: those that hang together."""
-    border = np.flatnonzero(table.count == 1)
-    ends = table.ends[border]
-    _, number = np.unique(ends, return_inverse=True)
-    number = number.reshape(-1, 2)
-    group = grouped(int(number.max(initial=-1)) + 1, number)
-    _, own = np.unique(group[number[:, 0]], return_inverse=True) if len(border) else (0, border)
-    return border, np.asarray(own, dtype=np.int64)
+    border = np.flatnonzero(mesh.triangles_at == 1)
+    ends = mesh.edges[border]
+    group = grouped(len(mesh.points), ends)[ends[:, 0]]
+    return border, np.unique(group, return_inverse=True)[1]
 
 
-def loops(faces: Faces) -> list[list[int]]:
-    """The border loops of a manifold, each against the winding of its faces, so as to fill it."""
-    table = edge_table(faces)
-    following = np.roll(faces, -1, axis=1)
-    border = table.count[table.of_face] == 1
-    after = dict(zip(following[border].tolist(), faces[border].tolist(), strict=True))
-    found = []
-    while after:
-        first, vertex = after.popitem()
-        loop = [first]
-        while vertex != first:
-            loop.append(vertex)
-            vertex = after.pop(vertex)
-        found.append(loop)
-    return sorted(found, key=lambda loop: min(loop))
+def borders(mesh: TriangleMesh) -> int:
+    """How many borders there are: groups of edges of one face that hang together."""
+    return int(border_groups(mesh)[1].max(initial=-1)) + 1
 
 
 def filling(vertices: Array, loop: list[int], edges: set[tuple[int, int]]) -> Faces | None:

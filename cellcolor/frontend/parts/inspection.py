@@ -11,20 +11,20 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
     flat_faces,
+    inside_out,
     merged,
     repeated_corners,
     repeated_faces,
-    used,
+    turned,
 )
 from cellcolor.frontend.parts.crossings import crossing_pairs
 from cellcolor.frontend.parts.holes import border_groups
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.sharp import SHARP, sharp_edges
 from cellcolor.frontend.parts.splitting import fans
-from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.topology import EdgeTable, edge_table, face_areas, parts_of
-from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
+from cellcolor.frontend.parts.surface import SHARP, Faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Component", "FaultyPlaces", "Hole", "MeshFacts", "facts_of"]
 
@@ -163,23 +163,19 @@ def facts_of(
         raise InputError(None, "faces", "none has an area")
     deadline.check()
     tell("looking at edges and components")
-    table = edge_table(clean)
-    part = parts_of(clean, table)
-    area = face_areas(points, clean)
-    open_ = (table.count[table.of_face] != 2).any(axis=1)
-    turn, one_sided = against_the_others(clean, table)
-    wound = turned(clean, turn)
-    wrong = inside_out(points, wound, table)
-    holes = _holes(points, table)
-    many = table.ends[table.count > 2]
-    split = _several_fans(clean, table)
+    mesh = TriangleMesh(points, clean)
+    part, area = mesh.parts(), mesh.areas
+    open_ = (mesh.triangles_at[mesh.edge_of_side] != 2).any(axis=1)
+    turn, one_sided = against_the_others(mesh)
+    wrong = inside_out(TriangleMesh(points, turned(clean, turn)))
+    holes = _holes(mesh)
+    many = mesh.edges[mesh.triangles_at > 2]
+    split = _several_fans(mesh)
     tell("looking for faces that cross")
     crossing = crossing_pairs(points, clean, deadline)
     deadline.check()
     tell("measuring edges")
-    sharp = sharp_edges(points, clean, SHARP)
-    lengths = _lengths(points, table.ends)
-    ends = points[sharp]
+    sharp = mesh.sharp_edges(SHARP)
     manifold = not (len(many) or len(split))
     crossed = np.zeros((0, 2), dtype=np.int64) if crossing is None else crossing
     places = FaultyPlaces(
@@ -191,10 +187,10 @@ def facts_of(
             "faces that cross": points[clean[np.unique(crossed)]],
         },
         {
-            "holes and borders": points[table.ends[table.count == 1]],
+            "holes and borders": points[mesh.edges[mesh.triangles_at == 1]],
             "edges of three faces and more": points[many],
         },
-        ends,
+        points[mesh.edges[sharp]],
     )
     return MeshFacts(
         len(faces),
@@ -213,11 +209,12 @@ def facts_of(
         int(turn.sum()),
         bool(one_sided.any()),
         len(np.unique(part[wrong])),
-        None if crossing is None else _crossing_places(points, clean, crossing),
-        tuple(np.percentile(lengths, [0, 25, 50, 75, 100]).tolist()),
+        None if crossing is None else _crossing_places(mesh, crossing),
+        tuple(np.percentile(mesh.lengths, [0, 25, 50, 75, 100]).tolist()),
         len(sharp),
-        float(np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).sum()),
-        _genus(clean, table, len(holes), int(part.max()) + 1) if manifold else None,
+        float(mesh.lengths[sharp].sum()),
+        # By Euler's formula: handles of all components together.
+        (2 * (int(part.max()) + 1) - len(holes) - mesh.euler) // 2 if manifold else None,
         refusal,
         places,
     )
@@ -236,10 +233,6 @@ def _place(point: Array) -> Place:
     return x, y, z
 
 
-def _lengths(points: Array, edges: Index) -> Array:
-    return np.asarray(np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1))
-
-
 def _components(part: Index, area: Array, open_: Mask) -> tuple[Component, ...]:
     sizes, areas = np.bincount(part), np.bincount(part, area)
     opened = np.bincount(part, open_) > 0
@@ -247,15 +240,14 @@ def _components(part: Index, area: Array, open_: Mask) -> tuple[Component, ...]:
     return tuple(Component(int(sizes[k]), float(areas[k]), not opened[k]) for k in order)
 
 
-def _holes(points: Array, table: EdgeTable) -> tuple[Hole, ...]:
-    border, group = border_groups(table)
+def _holes(mesh: TriangleMesh) -> tuple[Hole, ...]:
+    border, group = border_groups(mesh)
     if not len(border):
         return ()
-    lengths = _lengths(points, table.ends[border])
-    count, total = np.bincount(group), np.bincount(group, lengths)
+    count, total = np.bincount(group), np.bincount(group, mesh.lengths[border])
     middle = np.column_stack(
         [
-            np.bincount(group, points[table.ends[border], axis].mean(axis=1)) / count
+            np.bincount(group, mesh.points[mesh.edges[border], axis].mean(axis=1)) / count
             for axis in range(3)
         ]
     )
@@ -263,25 +255,16 @@ def _holes(points: Array, table: EdgeTable) -> tuple[Hole, ...]:
     return tuple(Hole(float(total[k]), int(count[k]), _place(middle[k])) for k in order)
 
 
-def _several_fans(faces: Faces, table: EdgeTable) -> Index:
+def _several_fans(mesh: TriangleMesh) -> Index:
     """Vertices on no edge of three faces and more around which the faces form several fans."""
-    _, sides = table.pairs()
-    fan = fans(faces, sides).ravel()
+    fan = fans(mesh.corners, mesh.pairs[1]).ravel()
     _, first = np.unique(fan, return_index=True)
-    vertex, count = np.unique(faces.ravel()[first], return_counts=True)
+    vertex, count = np.unique(mesh.corners.ravel()[first], return_counts=True)
     several = vertex[count > 1]
-    return several[~np.isin(several, table.ends[table.count > 2])]
+    return several[~np.isin(several, mesh.edges[mesh.triangles_at > 2])]
 
 
-def _crossing_places(points: Array, faces: Faces, pairs: Index) -> tuple[Place, ...]:
+def _crossing_places(mesh: TriangleMesh, pairs: Index) -> tuple[Place, ...]:
     """The middles of the smaller face of each pair."""
-    area = face_areas(points, faces)[pairs]
-    smaller = np.take_along_axis(pairs, np.argmin(area, axis=1)[:, None], axis=1)[:, 0]
-    return tuple(map(_place, points[faces[smaller]].mean(axis=1)))
-
-
-def _genus(faces: Faces, table: EdgeTable, borders: int, components: int) -> int:
-    """Handles of all components together, by Euler's formula."""
-    vertices, _ = used(np.zeros((int(faces.max()) + 1, 3)), faces)
-    euler = len(vertices) - len(table.ends) + len(faces)
-    return (2 * components - borders - euler) // 2
+    smaller = np.take_along_axis(pairs, np.argmin(mesh.areas[pairs], axis=1)[:, None], axis=1)
+    return tuple(map(_place, mesh.points[mesh.corners[smaller[:, 0]]].mean(axis=1)))

@@ -10,9 +10,20 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import in_meters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.remesh import refine, repair
-from cellcolor.frontend.parts.surface import Faces, Surface, face_normals
+from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
+    inside_out,
+    merged,
+    repeated_corners,
+    repeated_faces,
+    turned,
+    used,
+    without_flat,
+)
+from cellcolor.frontend.parts.refining import refine
+from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import check_vertices
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["mesh_surface", "summed_normals"]
 
@@ -36,7 +47,10 @@ def mesh_surface(
         faces: (m, 3) vertex indices, counter-clockwise as seen from outside.
         meters_per_unit: of the coordinates.
         max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
-        mend: see :func:`~cellcolor.frontend.parts.remesh.repair`.
+        mend: merge vertices in one place, drop useless faces and vertices, make the winding
+            consistent. A closed mesh is turned outside out. Of an open one the side that most
+            faces have is kept; which side is the outside nobody but its owner knows. What is
+            still wrong afterwards (edges that are not manifold, holes) stays.
         deadline: when to give up.
 
     Raises:
@@ -55,34 +69,44 @@ def mesh_surface(
     if mend and len(faces) and np.isfinite(vertices).all():
         # Sizes first: a triangle that is far too long for a unit looks like one without area.
         _check_size(vertices[np.unique(faces)], meters_per_unit)
-        vertices, faces = repair(vertices, faces)
+        vertices, faces = _repaired(vertices, faces)
     if not len(faces):
         raise InputError(None, "faces", "there are none")
     _check_size(vertices, meters_per_unit)
     check_vertices(len(vertices))
     # The labelled surface's own rules, held here before any work is done.
-    bare = LabelledSurface("part", (), vertices, faces, ((),) * len(vertices))
+    LabelledSurface("part", (), vertices, faces, ((),) * len(vertices))
     deadline.check()
-    _check_elements(vertices, faces)
-    if all((j, i) in bare.left_of for i, j in bare.left_of):  # closed
+    mesh = TriangleMesh(vertices, faces)
+    _check_elements(mesh)
+    if not mesh.border.any():  # closed
         corners = vertices[faces]
         if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
             raise InputError(None, "faces", "closed mesh inside out: its volume is negative")
     if max_edge_m is not None:
         size = in_meters((np.ptp(vertices, axis=0) * meters_per_unit).tolist(), " x ")
         try:
-            vertices, faces = refine(vertices, faces, max_edge_m / meters_per_unit, deadline)
+            mesh = refine(mesh, max_edge_m / meters_per_unit, deadline)
         except InputError as error:
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
     deadline.check()
-    normals = summed_normals(vertices, faces)
+    normals = summed_normals(mesh)
     size = np.linalg.norm(normals, axis=1, keepdims=True)
     if size.min() < 1e-6:
         vertex = np.argmin(size)
         raise InputError(None, f"vertices[{vertex}]", "has no normal: its faces cancel out")
     normals /= size
-    return Surface(vertices * meters_per_unit, faces, normals, faceted=True)
+    return Surface(mesh.points * meters_per_unit, mesh.corners, normals, faceted=True)
+
+
+def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
+    vertices, faces = merged(vertices, faces)
+    faces = faces[~repeated_corners(faces)]
+    faces = faces[~repeated_faces(faces)]
+    vertices, faces = used(vertices, without_flat(vertices, faces))
+    faces = turned(faces, against_the_others(TriangleMesh(vertices, faces))[0])
+    return vertices, turned(faces, inside_out(TriangleMesh(vertices, faces)))
 
 
 def _check_size(vertices: Array, meters_per_unit: float) -> None:
@@ -100,32 +124,30 @@ def _check_size(vertices: Array, meters_per_unit: float) -> None:
         raise InputError(None, "vertices", message)
 
 
-def _check_elements(vertices: Array, faces: Faces) -> None:
-    used = np.zeros(len(vertices), dtype=bool)
-    used[faces] = True
-    if not used.all():
-        raise InputError(None, f"vertices[{np.argmin(used)}]", "belongs to no face")
+def _check_elements(mesh: TriangleMesh) -> None:
+    vertices = mesh.points
+    there = np.zeros(len(vertices), dtype=bool)
+    there[mesh.corners] = True
+    if not there.all():
+        raise InputError(None, f"vertices[{np.argmin(there)}]", "belongs to no face")
     _, first, index = np.unique(vertices, axis=0, return_index=True, return_inverse=True)
     twin = first[index.reshape(-1)] != np.arange(len(vertices))
     if twin.any():
         vertex = int(np.argmax(twin))
         other = int(first[index.reshape(-1)[vertex]])
         raise InputError(None, f"vertices[{vertex}]", f"in one place with vertex {other}")
-    double_area = np.linalg.norm(face_normals(vertices, faces), axis=1)
-    longest = np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2).max(1)
-    flat = double_area <= 1e-9 * longest**2
+    longest = mesh.lengths[mesh.edge_of_side].max(axis=1)
+    flat = 2 * mesh.areas <= 1e-9 * longest**2
     if flat.any():
         raise InputError(None, f"faces[{np.argmax(flat)}]", "has no area")
 
 
-def summed_normals(vertices: Array, faces: Faces) -> Array:
+def summed_normals(mesh: TriangleMesh) -> Array:
     """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
 
     trimesh's own vertex normals have length 1 already, and so do not tell faces that cancel out.
     """
-    angles = trimesh.triangles.angles(vertices[faces])
-    unit = face_normals(vertices, faces)
-    unit /= np.linalg.norm(unit, axis=1, keepdims=True)
-    normals = np.zeros_like(vertices)
-    np.add.at(normals, faces, angles[:, :, None] * unit[:, None])
+    angles = trimesh.triangles.angles(mesh.points[mesh.corners])
+    normals = np.zeros_like(mesh.points)
+    np.add.at(normals, mesh.corners, angles[:, :, None] * mesh.triangle_normals[:, None])
     return normals

@@ -25,13 +25,12 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.folds import fold_angle, folds, unfolded
-from cellcolor.frontend.parts.holes import border_groups
-from cellcolor.frontend.parts.remesh import refine
+from cellcolor.frontend.parts.holes import borders
+from cellcolor.frontend.parts.refining import refine
 from cellcolor.frontend.parts.repairing import Change, Mending, Telling, mended
-from cellcolor.frontend.parts.sharp import SHARP, sharp_edges
-from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.topology import edge_table, face_areas
+from cellcolor.frontend.parts.surface import SHARP, Faces
 from cellcolor.frontend.sizes import MOST_VERTICES
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["Deviation", "expected_vertices", "length_for", "remeshed"]
 
@@ -90,30 +89,29 @@ def remeshed(
         ModuleNotFoundError: gpytoolbox is not installed.
         OutOfTime: the deadline came first.
     """
-    area = float(face_areas(vertices, faces).sum())
+    mesh = TriangleMesh(vertices, faces)
+    area = float(mesh.areas.sum())
     expected = expected_vertices(area, length)
     if not _FEWEST <= expected <= MOST_VERTICES:
         message = f"gives about {expected:,.0f} vertices, {_FEWEST} to {MOST_VERTICES:,} fit"
         raise InputError(None, "edge_length_m", message)
     if find_spec("gpytoolbox") is None:
         raise ModuleNotFoundError("No module named 'gpytoolbox'", name="gpytoolbox")
-    table = edge_table(faces)
-    i, j = table.ends[table.count == 1].T
-    border = np.linalg.norm(vertices[i] - vertices[j], axis=1)
-    if border.max(initial=0.0) > _LONGEST * length:
+    if mesh.lengths[mesh.triangles_at == 1].max(initial=0.0) > _LONGEST * length:
         try:
-            vertices, faces = refine(vertices, faces, _LONGEST * length, deadline)
+            mesh = refine(mesh, _LONGEST * length, deadline)
         except InputError as error:
             raise InputError(None, "edge_length_m", error.message) from error
-    kept = sharp_edges(vertices, faces, SHARP)
+    vertices, faces = mesh.points, mesh.corners
+    kept = mesh.edges[mesh.sharp_edges(SHARP)]
     tell(f"remeshing to about {expected:,.0f} vertices")
     made = _asked(deadline, vertices=vertices, faces=faces, length=length, kept=kept)
     tell("mending folds")
     points, corners, changes = _mended(
-        made["vertices"], made["faces"].astype(np.int64), fold_angle(vertices, faces), length,
+        made["vertices"], made["faces"].astype(np.int64), fold_angle(mesh), length,
         deadline,
     )  # fmt: skip
-    if _borders(corners) > _borders(faces):
+    if borders(TriangleMesh(points, corners)) > borders(mesh):
         message = "gpytoolbox has torn holes into the mesh; shorter edges keep more of its shape"
         raise InputError(None, "edge_length_m", message)
     tell("measuring the deviation")
@@ -147,10 +145,6 @@ def _mended(
         text = f"{count(len(left), 'fold')} of {np.degrees(angle):.0f} degrees and more left"
         changes.append(Change(f"{text}, {where}"))
     return vertices, faces, changes
-
-
-def _borders(faces: Faces) -> int:
-    return int(border_groups(edge_table(faces))[1].max(initial=-1)) + 1
 
 
 def _asked(deadline: Deadline, **question: Any) -> Any:

@@ -11,12 +11,20 @@ from cellcolor.arrays import Array
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.parts.holes import borders
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.remeshing import Deviation, length_for, remeshed
-from cellcolor.frontend.parts.repairing import LEAST_SHARE, Change, Mending, Telling, mended
+from cellcolor.frontend.parts.repairing import (
+    LEAST_SHARE,
+    Change,
+    Mending,
+    Telling,
+    area_of,
+    mended,
+)
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.topology import edge_table, face_areas
 from cellcolor.frontend.sizes import MOST_VERTICES
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 __all__ = ["MOST_FACES", "RepairedPart", "check_known_size", "repair_mesh"]
 
@@ -149,15 +157,15 @@ def repair_mesh(
     check_known_size(len(faces))
     points = np.asarray(vertices, dtype=np.float64) * meters_per_unit
     known = ((faces >= 0) & (faces < len(points))).all() and np.isfinite(points).all()
-    before = float(face_areas(points, faces).sum()) if known else 0.0
+    before = area_of(points, faces) if known else 0.0
     asked = Mending(fill_holes_m, least_share)
     points, faces, changes = mended(points, faces, asked, deadline, tell)
     deviation = None
     if edge_length_m is not None:
         was = len(points)
-        old = float(face_areas(points, faces).sum())
+        old = area_of(points, faces)
         points, faces, again, deviation = remeshed(points, faces, edge_length_m, deadline, tell)
-        gained = float(face_areas(points, faces).sum()) - old
+        gained = area_of(points, faces) - old
         text = f"remeshed to edges of about {1e3 * edge_length_m:.3g} mm: {len(points):,} vertices"
         change = Change(f"{text} instead of {was:,}", max(-gained, 0.0), max(gained, 0.0))
         changes += [change, *again]
@@ -171,9 +179,9 @@ def repair_mesh(
         faces,
         meters_per_unit,
         tuple(changes),
-        _borders(faces),
+        borders(TriangleMesh(points, faces)),
         before,
-        float(face_areas(points, faces).sum()),
+        area_of(points, faces),
         deviation,
     )
 
@@ -184,15 +192,8 @@ def _refused(
     """What is still wrong, and what would help where that is known."""
     message = f"cannot be made good: {error.message}"
     if len(points) > MOST_VERTICES:
-        length = length_for(float(face_areas(points, faces).sum()), _SUGGESTED)
+        length = length_for(area_of(points, faces), _SUGGESTED)
         message += f"; --edge-length {length:.2g} would give about {_SUGGESTED:,}"
     elif edge_length_m is not None:
         message += "; remeshed to shorter edges it keeps more of its shape"
     return InputError(None, error.field, message)
-
-
-def _borders(faces: Faces) -> int:
-    from cellcolor.frontend.parts.holes import border_groups
-
-    _, group = border_groups(edge_table(faces))
-    return int(group.max(initial=-1)) + 1

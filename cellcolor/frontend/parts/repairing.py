@@ -12,21 +12,23 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
     flat_faces,
+    inside_out,
     merged,
     repeated_corners,
     repeated_faces,
+    turned,
     used,
     without_flat,
 )
-from cellcolor.frontend.parts.holes import MOST_EDGES, filling, loops
+from cellcolor.frontend.parts.holes import MOST_EDGES, filling
 from cellcolor.frontend.parts.mesh import summed_normals
 from cellcolor.frontend.parts.splitting import split
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.topology import edge_table, face_areas, parts_of
-from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["LEAST_SHARE", "Change", "Mending", "Telling", "mended"]
+__all__ = ["LEAST_SHARE", "Change", "Mending", "Telling", "area_of", "mended"]
 
 LEAST_SHARE = 0.01
 """Components with less than this share of the largest one's area are dropped, if not asked."""
@@ -99,20 +101,21 @@ def mended(
     step("dropping useless faces")
     vertices, faces = _without_useless(vertices, faces, changes)
     step("making faces wind alike")
-    faces = _wound(faces, changes)
+    faces = _wound(vertices, faces, changes)
     _check_two_sided(vertices, faces)
     step("cutting apart what is no manifold")
     vertices, faces = _manifold(vertices, faces, changes)
     step("dropping small components")
     vertices, faces = _large(vertices, faces, asked.least_share, changes)
-    faces = _wound(faces, changes)
+    faces = _wound(vertices, faces, changes)
     step("filling holes")
     faces = _filled(vertices, faces, asked.longest_hole, changes, deadline)
     # A component that was open till now has an inside and an outside now.
     step("turning closed components outward")
-    wrong = inside_out(vertices, faces)
+    mesh = TriangleMesh(vertices, faces)
+    wrong = inside_out(mesh)
     if wrong.any():
-        parts = count(_parts(faces[wrong]), "closed component")
+        parts = count(len(np.unique(mesh.parts()[wrong])), "closed component")
         changes.append(Change(f"{parts} turned outside out: {count(int(wrong.sum()), 'face')}"))
         faces = turned(faces, wrong)
     return vertices, faces, changes
@@ -138,8 +141,9 @@ def _note(changes: list[Change], number: int, one: str, what: str, many: str | N
         changes.append(Change(f"{number:,} {name} {what}"))
 
 
-def _parts(faces: Faces) -> int:
-    return int(parts_of(faces, edge_table(faces)).max(initial=-1)) + 1
+def area_of(vertices: Array, faces: Faces) -> float:
+    """The area of all faces."""
+    return float(TriangleMesh(vertices, faces).areas.sum())
 
 
 def _without_useless(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Array, Faces]:
@@ -148,7 +152,7 @@ def _without_useless(vertices: Array, faces: Faces, changes: list[Change]) -> tu
     faces = faces[~folded]
     twice = repeated_faces(faces)
     if twice.any():
-        area = float(face_areas(vertices, faces[twice]).sum())
+        area = area_of(vertices, faces[twice])
         changes.append(Change(f"{count(int(twice.sum()), 'face')} dropped: there twice", area))
     faces = faces[~twice]
     flat = int(flat_faces(vertices, faces).sum())
@@ -162,14 +166,14 @@ def _without_useless(vertices: Array, faces: Faces, changes: list[Change]) -> tu
 
 def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Array, Faces]:
     number = len(faces)
-    area = float(face_areas(vertices, faces).sum())
+    area = area_of(vertices, faces)
     while True:
         parted, renumbered, moved = split(vertices, faces)
         stuck = _stuck(parted, renumbered)
         if not stuck.any():
             break
         vertices, faces = used(vertices, faces[~stuck])
-    before = float(face_areas(vertices, faces).sum())
+    before = area_of(vertices, faces)
     if number > len(faces):
         text = f"{count(number - len(faces), 'face')} dropped: in the way on edges of three faces"
         changes.append(Change(f"{text} and more", area - before))
@@ -177,7 +181,7 @@ def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Arr
         copies = len(parted) - len(vertices)
         name = "1 vertex" if copies == 1 else f"{copies:,} vertices"
         text = f"{name} added: the mesh cut apart where it was no manifold, and copies of a vertex "
-        changed = float(face_areas(parted, renumbered).sum() - before)
+        changed = area_of(parted, renumbered) - before
         text += f"moved by up to {moved:.3g}"
         changes.append(Change(text, max(-changed, 0.0), max(changed, 0.0)))
     return parted, renumbered
@@ -185,22 +189,22 @@ def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Arr
 
 def _stuck(vertices: Array, faces: Faces) -> Mask:
     """The smallest face (m,) on each edge that could not be cut apart: its ends hang together."""
-    table = edge_table(faces)
-    edges, sides = table.pairs()
-    forward = table.forward.ravel()
-    bad = table.count > 2
-    bad[edges[forward[sides[:, 0]] == forward[sides[:, 1]]]] = True
+    mesh = TriangleMesh(vertices, faces)
+    (edges, sides), of_side, area = mesh.pairs, mesh.edge_of_side, mesh.areas[:, None]
+    ascending = mesh.ascending.ravel()
+    bad = mesh.triangles_at > 2
+    bad[edges[ascending[sides[:, 0]] == ascending[sides[:, 1]]]] = True
     smallest = np.full(len(bad), np.inf)
-    area = face_areas(vertices, faces)
-    np.minimum.at(smallest, table.of_face, area[:, None])
-    return np.asarray((bad[table.of_face] & (area[:, None] <= smallest[table.of_face])).any(axis=1))
+    np.minimum.at(smallest, of_side, area)
+    return np.asarray((bad[of_side] & (area <= smallest[of_side])).any(axis=1))
 
 
 def _large(
     vertices: Array, faces: Faces, least: float, changes: list[Change]
 ) -> tuple[Array, Faces]:
-    part = parts_of(faces, edge_table(faces))
-    area = np.bincount(part, face_areas(vertices, faces))
+    mesh = TriangleMesh(vertices, faces)
+    part = mesh.parts()
+    area = np.bincount(part, mesh.areas)
     small = area < least * area.max()
     if small.any():
         gone = float(area[small].sum())
@@ -209,14 +213,14 @@ def _large(
     return used(vertices, faces[~small[part]])
 
 
-def _wound(faces: Faces, changes: list[Change]) -> Faces:
-    turn, _ = against_the_others(faces, edge_table(faces))
+def _wound(vertices: Array, faces: Faces, changes: list[Change]) -> Faces:
+    turn, _ = against_the_others(TriangleMesh(vertices, faces))
     _note(changes, int(turn.sum()), "face", "turned to wind like those around")
     return turned(faces, turn)
 
 
 def _check_two_sided(vertices: Array, faces: Faces) -> None:
-    _, one_sided = against_the_others(faces, edge_table(faces))
+    _, one_sided = against_the_others(TriangleMesh(vertices, faces))
     if one_sided.any():
         face = int(np.argmax(one_sided))
         message = "lies in a one-sided component, as a Moebius strip is: it has no outside"
@@ -229,11 +233,11 @@ def _filled(
 ) -> Faces:
     if not longest:
         return faces
-    table = edge_table(faces)
-    edges = {(i, j) for i, j in table.ends.tolist()}
+    mesh = TriangleMesh(vertices, faces)
+    edges = {(i, j) for i, j in mesh.edges.tolist()}
     added: list[Faces] = []
     left = 0
-    for loop in loops(faces):
+    for loop in mesh.border_loops():
         deadline.check()
         points = vertices[loop]
         length = float(np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1).sum())
@@ -244,14 +248,14 @@ def _filled(
             left += 1
             continue
         added.append(new)
-        edges |= {(i, j) for i, j in edge_table(new).ends.tolist()}
+        edges |= {(i, j) for i, j in TriangleMesh(vertices, new).edges.tolist()}
     if added:
         fitting = _without_folds(vertices, faces, added)
         left += len(added) - len(fitting)
         added = fitting
     if added:
         new = np.concatenate(added)
-        area = float(face_areas(vertices, new).sum())
+        area = area_of(vertices, new)
         text = f"{count(len(added), 'hole')} filled with {count(len(new), 'face')}"
         changes.append(Change(text, 0.0, area))
         faces = np.concatenate([faces, new])
@@ -261,6 +265,6 @@ def _filled(
 
 def _without_folds(vertices: Array, faces: Faces, added: list[Faces]) -> list[Faces]:
     """Fillings of holes but those that fold back onto the faces around, as in a slit."""
-    normals = summed_normals(vertices, np.concatenate([faces, *added]))
+    normals = summed_normals(TriangleMesh(vertices, np.concatenate([faces, *added])))
     folded = np.linalg.norm(normals, axis=1) < _UPRIGHT
     return [new for new in added if not folded[new].any()]

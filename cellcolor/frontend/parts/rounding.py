@@ -15,9 +15,7 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.parts.sharp import SHARP, sharp_edges
-from cellcolor.frontend.parts.surface import Surface, face_normals
-from cellcolor.frontend.parts.topology import edge_table, face_areas
+from cellcolor.frontend.parts.surface import SHARP, Surface
 from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.sizes import check_rounding
 
@@ -48,7 +46,7 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
         return surface
     around = _Around.of(surface)
     asked = np.flatnonzero((around.rims() < radius) & around.is_bent(radius))
-    size = float(face_areas(surface.vertices, surface.faces).mean())
+    size = float(surface.mesh.areas.mean())
     check_rounding(len(asked), min(np.pi * radius**2 / size, len(surface.faces)))
     normals = shared(surface.normals.shape, np.float64)
     normals[:] = surface.normals
@@ -73,13 +71,13 @@ def longest_beside_sharp(surface: Surface) -> float:
 
     Normals are known at vertices, and the tool turns evenly between them.
     """
-    sharp = sharp_edges(surface.vertices, surface.faces, SHARP)
-    on = np.zeros(len(surface.vertices), dtype=bool)
-    on[sharp] = True
-    edges = surface.edges()
-    count = len(surface.vertices)
-    beside = on[edges].any(axis=1) & ~np.isin(edges @ [count, 1], sharp @ [count, 1])
-    return float(surface.lengths(edges[beside]).max(initial=0.0))
+    mesh = surface.mesh
+    sharp = mesh.sharp_edges(SHARP)
+    on = np.zeros(len(mesh.points), dtype=bool)
+    on[mesh.edges[sharp]] = True
+    beside = np.asarray(on[mesh.edges].any(axis=1))
+    beside[sharp] = False
+    return float(mesh.lengths[beside].max(initial=0.0))
 
 
 @dataclass(frozen=True)
@@ -97,12 +95,10 @@ class _Around:
 
     @classmethod
     def of(cls, surface: Surface) -> _Around:
-        unit = face_normals(surface.vertices, surface.faces)
-        unit /= np.linalg.norm(unit, axis=1, keepdims=True)
-        _, sides = edge_table(surface.faces).pairs()
+        _, sides = surface.mesh.pairs
         beside = np.full(surface.faces.size, -1, dtype=np.int64)
         beside[sides[:, 0]], beside[sides[:, 1]] = sides[:, 1] // 3, sides[:, 0] // 3
-        return cls(surface, unit, beside.reshape(-1, 3))
+        return cls(surface, surface.mesh.triangle_normals, beside.reshape(-1, 3))
 
     def rims(self) -> Array:
         """How near to each vertex (n,) the far side of one of its faces is."""
@@ -115,10 +111,10 @@ class _Around:
 
     def is_bent(self, radius: float) -> Mask:
         """Which vertices (n,) may have another plane than their own faces' within a radius."""
-        table = edge_table(self.surface.faces)
-        edges, sides = table.pairs()
+        mesh = self.surface.mesh
+        edges, sides = mesh.pairs
         chord = self.unit[sides[:, 0] // 3] - self.unit[sides[:, 1] // 3]
-        ends = self.surface.vertices[table.ends[edges[np.linalg.norm(chord, axis=1) > _BENT]]]
+        ends = mesh.points[mesh.edges[edges[np.linalg.norm(chord, axis=1) > _BENT]]]
         # Points on the edges, none of them farther than half the radius from the next.
         number = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / radius * 2).astype(int)
         edge = np.repeat(np.arange(len(ends)), number + 1)

@@ -11,8 +11,8 @@ from itertools import combinations
 import numpy as np
 
 from cellcolor.arrays import Array, Index
-from cellcolor.frontend.parts.surface import Faces, face_normals
-from cellcolor.frontend.parts.topology import EdgeTable, edge_table, grouped, parts_of
+from cellcolor.frontend.parts.surface import Faces
+from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
 __all__ = ["fans", "split"]
 
@@ -46,9 +46,8 @@ def split(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
     Returns:
         vertices, faces, and how far a copy of a vertex was moved at most, in the vertices' unit.
     """
-    table = edge_table(faces)
-    _, sides = table.pairs()
-    glued = np.concatenate([sides, _glued(vertices, faces, table)])
+    mesh = TriangleMesh(vertices, faces)
+    glued = np.concatenate([mesh.pairs[1], _glued(mesh)])
     fan = fans(faces, glued)
     group, first, number, corners = np.unique(
         fan.ravel(), return_index=True, return_inverse=True, return_counts=True
@@ -63,17 +62,14 @@ def split(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
     return (*_moved_apart(places, parted, moved),)
 
 
-def _glued(vertices: Array, faces: Faces, table: EdgeTable) -> Index:
+def _glued(mesh: TriangleMesh) -> Index:
     """Pairs of sides (p, 2) that stay together at edges of three faces and more."""
-    many = table.count > 2
-    part = parts_of(faces, table, many)
-    normals = face_normals(vertices, faces)
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-300)
-    order = np.argsort(table.of_face, axis=None, kind="stable")
-    begin = np.cumsum(table.count) - table.count
+    many = mesh.triangles_at > 2
+    part, ascending = mesh.parts(many), mesh.ascending.ravel()
+    normals = np.nan_to_num(mesh.triangle_normals)
     chosen: list[tuple[int, int]] = []
     for edge in np.flatnonzero(many).tolist():
-        around = order[begin[edge] : begin[edge] + table.count[edge]].tolist()
+        around = mesh.sides_of(edge).tolist()
 
         def rank(pair: tuple[int, int]) -> tuple[bool, float]:
             """Connected ones first, then those that bend least."""
@@ -82,7 +78,7 @@ def _glued(vertices: Array, faces: Faces, table: EdgeTable) -> Index:
 
         free = set(around)
         for pair in sorted(combinations(around, 2), key=rank):
-            alike = table.forward.flat[pair[0]] != table.forward.flat[pair[1]]
+            alike = ascending[pair[0]] != ascending[pair[1]]
             if alike and pair[0] in free and pair[1] in free:
                 free -= set(pair)
                 chosen.append(pair)

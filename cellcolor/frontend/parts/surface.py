@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["Faces", "Surface", "along_edges", "every_edge", "face_normals"]
+__all__ = ["SHARP", "Faces", "Surface", "along_edges"]
 
 Faces = NDArray[np.int64]
+
+SHARP = float(np.radians(30.0))
+"""Between the normals of two faces, rad; an edge is sharp from there on."""
 
 
 @dataclass(frozen=True)
@@ -37,16 +42,18 @@ class Surface:
         vertices = self.vertices @ rotation.T + np.array(placement.position_m)
         return replace(self, vertices=vertices, normals=self.normals @ rotation.T)
 
+    @cached_property
+    def mesh(self) -> TriangleMesh:
+        """The mesh alone, with what follows from it."""
+        return TriangleMesh(self.vertices, self.faces)
+
     def vertex_areas(self) -> Array:
         """A third of the adjoining faces' areas, (n,), m^2; they add up to the whole."""
-        third = np.linalg.norm(face_normals(self.vertices, self.faces), axis=1) / 6
-        areas = np.zeros(len(self.vertices))
-        np.add.at(areas, self.faces, third[:, None])
-        return areas
+        return self.mesh.vertex_areas
 
     def edges(self) -> Faces:
         """Every mesh edge once, (k, 2), smaller index first, in lexicographic order."""
-        return every_edge(self.faces)
+        return self.mesh.edges
 
     def lengths(self, edges: Faces) -> Array:
         """Lengths (k,) of mesh edges (k, 2), m."""
@@ -59,23 +66,6 @@ class Surface:
         i, j = edges.T
         chord = np.linalg.norm(self.normals[i] - self.normals[j], axis=1)
         return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
-
-
-def every_edge(faces: Faces) -> Faces:
-    """The edges (k, 2) of faces (m, 3), each once, in lexicographic order."""
-    pairs = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
-    pairs.sort(axis=1)
-    # One number a pair, sorted: np.unique takes fifty times as long, by rows or by numbers.
-    count = int(pairs.max(initial=0)) + 1
-    numbers = np.sort(pairs[:, 0] * count + pairs[:, 1])
-    return np.stack(np.divmod(numbers[np.diff(numbers, prepend=-1) > 0], count), axis=1)
-
-
-def face_normals(vertices: Array, faces: Faces) -> Array:
-    """Normals (m, 3) with twice the face's area as their length."""
-    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
-    normals: Array = np.cross(b - a, c - a)
-    return normals
 
 
 def along_edges(surface: Surface, edges: Index, way: Array) -> tuple[Array, Array]:

@@ -12,8 +12,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack
@@ -21,6 +19,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
 from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.mesh.triangle_mesh import grouped
 
 __all__ = [
     "Coloring",
@@ -136,8 +135,7 @@ def color_nodes(
             configurations.
     """
     branches = nodes.shape[1]
-    graph = coo_array((np.ones(len(links)), (links[:, 0], links[:, 1])), shape=(nodes.size,) * 2)
-    component = connected_components(graph, directed=False)[1]
+    component = grouped(nodes.size, links)
     present = np.flatnonzero(nodes)
     _, first, inverse, count = np.unique(
         component[present], return_index=True, return_inverse=True, return_counts=True

@@ -14,7 +14,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
@@ -22,6 +21,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import Measure, joint_step, shorter_way
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
+from cellcolor.mesh.triangle_mesh import grouped
 
 __all__ = ["MOST_SHEETS", "Sheets", "edges_at_once", "linked_pairs", "sheets_of"]
 
@@ -161,8 +161,7 @@ def sheets_of(
     """
     count, slots = nodes.shape
     here, there = (edges[pairs[:, 0], end] * slots + pairs[:, 1 + end] for end in (0, 1))
-    graph = coo_array((np.ones(len(pairs)), (here, there)), shape=(nodes.size,) * 2)
-    component = connected_components(graph, directed=False)[1]
+    component = grouped(nodes.size, np.column_stack([here, there]))
     present = np.flatnonzero(nodes)
     _check_injective(surface, present, component[present], slots, solutions.joints)
     neighbors = coo_array(

@@ -16,13 +16,12 @@ import heapq
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.setup import Slivers
+from cellcolor.mesh.triangle_mesh import grouped
 
 __all__ = ["SliverReport", "clean"]
 
@@ -98,10 +97,7 @@ def _cells(edges: Index, linked: Mask, node_color: Index) -> Index:
     """Cell of each vertex, (n,): equal colors, joined over edges without a crack."""
     first, second = node_color[edges[:, 0]], node_color[edges[:, 1]]
     together = ((first == second) & (linked | (first < 0))).all(axis=1)
-    i, j = edges[together].T
-    n = len(node_color)
-    cells: Index = connected_components(coo_array((np.ones(len(i)), (i, j)), shape=(n, n)))[1]
-    return cells.astype(np.int64)
+    return grouped(len(node_color), edges[together])
 
 
 class _CellGraph:

@@ -6,11 +6,11 @@ import heapq
 
 import numpy as np
 
-from cellcolor.data.mesh import directed_edges
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.lab.families.cracks import crack_paths
 from cellcolor.lab.families.meshes import Topology, make_mesh
+from cellcolor.mesh.oriented import directed_edges
 
 __all__ = ["voronoi"]
 

@@ -23,7 +23,7 @@ from cellcolor.frontend.arm.kinematics import (
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.pictures.arm import body_mesh, obstacle_mesh
-from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface, vertex_normals
+from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
 from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.report_page.surface_modes import (
     SurfaceMode,
@@ -74,8 +74,8 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
         "frames": _frames(prepared, trajectory, frames),
         "limits": _limits(prepared),
         "joint_names": list(trajectory.joint_names),
-        "places": _places(trajectory, vertices, vertex_normals(vertices, faces)),
-        "eye": _eye(vertices, faces).tolist(),
+        "places": _places(trajectory, vertices, surface.vertex_normals),
+        "eye": _eye(surface).tolist(),
     }
 
 
@@ -256,13 +256,13 @@ def _edge(vertices: Array, faces: NDArray[np.int64]) -> float:
     return float(np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1).mean())
 
 
-def _eye(vertices: Array, faces: NDArray[np.int64]) -> Array:
+def _eye(surface: LabelledSurface) -> Array:
     """A unit vector from the scene to the eye: much of the part's outside, and the arm beside it.
 
     Of 24 directions around the vertical, at two heights, the one that sees most of the outside;
     from where the arm stands before the part, or behind it, only if much more is seen from there.
     """
-    normals, middle = vertex_normals(vertices, faces), vertices.mean(axis=0)
+    normals, middle = surface.vertex_normals, surface.vertices.mean(axis=0)
     away = middle[:2] / max(float(np.linalg.norm(middle[:2])), 1e-9)
     around = np.tile(np.radians(np.arange(0, 360, 15)), 2)
     rises = np.repeat(np.radians([28, 40]), 24)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.frontend.parts.folds import fold_angle, unfolded
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SIDE = 9  # vertices of a plane square, one unit apart
 
@@ -79,9 +80,8 @@ def test_a_sharp_edge_of_the_part_is_no_fold(wedge: float, expected: float) -> N
     points = np.array(
         [[0, 0, 0], [0, 1, 0]] + [[np.cos(half), 0.5, sign * np.sin(half)] for sign in (1.0, -1.0)]
     )
-    assert np.degrees(fold_angle(points, np.array([[0, 1, 2], [1, 0, 3]]))) == pytest.approx(
-        expected
-    )
+    mesh = TriangleMesh(points, np.array([[0, 1, 2], [1, 0, 3]]))
+    assert np.degrees(fold_angle(mesh)) == pytest.approx(expected)
 
 
 def test_the_deadline() -> None:

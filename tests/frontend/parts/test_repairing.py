@@ -9,17 +9,24 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.data.mesh import directed_edges
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.cleaning import flat_faces, merged, repeated_faces, without_flat
+from cellcolor.frontend.parts.cleaning import (
+    against_the_others,
+    flat_faces,
+    inside_out,
+    merged,
+    repeated_faces,
+    turned,
+    without_flat,
+)
 from cellcolor.frontend.parts.crossings import MOST_FACES, crossing_pairs
-from cellcolor.frontend.parts.holes import filling, loops
+from cellcolor.frontend.parts.holes import filling
 from cellcolor.frontend.parts.inspection import facts_of
 from cellcolor.frontend.parts.repairing import Mending, mended
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.splitting import split
-from cellcolor.frontend.parts.topology import edge_table, parts_of
-from cellcolor.frontend.parts.winding import against_the_others, inside_out, turned
+from cellcolor.mesh.oriented import directed_edges
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 BALL = trimesh.creation.icosphere(subdivisions=2, radius=0.1)
 VERTICES, FACES = np.array(BALL.vertices), np.array(BALL.faces, dtype=np.int64)
@@ -70,10 +77,10 @@ def test_parts_and_genus(seed: int) -> None:
 def test_winding_is_made_alike_whatever_it_was(seed: int) -> None:
     rng = np.random.default_rng(seed)
     faces = turned(FACES, rng.random(len(FACES)) < rng.random())
-    turn, one_sided = against_the_others(faces, edge_table(faces))
+    turn, one_sided = against_the_others(TriangleMesh(VERTICES, faces))
     assert turn.sum() <= len(faces) / 2 and not one_sided.any()
     alike = turned(faces, turn)
-    alike = turned(alike, inside_out(VERTICES, alike))
+    alike = turned(alike, inside_out(TriangleMesh(VERTICES, alike)))
     mesh = trimesh.Trimesh(VERTICES, alike, process=False)
     assert mesh.is_winding_consistent and mesh.volume == pytest.approx(BALL.volume)
 
@@ -119,11 +126,12 @@ def test_blocks_that_meet_in_an_edge_come_apart() -> None:
     corners = np.concatenate([box.vertices, box.vertices + np.array([0.1, 0.1, 0])])
     faces = np.concatenate([box.faces, box.faces + 8]).astype(np.int64)
     points, joined = merged(corners, faces)
-    assert (edge_table(joined).count == 4).sum() == 1
+    assert (TriangleMesh(points, joined).triangles_at == 4).sum() == 1
     apart, new, moved = split(points, joined)
     assert len(apart) == len(points) + 2 and 0 < moved <= 0.0011
-    assert (edge_table(new).count == 2).all()
-    part = parts_of(new, edge_table(new))
+    made = TriangleMesh(apart, new)
+    assert (made.triangles_at == 2).all()
+    part = made.parts()
     assert part.max() == 1
     for own in (0, 1):
         mesh = trimesh.Trimesh(apart, new[part == own], process=False)
@@ -145,9 +153,9 @@ def test_a_sheet_through_a_ball_leaves_the_ball_whole() -> None:
         sheet += [(ring[k], ring[after], count + after), (ring[k], count + after, count + k)]
     points = np.concatenate([ball, 1.3 * ball[ring]])
     faces = np.concatenate([round_.faces, sheet])
-    assert (edge_table(faces).count == 3).sum() == len(ring)
+    assert (TriangleMesh(points, faces).triangles_at == 3).sum() == len(ring)
     apart, new, _ = split(points, faces)
-    part = parts_of(new, edge_table(new))
+    part = TriangleMesh(apart, new).parts()
     sizes = sorted(np.bincount(part).tolist())
     assert sizes == sorted([len(sheet), len(round_.faces)])
     whole = trimesh.Trimesh(apart, new[part == np.argmax(np.bincount(part))], process=False)
@@ -166,7 +174,8 @@ def test_a_hole_is_filled_with_least_area(seed: int, count: int) -> None:
     x, y = points[:, 0], points[:, 1]
     shoelace = 0.5 * abs(x @ np.roll(y, -1) - y @ np.roll(x, -1))
     assert mesh.area == pytest.approx(shoelace)
-    assert loops(faces)[0] != list(range(count)) and set(loops(faces)[0]) == set(range(count))
+    (loop,) = TriangleMesh(points, faces).border_loops()
+    assert loop != list(range(count)) and set(loop) == set(range(count))
 
 
 def test_no_edge_gets_a_third_face() -> None:
@@ -175,7 +184,7 @@ def test_no_edge_gets_a_third_face() -> None:
     for diagonal in ((0, 2), (1, 3)):
         faces = filling(square, [0, 1, 2, 3], {diagonal})
         assert faces is not None
-        ends = {tuple(e) for e in edge_table(faces).ends.tolist()}
+        ends = {tuple(e) for e in TriangleMesh(square, faces).edges.tolist()}
         assert diagonal not in ends and len(ends) == 5
     assert filling(square, [0, 1, 2, 3], {(0, 2), (1, 3)}) is None
 

@@ -15,10 +15,11 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.frontend import sizes
 from cellcolor.frontend.parts import rounding
-from cellcolor.frontend.parts.bisect import bisected
 from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.refining import bisected
 from cellcolor.frontend.parts.rounding import longest_beside_sharp, rounded
-from cellcolor.frontend.parts.surface import Surface, face_normals
+from cellcolor.frontend.parts.surface import Surface
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 
 def surface_of(mesh: trimesh.Trimesh) -> Surface:
@@ -34,7 +35,7 @@ def tiny(surface: Surface, times: int) -> tuple[np.ndarray, np.ndarray, np.ndarr
     points, faces = surface.vertices, surface.faces
     for _ in range(times):
         points, faces = trimesh.remesh.subdivide(points, faces)
-    doubled = face_normals(points, faces)
+    doubled = TriangleMesh(points, faces).area_vectors
     areas = np.linalg.norm(doubled, axis=1) / 2
     return points[faces].mean(axis=1), areas, doubled / (2 * areas[:, None])
 
@@ -112,7 +113,7 @@ def test_the_other_side_of_a_thin_plate() -> None:
 
 
 def _points_down(points: np.ndarray, faces: np.ndarray) -> bool:
-    return bool(face_normals(points, faces)[0, 2] < 0)
+    return bool(TriangleMesh(points, faces).area_vectors[0, 2] < 0)
 
 
 def test_faces_larger_than_the_radius_keep_their_normals() -> None:

@@ -16,9 +16,10 @@ from cellcolor.frontend import build_surface
 from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.remesh import refine
+from cellcolor.frontend.parts.refining import refine
 from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh, spherical_cap
 from cellcolor.frontend.scene import Scene
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 Varied = Callable[..., Scene]
 KINEMATIC = {
@@ -100,7 +101,8 @@ def test_mesh_obstacle_is_like_the_primitive(scene: Varied, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("longest", [0.9, 0.31, 0.1])
 def test_refinement(longest: float) -> None:
-    vertices, faces = refine(BOX, np.array(OUTWARD), longest)
+    mesh = refine(TriangleMesh(BOX, np.array(OUTWARD)), longest)
+    vertices, faces = mesh.points, mesh.corners
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     assert mesh.edges_unique_length.max() <= longest
     assert mesh.is_watertight and mesh.is_winding_consistent
@@ -110,7 +112,8 @@ def test_refinement(longest: float) -> None:
 
 def test_one_long_edge_is_halved_for_both_faces() -> None:
     kite = np.array([[0, 0, 0], [1, -0.3, 0], [2, 0, 0], [1, 0.3, 0]], dtype=float)
-    vertices, faces = refine(kite, np.array([[0, 1, 2], [0, 2, 3]]), 1.5)
+    mesh = refine(TriangleMesh(kite, np.array([[0, 1, 2], [0, 2, 3]])), 1.5)
+    vertices, faces = mesh.points, mesh.corners
     assert len(vertices) == 5 and len(faces) == 4
     assert vertices[4].tolist() == [1, 0, 0]
     assert (np.cross(vertices[faces[:, 1]] - vertices[faces[:, 0]],

@@ -11,10 +11,11 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.parts.remesh import refine
+from cellcolor.frontend.parts.refining import refine
 from cellcolor.frontend.parts.shapes import CapObject
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
@@ -36,9 +37,11 @@ def without_slivers(scene: Scene) -> Scene:
 def box(edge_mm: float, slivers: bool) -> Scene:
     """A box whose normals turn by 45 degrees on the first edge beside each of its edges."""
     faces = np.array([[int(corner) for corner in side.split()] for side in SIDES]) - 1
-    mesh = refine(np.array(CORNERS), faces, edge_mm / 1000)
+    mesh = refine(TriangleMesh(np.array(CORNERS), faces), edge_mm / 1000)
     ground, turn = {"height_m": -0.1}, {"rpy_rad": (0.1, 0.2, 0.4)}
-    return part(mesh, slivers, [0.45, 0.05, 0.15], ground=ground, placement=turn)
+    return part(
+        (mesh.points, mesh.corners), slivers, [0.45, 0.05, 0.15], ground=ground, placement=turn
+    )
 
 
 def noisy_cap(vertices: int, radius: float, position: list[float]) -> Scene:

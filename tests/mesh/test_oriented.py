@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from meshes import grid_faces
 from numpy.typing import NDArray
 
-from cellcolor.data.mesh import directed_edges
 from cellcolor.errors import InputError
+from cellcolor.mesh.oriented import directed_edges
 
 Faces = NDArray[np.int64]
 FEW = st.lists(st.permutations(range(6)).map(lambda order: order[:3]), min_size=1, max_size=8)

@@ -8,12 +8,13 @@ from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.data.mesh import directed_edges
 from cellcolor.errors import InputError
 from cellcolor.frontend import sizes
-from cellcolor.frontend.parts.bisect import bisected
-from cellcolor.frontend.parts.surface import Surface, face_normals
+from cellcolor.frontend.parts.refining import bisected
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.lab.families.meshes import make_mesh
+from cellcolor.mesh.oriented import directed_edges
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 
 def on_unit_sphere(seed: int) -> Surface:
@@ -55,7 +56,7 @@ def test_whatever_is_bisected_and_however_often(seed: int, share: float, rounds:
         directed_edges(finer.faces, len(finer.vertices))  # refuses what is not manifold
         surface = finer
     areas = [
-        np.linalg.norm(face_normals(one.vertices, one.faces), axis=1).sum()
+        np.linalg.norm(TriangleMesh(one.vertices, one.faces).area_vectors, axis=1).sum()
         for one in (given_surface, surface)
     ]
     assert areas[0] == pytest.approx(areas[1])

@@ -1,0 +1,136 @@
+"""Triangles cut at new points on their sides, on both sides of an edge alike.
+
+Where the middle of a triangle's longest side is connected with the corner opposite, again and
+again, no angle gets smaller than half the smallest one that was there (Rosenberg and Stenger
+1975). So with any side of a triangle its longest one is bisected too (Rivara 1984).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.mesh.triangle_mesh import TriangleMesh
+
+__all__ = ["bisected_corners", "cut", "halved", "new_points", "with_longest_sides"]
+
+_Pieces = dict[tuple[bool, bool, bool], list[tuple[int, int, int]]]
+"""By which of the sides ab, bc, ca are cut: the corners of the pieces. 0, 1, 2 are a, b, c, and 3,
+4, 5 the new points on ab, bc, ca. A diagonal goes from 7 to 6."""
+
+_AT_ONCE: _Pieces = {
+    (False, False, False): [(0, 1, 2)],
+    (True, False, False): [(0, 3, 2), (3, 1, 2)],
+    (True, True, False): [(3, 1, 4), (0, 3, 6), (7, 4, 2)],
+    (True, True, True): [(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)],
+}
+_LONGEST_FIRST: _Pieces = {  # ab, which is cut if any is
+    (False, False, False): [(0, 1, 2)],
+    (True, False, False): [(0, 3, 2), (3, 1, 2)],
+    (True, True, False): [(0, 3, 2), (3, 1, 4), (3, 4, 2)],
+    (True, False, True): [(3, 1, 2), (0, 3, 5), (3, 2, 5)],
+    (True, True, True): [(0, 3, 5), (3, 1, 4), (3, 4, 2), (3, 2, 5)],
+}
+
+
+def new_points(mesh: TriangleMesh, marked: Mask) -> Index:
+    """The number (k,) of the new point on each marked edge, -1 on the others; after the old ones.
+
+    Args:
+        marked: (k,) which edges get one.
+    """
+    number = np.full(len(marked), -1, dtype=np.int64)
+    number[marked] = len(mesh.points) + np.arange(np.count_nonzero(marked))
+    return number
+
+
+def cut(
+    mesh: TriangleMesh, new: Index, first: Index | None = None, points: Array | None = None
+) -> tuple[Index, Index]:
+    """The pieces of all triangles that are cut at once at new points on their sides.
+
+    Args:
+        mesh: what to cut.
+        new: (k,) see :func:`new_points`.
+        first: (m,) the side that the pieces of each triangle begin with, which must be cut if any
+            is, and followed by a second one if two are; None takes the first such side.
+        points: old and new; what is left of a triangle with two sides cut is then parted along
+            its shorter diagonal. None takes the one from the corner before the sides.
+
+    Returns:
+        The corners (p, 3) of the pieces, and the triangle (p,) that each is a piece of.
+    """
+    middle = new[mesh.edge_of_side]
+    is_cut = middle >= 0
+    if first is None:
+        after_whole = (is_cut.argmin(axis=1) + 1) % 3
+        first = np.where(is_cut.sum(axis=1) == 2, after_whole, is_cut.argmax(axis=1))
+    names = _from(first, mesh.corners, middle)
+    names = np.concatenate([names, names[:, [4, 0]]], axis=1)
+    if points is not None:
+        two = np.flatnonzero(is_cut.sum(axis=1) == 2)
+        a, c, ab, bc = (points[names[two, corner]] for corner in (0, 2, 3, 4))
+        other = ~(np.linalg.norm(a - bc, axis=1) < np.linalg.norm(ab - c, axis=1))
+        names[two[other], 6:] = names[two[other]][:, [2, 3]]
+    return _pieces(names, _AT_ONCE)
+
+
+def halved(mesh: TriangleMesh, marked: Mask) -> tuple[TriangleMesh, Index]:
+    """A mesh with edges cut in the middle; the new points come last, in the order of their edges.
+
+    Args:
+        mesh: what to cut.
+        marked: (k,) which edges.
+
+    Returns:
+        The finer mesh, and the triangle of the mesh that each of its triangles is a piece of.
+    """
+    corners, of = cut(mesh, new_points(mesh, marked))
+    middles = mesh.points[mesh.edges[marked]].mean(axis=1)
+    return TriangleMesh(np.concatenate([mesh.points, middles]), corners), of
+
+
+def with_longest_sides(mesh: TriangleMesh, marked: Mask) -> Mask:
+    """Marked edges (k,), and the longest side of every triangle that has a marked one."""
+    longest = np.take_along_axis(mesh.edge_of_side, _longest(mesh)[:, None], axis=1)[:, 0]
+    marked = marked.copy()
+    while True:
+        missing = longest[marked[mesh.edge_of_side].any(axis=1) & ~marked[longest]]
+        if not len(missing):
+            return marked
+        marked[missing] = True
+
+
+def bisected_corners(mesh: TriangleMesh, marked: Mask) -> Index:
+    """The triangles (p, 3) once marked edges are bisected, in each the longest side first.
+
+    Args:
+        mesh: what to cut.
+        marked: (k,) which edges, see :func:`with_longest_sides`.
+    """
+    names = _from(_longest(mesh), mesh.corners, new_points(mesh, marked)[mesh.edge_of_side])
+    return _pieces(names, _LONGEST_FIRST)[0]
+
+
+def _longest(mesh: TriangleMesh) -> Index:
+    """Which side of each triangle (m,) is its longest; of equal ones the edge that comes first."""
+    lengths = mesh.lengths
+    rank = np.empty(len(lengths), dtype=np.int64)
+    rank[np.lexsort((-np.arange(len(lengths)), lengths))] = np.arange(len(lengths))
+    return np.asarray(rank[mesh.edge_of_side].argmax(axis=1))
+
+
+def _from(first: Index, corners: Index, middle: Index) -> Index:
+    """Corners and new points (m, 6) of triangles turned so that a side of each comes first."""
+    order = (first[:, None] + np.arange(3)) % 3
+    return np.concatenate([np.take_along_axis(x, order, 1) for x in (corners, middle)], axis=1)
+
+
+def _pieces(names: Index, pieces: _Pieces) -> tuple[Index, Index]:
+    is_cut = names[:, 3:6] >= 0
+    found, of = [], []
+    for sides, parts in pieces.items():
+        rows = np.flatnonzero((is_cut == sides).all(axis=1))
+        found += [names[rows][:, part] for part in parts]
+        of += [rows] * len(parts)
+    return np.concatenate(found), np.concatenate(of)
