@@ -66,7 +66,7 @@ def check_memory(needed: int, what: str) -> None:
     there = machine_memory()
     if there and needed > there:
         raise TooLarge(
-            f"{what} would take {needed / 1e9:,.1f} GB, the machine has {there / 1e9:,.1f}"
+            f"{what} would take {needed / 1e9:,.1f} GB, the machine has {there / 1e9:,.1f} GB"
         )
 
 

@@ -25,7 +25,7 @@ from cellcolor.memory import at_once
 __all__ = ["longest_beside_sharp", "rounded"]
 
 _ROWS = 1000  # vertices that are rounded together
-_AROUND = 512  # bytes that a face takes for each vertex that it is around
+_AROUND = 640  # bytes that a face takes for each vertex that it is around
 _SAME = 1e-9  # of the radius; a ball that is smaller by less is no smaller
 _BENT = 1e-6  # between the normals of two faces; less is a plane
 
