@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
+from cellcolor.errors import TooLarge
 from cellcolor.memory import batches, check_memory
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
@@ -16,6 +17,8 @@ from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 __all__ = ["Repeated", "passes", "repeated_stretches"]
 
 _PAIR = 192  # bytes that two places take where they are found
+_TOGETHER = 20_000  # places that have at most
+_MOST = 50_000_000  # pairs; more take too long
 _KEPT = 80  # and until all are counted
 _ALONG = 0.9  # cosine of the angle up to which two passes run along each other
 
@@ -110,6 +113,11 @@ def _near(tree: cKDTree, points: Array, within: float) -> Iterator[tuple[Index, 
         TooLarge: they are too many, as where the tool stays in one place for hours.
     """
     counts = tree.query_ball_point(points, within, return_length=True)
+    blocks = (
+        np.add.reduceat(counts, np.arange(0, len(counts), _TOGETHER)) if len(counts) else counts
+    )
+    if blocks.max(initial=0) > _MOST:
+        raise TooLarge("the trajectory comes by the same place too often to be measured")
     pairs = int(counts.sum())
     what = f"the trajectory comes by the same place too often: {pairs:,} pairs of places"
     check_memory(pairs * _KEPT, what)

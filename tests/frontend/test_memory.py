@@ -192,7 +192,7 @@ def test_batches_are_whole_and_fit(sizes: list[int], each: int, most: int) -> No
 def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(memory, "machine_memory", lambda: 10_000_000)
     with pytest.raises(
-        TooLarge, match="judging 100,000 configurations of the arm would take 0.0 GB"
+        TooLarge, match=r"judging 100,000 configurations of the arm would take 0.0 GB"
     ):
         prepared("ur5e_wok").judge(np.full((100_000, 6), np.nan))
     with pytest.raises(TooLarge, match="on one mesh edge would take"):
