@@ -79,10 +79,10 @@ def arranged_in_sheets(
     limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
     solutions = tracker.described(candidates.configurations)
     pairs = [np.empty((0, 3), dtype=np.int64)]
-    at_once = edges_at_once(nodes.shape[1], robot.joints)
-    for first in range(0, len(edges), at_once):
+    together = edges_at_once(nodes.shape[1], robot.joints)
+    for first in range(0, len(edges), together):
         deadline.check()
-        part = edges[first : first + at_once]
+        part = edges[first : first + together]
         found = linked_pairs(surface, part, nodes, solutions, tracker, prepared.arm.measure, limits)
         pairs.append(found + np.array([first, 0, 0]))
     sheets = sheets_of(surface, edges, np.concatenate(pairs), nodes, solutions)

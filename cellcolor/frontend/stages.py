@@ -9,7 +9,7 @@ and then one with all its vertices and some more, what is known is taken over.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -22,20 +22,25 @@ from cellcolor.frontend.nameless import arranged_in_sheets
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.processes import share_out, shared
-from cellcolor.frontend.reach.between import Test, at_domain_border, remains_valid
+from cellcolor.frontend.reach.between import (
+    Test,
+    at_domain_border,
+    bytes_of_point,
+    remains_valid,
+)
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes, find_cracks, link, node_links
 from cellcolor.frontend.reach.slivers import SliverReport, clean
+from cellcolor.frontend.reach.smooth import bytes_of_following
 from cellcolor.frontend.reach.validity import Candidates, Verdicts
 from cellcolor.frontend.sizes import check_turns
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.tables import in_file
+from cellcolor.memory import chunks
 
 __all__ = ["TURN_NOT_DEFINED", "Cleaned", "Judged", "Links", "Stages", "judged", "run_stages"]
 
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""
-
-_AT_ONCE = 10_000  # mesh edges, or links on them; some kilobytes each, some 20 ms
 
 
 @dataclass(frozen=True)
@@ -227,7 +232,8 @@ def _continuous_links(
             prepared.surface, edges[rows], candidates, prepared.arm.measure, limits, probe
         )
 
-    _in_parts(link_part, len(all_rows), deadline)
+    each = linked.shape[1] * bytes_of_following(robot.joints)
+    _in_parts(link_part, chunks(len(all_rows), each), deadline)
     return Links(edges, linked)
 
 
@@ -258,6 +264,7 @@ def _valid_links(
         border_before = at_domain_border(known.links.edges, known.candidates.valid)
         new[here] = near_border[here] != border_before[there]
         linked[here] = np.where(new[here], linked[here], known.links.linked[there])
+    each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
     asked = np.flatnonzero((linked & new).any(axis=1))
 
     def free_part(part: slice) -> None:
@@ -265,7 +272,7 @@ def _valid_links(
         linked[rows] &= prepared.workplace.tip.free_along(surface, edges[rows])[:, None]
 
     if prepared.setup.constraints.collision:
-        _in_parts(free_part, len(asked), deadline)
+        _in_parts(free_part, chunks(len(asked), each), deadline)
     spacing = prepared.setup.continuity.validity_spacing_m
     assert spacing is not None  # asked by who calls
     counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
@@ -281,7 +288,7 @@ def _valid_links(
             surface, edges[rows], branches, pieces, at_vertices, longest, test
         )
 
-    _in_parts(test_part, len(all_rows), deadline)
+    _in_parts(test_part, chunks(len(all_rows), each), deadline)
     return Links(edges, linked)
 
 
@@ -319,11 +326,12 @@ def _cleaned(
     return Cleaned(links, coloring, find_cracks(edges, links.linked, coloring), report)
 
 
-def _in_parts(work: Callable[[slice], None], count: int, deadline: Deadline) -> None:
+def _in_parts(work: Callable[[slice], None], slices: Iterable[slice], deadline: Deadline) -> None:
     """Work on slices of a long list, as long as there is time, in several processes."""
+    parts = list(slices)
 
     def work_on(number: int) -> None:
         deadline.check()
-        work(slice(number * _AT_ONCE, (number + 1) * _AT_ONCE))
+        work(parts[number])
 
-    share_out(work_on, -(-count // _AT_ONCE))
+    share_out(work_on, len(parts))

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from cellcolor.memory import machine_memory
 from cellcolor.version import __version__
 
 __all__ = ["Machine", "this_machine", "this_version"]
@@ -39,10 +40,9 @@ def this_machine() -> Machine:
     """The one that this process runs on."""
     available = getattr(os, "sched_getaffinity", None)
     cores = (os.cpu_count() or 1) if available is None else len(available(0))
-    memory = 0
-    with suppress(OSError, ValueError):
-        memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2**20
-    return Machine(cores, memory, _cpu(), platform.python_version(), this_version())
+    return Machine(
+        cores, machine_memory() // 2**20, _cpu(), platform.python_version(), this_version()
+    )
 
 
 @cache

@@ -7,16 +7,15 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward
 from cellcolor.frontend.arm.robot import Body, Robot
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.contact.wider import wider, wider_body
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.memory import cached
 from cellcolor.motion.following import joint_limits
 
 __all__ = ["FreeSpace"]
-
-_AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
 
 
 class FreeSpace:
@@ -64,8 +63,8 @@ class FreeSpace:
     def clear(self, configurations: Array) -> Mask:
         """Which of them touch nothing, whatever the limits, (k,)."""
         clear = np.ones(len(configurations), dtype=bool)
-        for first in range(0, len(configurations) if self._on else 0, _AT_ONCE):
-            rows = slice(first, first + _AT_ONCE)
+        each = bytes_of_poses(self._place.robot.joints)
+        for rows in cached(len(configurations) if self._on else 0, each):
             clear[rows] = ~self._touching(configurations[rows])
         return clear
 

@@ -16,13 +16,12 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
+from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import poses_of
 from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT, TURN
 from cellcolor.trajectory_checker.tool_turn import across_of, turns_off
 
 __all__ = ["AtVertices", "Touches", "at_vertices", "touches"]
-
-_AT_ONCE = 20_000  # configurations; some kilobytes each
 
 
 @dataclass(frozen=True)
@@ -133,9 +132,8 @@ def at_vertices(
         tilt = np.zeros(len(joints))
     compared = _compared(robot)
     branch, apart = np.zeros(len(joints), dtype=np.int64), np.full(len(joints), np.inf)
-    for first in range(0, len(joints), _AT_ONCE):
+    for rows in chunks(len(joints), 64 * robot.joints * len(built.branches)):
         deadline.check()
-        rows = slice(first, first + _AT_ONCE)
         way = built.configurations[vertex[rows]][:, :, compared] - joints[rows, None][..., compared]
         around = np.remainder(way + np.pi, 2 * np.pi) - np.pi
         way = np.abs(np.where(robot.slides[compared], way, around)).max(axis=2)

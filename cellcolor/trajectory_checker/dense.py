@@ -10,14 +10,14 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.errors import TooLarge
-from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.tolerances import STEP, STEP_ANGLE
 
 __all__ = ["Dense", "densified", "poses_of"]
 
 _MOST = 3_000_000  # configurations; some hundred bytes each
-_AT_ONCE = 20_000
 _SLACK = 1e-6  # of a step; samples laid out just as far apart as they may need none in between
 
 
@@ -59,9 +59,8 @@ class Dense:
 def poses_of(robot: Robot, joints: Array, deadline: Deadline) -> tuple[Array, Array]:
     """Tips and tool axes (k, 3) of configurations (k, joints)."""
     tips, axes = np.empty((len(joints), 3)), np.empty((len(joints), 3))
-    for first in range(0, len(joints), _AT_ONCE):
+    for rows in chunks(len(joints), bytes_of_poses(robot.joints)):
         deadline.check()
-        rows = slice(first, first + _AT_ONCE)
         poses = forward(robot, joints[rows])
         tips[rows], axes[rows] = poses.tip, poses.tool_axis
     return tips, axes

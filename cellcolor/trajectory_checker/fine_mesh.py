@@ -17,12 +17,13 @@ from cellcolor.arrays import Array, Index
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
+from cellcolor.memory import chunks
 
 __all__ = ["FineMesh", "Located", "refined"]
 
 _MOST = 2_000_000  # small triangles; some hundred bytes each
 _NEIGHBORS = 16  # small triangles that are asked at first which of them is nearest to a point
-_AT_ONCE = 64_000  # pairs of a point and a small triangle; a matter of memory
+_PAIR = 1_024  # bytes that a point and a small triangle take
 _NEAR = 0.02  # m; for points farther off, a triangle that is nearly the nearest will do
 
 
@@ -132,8 +133,9 @@ class FineMesh:
         rows, asked = np.arange(len(points)), min(_NEIGHBORS, len(self.triangles))
         while len(rows):
             unsure = []
-            for part in np.array_split(rows, 1 + len(rows) * asked // _AT_ONCE):
+            for some in chunks(len(rows), asked * _PAIR):
                 deadline.check()
+                part = rows[some]
                 apart, farthest, found, inside = self._nearest_of(
                     points[part], outward[part], asked
                 )

@@ -10,6 +10,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
@@ -18,7 +19,6 @@ from cellcolor.trajectory_checker.tool_turn import nearest_turns
 
 __all__ = ["branches_of", "judge_contact", "judge_cracks", "judge_dragged"]
 
-_AT_ONCE = 20_000  # configurations; a matter of memory: half a kilobyte each
 _PARTS = 16  # of a step that seems to cross a crack, to see whether it passes by its end
 
 
@@ -118,8 +118,7 @@ def branches_of(
         across: (c, 3) the tool's x axis; asked for if the setup gives the tool's turn.
     """
     found, compared = np.full(len(rows), -1), prepared.robot.task.joints
-    for first in range(0, len(rows), _AT_ONCE):
-        part = slice(first, first + _AT_ONCE)
+    for part in chunks(len(rows), 64 * compared * prepared.arm.slots):
         own = rows[part]
         solutions, before = _solutions(
             prepared, dense.tips[own], dense.axes[own], across[part], deadline

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,13 +10,16 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
 from cellcolor.errors import TooLarge
+from cellcolor.memory import batches, check_memory
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 
 __all__ = ["Repeated", "passes", "repeated_stretches"]
 
-_AT_ONCE = 20_000  # places of contact
-_MOST = 50_000_000  # pairs; some bytes each
+_PAIR = 192  # bytes that two places take where they are found
+_TOGETHER = 20_000  # places that have at most
+_MOST = 50_000_000  # pairs; more take too long
+_KEPT = 80  # and until all are counted
 _ALONG = 0.9  # cosine of the angle up to which two passes run along each other
 
 
@@ -45,10 +49,7 @@ def passes(dense: Dense, rows: Index, located: Located, fine: FineMesh, within: 
     ways = _ways(dense, rows)
     tree = cKDTree(fine.vertices)
     vertices, places = [], []
-    for first in range(0, len(rows), _AT_ONCE):
-        part = slice(first, first + _AT_ONCE)
-        vertex, place = _near(tree, located.points[part], within)
-        place += first
+    for vertex, place in _near(tree, located.points, within):
         facing = np.einsum("ij,ij->i", fine.normals[vertex], located.normals[place]) > 0
         vertices.append(vertex[facing])
         places.append(place[facing])
@@ -79,9 +80,11 @@ def repeated_stretches(
     points, normals = located.points, located.normals
     tangents = _tangents(points, dense.stroke[rows])
     earlier = np.full(len(rows), -1)
-    for one, other in _pairs(points, within):
-        close = (ways[other] - ways[one] > apart) & (
-            np.einsum("ij,ij->i", normals[one], normals[other]) > 0
+    for one, other in _near(cKDTree(points), points, within):
+        close = (
+            (one < other)
+            & (ways[other] - ways[one] > apart)
+            & (np.einsum("ij,ij->i", normals[one], normals[other]) > 0)
         )
         along = np.abs(np.einsum("ij,ij->i", tangents[one], tangents[other])) >= _ALONG
         kept = close & along
@@ -103,30 +106,25 @@ def _joined(earlier: Index, ways: Array, gap: float) -> list[Repeated]:
     return found
 
 
-def _pairs(points: Array, within: float) -> list[tuple[Index, Index]]:
-    """Pairs of rows, the smaller first, of points nearer to each other than a distance."""
-    tree = cKDTree(points)
-    found = []
-    for first in range(0, len(points), _AT_ONCE):
-        one, other = _near(tree, points[first : first + _AT_ONCE], within)
-        other += first
-        before = one < other
-        found.append((one[before], other[before]))
-    return found
-
-
-def _near(tree: cKDTree, points: Array, within: float) -> tuple[Index, Index]:
+def _near(tree: cKDTree, points: Array, within: float) -> Iterator[tuple[Index, Index]]:
     """Pairs of a point of the tree and one of the given points that are near each other.
 
     Raises:
-        TooLarge: there are many millions, as where the tool stays in one place for hours.
+        TooLarge: they are too many, as where the tool stays in one place for hours.
     """
-    if tree.query_ball_point(points, within, return_length=True).sum() > _MOST:
+    counts = tree.query_ball_point(points, within, return_length=True)
+    blocks = (
+        np.add.reduceat(counts, np.arange(0, len(counts), _TOGETHER)) if len(counts) else counts
+    )
+    if blocks.max(initial=0) > _MOST:
         raise TooLarge("the trajectory comes by the same place too often to be measured")
-    near = tree.query_ball_point(points, within, return_sorted=False)
-    counts = np.fromiter(map(len, near), dtype=np.int64, count=len(near))
-    parts = [np.zeros(0, dtype=np.int64), *(np.asarray(own, dtype=np.int64) for own in near)]
-    return np.concatenate(parts), np.repeat(np.arange(len(near)), counts)
+    pairs = int(counts.sum())
+    what = f"the trajectory comes by the same place too often: {pairs:,} pairs of places"
+    check_memory(pairs * _KEPT, what)
+    for part in batches(counts, _PAIR):
+        near = tree.query_ball_point(points[part], within, return_sorted=False)
+        lists = [np.zeros(0, dtype=np.int64), *(np.asarray(own, dtype=np.int64) for own in near)]
+        yield np.concatenate(lists), np.repeat(np.arange(part.start, part.stop), counts[part])
 
 
 def _ways(dense: Dense, rows: Index) -> Array:

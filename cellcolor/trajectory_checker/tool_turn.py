@@ -6,25 +6,23 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.arm.kinematics import forward, tool_across
+from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward, tool_across
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.tool_turn import angle_about, turn_at
 from cellcolor.frontend.setup import Turn
+from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import TURN
 
 __all__ = ["across_of", "judge_turn", "nearest_turns", "turns_off"]
 
-_AT_ONCE = 20_000  # configurations; a matter of memory: some kilobytes each
-
 
 def across_of(robot: Robot, joints: Array, deadline: Deadline = NEVER) -> Array:
     """The tool's x axis (k, 3) in the world, in configurations (k, joints)."""
     across = np.empty((len(joints), 3))
-    for first in range(0, len(joints), _AT_ONCE):
+    for rows in chunks(len(joints), bytes_of_poses(robot.joints)):
         deadline.check()
-        rows = slice(first, first + _AT_ONCE)
         across[rows] = tool_across(robot, forward(robot, joints[rows]))
     return across
 

@@ -15,13 +15,13 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.robot import Body
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.validity import Judge
+from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
 
 __all__ = ["judge_validity"]
 
-_AT_ONCE = 100_000  # configurations; verdicts hold where all bodies are, a kilobyte each
 _THIN = 1e-4  # m; radius of the axis of the tool's tip, which must not pass through the object
 
 
@@ -61,10 +61,10 @@ def judge_validity(
 
 def _reasons(judge: Judge, joints: Array, deadline: Deadline) -> NDArray[np.uint8]:
     """The code (k,) of the first test that each configuration fails."""
-    parts = [joints[first : first + _AT_ONCE] for first in range(0, len(joints), _AT_ONCE)]
-    return np.concatenate(
-        [np.zeros(0, dtype=np.uint8), *(judge(p, deadline).reasons for p in parts)]
-    )
+    reasons = np.zeros(len(joints), dtype=np.uint8)
+    for rows in chunks(len(joints), judge.bytes_kept(joints.shape[1])):
+        reasons[rows] = judge(joints[rows], deadline).reasons
+    return reasons
 
 
 def _through_object(prepared: PreparedScene, tips: Array, axes: Array) -> NDArray[np.bool_]:

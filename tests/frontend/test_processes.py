@@ -15,6 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from cellcolor import memory
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.frontend import Scene, build_surface, processes, stages
 from cellcolor.frontend.prepared import prepare
@@ -126,9 +127,9 @@ def fine_scene():
 
 def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
     # So small that this surface has many of each kind of part.
-    monkeypatch.setattr(validity, "_AT_ONCE", 64)
+    monkeypatch.setattr(memory, "CACHE", 300_000)
     monkeypatch.setattr(validity, "_PAYS", 1)
-    monkeypatch.setattr(stages, "_AT_ONCE", 50)
+    monkeypatch.setattr(memory, "MEMORY", 1_000_000)
     shares = []
 
     def noted(work, parts, at_least=1):
@@ -148,7 +149,7 @@ def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
 def test_a_time_out_in_several_processes(fine_scene, monkeypatch):
     """It comes while candidates are judged, shared out, and not before."""
     place = prepare(fine_scene).workplace
-    monkeypatch.setattr(validity, "_AT_ONCE", 64)
+    monkeypatch.setattr(memory, "CACHE", 300_000)
     monkeypatch.setattr(validity, "_PAYS", 1)
     begun, forked = [], processes._forked
 
@@ -165,8 +166,9 @@ def test_a_time_out_in_several_processes(fine_scene, monkeypatch):
 SLOW_BUILD = """
 import os, sys, time
 os.sched_getaffinity = lambda _process: {0, 1, 2}
+from cellcolor import memory
 from cellcolor.frontend.reach import validity
-validity._AT_ONCE, validity._PAYS, judged = 64, 1, validity.Judge._judged
+memory.CACHE, validity._PAYS, judged = 300_000, 1, validity.Judge._judged
 def slowly(judge, configurations):
     time.sleep(1)
     return judged(judge, configurations)

@@ -11,6 +11,7 @@ from cellcolor.arrays import Array, Index
 from cellcolor.frontend.arm.newton import SAME, both_sides_of_folds, merged, nearest, polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
+from cellcolor.memory import chunks
 
 __all__ = [
     "CALIBRATION",
@@ -34,7 +35,7 @@ _AROUND /= np.linalg.norm(_AROUND[0])
 _FARTHER = 5.0  # times what the axes are off: so far from a pose are those around it
 _ANOTHER = 0.1  # rad; an ideal solution of a pose around that is farther away is a start of its own
 _ELBOW_AND_WRIST = 3  # the bits of both in a branch's index
-_AT_ONCE = 2_048  # poses, to bound the memory
+_MOST_SOLUTIONS = 16  # of six revolute joints
 
 
 def exact_solutions(
@@ -76,8 +77,9 @@ def solutions_of_calibrated(
         off: the largest angle in rad and distance in m of an axis from the ideal one.
     """
     parts = []
-    for first in range(0, max(len(points), 1), _AT_ONCE):
-        some = slice(first, first + _AT_ONCE)
+    # Three starts for each of its own solutions, and one more for each of the poses around.
+    each = (3 + len(_AROUND)) * (_MOST_SOLUTIONS if signs is None else len(BRANCHES))
+    for some in chunks(max(len(points), 1), 48 * robot.joints * each):
         own = closed_form(points[some], directions[some])
         every = [both_sides_of_folds(robot, own)]
         for way in _AROUND:

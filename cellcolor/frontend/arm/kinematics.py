@@ -18,6 +18,7 @@ from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
 __all__ = [
     "TASK_JOINTS",
     "Poses",
+    "bytes_of_poses",
     "forward",
     "gravity_torques",
     "manipulability",
@@ -63,6 +64,11 @@ class Poses:
             self.tool_axis[rows],
             self.slides,
         )
+
+
+def bytes_of_poses(joints: int) -> int:
+    """What one configuration takes at most: its poses, Jacobians and what they are made from."""
+    return 384 * (joints + 1)
 
 
 def forward(robot: Robot, configurations: Array) -> Poses:

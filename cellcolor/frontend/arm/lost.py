@@ -14,8 +14,14 @@ import math
 import numpy as np
 
 from cellcolor.arrays import Array, Index
-from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
+from cellcolor.frontend.arm.kinematics import (
+    bytes_of_poses,
+    forward,
+    signed_task_determinant,
+    tip_jacobian,
+)
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.memory import chunks
 
 __all__ = ["missing", "remark_on_calibration"]
 
@@ -26,11 +32,14 @@ def missing(robot: Robot, solutions: Array) -> Index:
     Args:
         solutions: (n, s, joints) all that were found, in rad, NaN for none.
     """
-    there = np.nonzero(~np.isnan(solutions[:, :, 0]))
-    poses = forward(robot, solutions[there])
-    determinants = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
-    sums = np.bincount(there[0], np.sign(determinants), minlength=len(solutions))
-    return np.abs(sums).astype(np.int64)
+    lost = np.zeros(len(solutions), dtype=np.int64)
+    for rows in chunks(len(solutions), solutions.shape[1] * bytes_of_poses(robot.joints)):
+        part = solutions[rows]
+        there = np.nonzero(~np.isnan(part[:, :, 0]))
+        poses = forward(robot, part[there])
+        determinants = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
+        lost[rows] = np.abs(np.bincount(there[0], np.sign(determinants), minlength=len(part)))
+    return lost
 
 
 def remark_on_calibration(robot: Robot, off: tuple[float, float], solutions: Array) -> str:

@@ -11,8 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.kinematics import TASK_JOINTS, Poses, forward, task_jacobian
+from cellcolor.frontend.arm.kinematics import (
+    TASK_JOINTS,
+    Poses,
+    bytes_of_poses,
+    forward,
+    task_jacobian,
+)
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.memory import cached
 
 __all__ = ["REACHED", "SAME", "both_sides_of_folds", "merged", "misses", "nearest", "polished"]
 
@@ -23,7 +30,6 @@ _LARGEST = 0.3  # rad; no step moves a joint farther
 SAME = 1e-6  # rad; two solutions nearer than this are one
 _FOLDED = 0.05  # smallest singular value from which on down two solutions are about to meet
 _APART = 0.1  # rad, to both sides of there
-_AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
 
 
 def misses(poses: Poses, points: Array, directions: Array) -> Array:
@@ -51,8 +57,8 @@ def polished(
     """
     found = np.full_like(start, np.nan)
     there = np.flatnonzero(~np.isnan(start[:, 0]))
-    for first in range(0, len(there), _AT_ONCE):
-        rows = there[first : first + _AT_ONCE]
+    for part in cached(len(there), bytes_of_poses(robot.joints)):
+        rows = there[part]
         found[rows] = _polished(robot, start[rows], points[rows], directions[rows], farthest)
     return found
 
@@ -136,9 +142,8 @@ def merged(solutions: Array) -> Array:
     """
     packed = _packed(solutions, ~np.isnan(solutions[:, :, 0]))
     kept = ~np.isnan(packed[:, :, 0])
-    for first in range(0, len(packed), _AT_ONCE):
-        five = packed[first : first + _AT_ONCE, :, :TASK_JOINTS]
-        own = kept[first : first + _AT_ONCE]
+    for rows in cached(len(packed), 32 * TASK_JOINTS * packed.shape[1]):
+        five, own = packed[rows, :, :TASK_JOINTS], kept[rows]
         for later in range(1, five.shape[1]):
             off = _largest_turn(five[:, :later] - five[:, later : later + 1])
             own[:, later] &= ~((off < SAME) & own[:, :later]).any(axis=1)

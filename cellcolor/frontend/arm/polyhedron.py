@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import product
 
 import numpy as np
 import trimesh
@@ -13,10 +14,11 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.memory import chunks
 
 __all__ = ["Polyhedron", "box", "convex_hull", "one_of_each_part"]
 
-_AT_ONCE = 500_000  # pairs of a point and a face; some hundred bytes each
+_PAIR = 256  # bytes that a point and a face take
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,14 +60,15 @@ class Polyhedron:
         small holes do no harm and a mesh may be inside out. Solid angles by Van Oosterom and
         Strackee, 1983.
         """
-        inside = np.zeros(len(points), dtype=bool)
         low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
         near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
         corners = self.vertices[self.faces]
-        step = max(1, _AT_ONCE // len(self.faces))
-        for first in range(0, len(near), step):
-            rows = near[first : first + step]
-            a, b, c = (corners[None, :, k] - points[rows, None] for k in range(3))
+        turns = np.zeros(len(near))
+        for some, part in product(
+            chunks(len(near), _PAIR * len(corners)), chunks(len(corners), _PAIR)
+        ):
+            rows = near[some]
+            a, b, c = (corners[None, part, k] - points[rows, None] for k in range(3))
             la, lb, lc = (np.sqrt(np.einsum("ijk,ijk->ij", v, v)) for v in (a, b, c))
             volume = np.einsum("ijk,ijk->ij", a, np.cross(b, c))
             rest = (
@@ -74,7 +77,9 @@ class Polyhedron:
                 + np.einsum("ijk,ijk->ij", b, c) * la
                 + np.einsum("ijk,ijk->ij", c, a) * lb
             )
-            inside[rows] = np.abs(np.arctan2(volume, rest).sum(axis=1)) >= np.pi
+            turns[some] += np.arctan2(volume, rest).sum(axis=1)
+        inside = np.zeros(len(points), dtype=bool)
+        inside[near] = np.abs(turns) >= np.pi
         return inside
 
 

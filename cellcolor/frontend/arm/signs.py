@@ -26,12 +26,14 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import (
     Poses,
+    bytes_of_poses,
     forward,
     signed_task_determinant,
     tip_jacobian,
 )
 from cellcolor.frontend.arm.last_joint import pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.memory import cached
 
 __all__ = ["BRANCHES", "Signs", "nearest_points", "signs_of"]
 
@@ -48,9 +50,6 @@ leads an upright arm. Elbow up: above the line from the shoulder to the wrist's 
 the center in front of joint 2, or behind it for shoulder back. Wrist unflipped: the tool has turned
 from the direction in which axis 4 leads outwards by a positive angle of joint 5, below 180 degrees.
 """
-
-
-_AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
 
 
 @dataclass(frozen=True)
@@ -102,8 +101,7 @@ class Signs:
         """
         found = np.empty(len(configurations), dtype=np.intp)
         determinants = np.empty(len(configurations))
-        for first in range(0, len(found), _AT_ONCE):
-            rows = slice(first, first + _AT_ONCE)
+        for rows in cached(len(found), bytes_of_poses(robot.joints)):
             found[rows], determinants[rows] = self._branches(forward(robot, configurations[rows]))
         return found, determinants
 

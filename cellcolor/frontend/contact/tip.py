@@ -17,8 +17,11 @@ from cellcolor.frontend.contact.collision import longest_steps
 from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.parts.surface import Faces, Surface, along_edges
+from cellcolor.memory import batches
 
 __all__ = ["Tip"]
+
+_POINT = 1_024  # bytes that a point on an edge takes
 
 
 class Tip:
@@ -77,10 +80,12 @@ class Tip:
         way = lengths[rows] + body.length * surface.turns(edges[rows])
         step = float(longest_steps(np.array([body.radius]))[0])
         pieces = np.maximum(np.ceil(way / step).astype(int), 1)
-        row = np.repeat(rows, pieces)
-        number = np.arange(len(row)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
-        points, directions = along_edges(surface, edges[row], number / np.repeat(pieces, pieces))
-        free[row[self.blocked(points, directions)]] = False
+        for part in batches(pieces, _POINT):
+            count = pieces[part]
+            row = np.repeat(rows[part], count)
+            number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
+            points, directions = along_edges(surface, edges[row], number / np.repeat(count, count))
+            free[row[self.blocked(points, directions)]] = False
         return free
 
 

@@ -7,12 +7,13 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.surface import Faces
+from cellcolor.memory import chunks
 
 __all__ = ["MOST_FACES", "crossing_pairs"]
 
 MOST_FACES = 200_000  # more are not looked at
 _MOST_PLACES = 10_000_000  # cells of the grid that all faces together are entered in
-_AT_ONCE = 200_000  # pairs of faces; a kilobyte each
+_PAIR = 640  # bytes that two faces take
 _INSIDE = 1e-7  # by this share of a side or face a crossing has to be off its ends
 
 
@@ -55,9 +56,9 @@ def crossing_pairs(vertices: Array, faces: Faces, deadline: Deadline = NEVER) ->
         rows = rows[key[rows] == key[rows + offset]]
         if not len(rows):
             break
-        for part in range(0, len(rows), _AT_ONCE):
+        for part in chunks(len(rows), _PAIR):
             deadline.check()
-            some = rows[part : part + _AT_ONCE]
+            some = rows[part]
             pairs = np.column_stack([face[some], face[some + offset]])
             found.append(_crossing(vertices, faces, low, high, pairs))
         offset += 1

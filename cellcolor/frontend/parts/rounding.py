@@ -18,11 +18,12 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.surface import SHARP, Surface
 from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.sizes import check_rounding
+from cellcolor.memory import at_once
 
 __all__ = ["longest_beside_sharp", "rounded"]
 
 _ROWS = 1000  # vertices that are rounded together
-_MOST_AT_ONCE = 200_000  # faces around them, half a kilobyte each; else fewer vertices together
+_AROUND = 640  # bytes that a face takes for each vertex that it is around
 _SAME = 1e-9  # of the radius; a ball that is smaller by less is no smaller
 _BENT = 1e-6  # between the normals of two faces; less is a plane
 
@@ -172,7 +173,7 @@ class _Around:
             order = np.argsort(known, kind="stable")
             known, ball = known[order], np.concatenate([ball, its_ball[unknown]])[order]
             new, its_ball = new[better], its_ball[better]
-            if len(known) > _MOST_AT_ONCE and len(rows) > 1:
+            if len(known) > at_once(_AROUND) and len(rows) > 1:
                 return None
         which, face = np.divmod(known, count)
         return which, face, ball

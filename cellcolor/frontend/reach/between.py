@@ -7,7 +7,6 @@ at points that are close on the surface as well.
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable, Iterable
 
 import numpy as np
@@ -15,10 +14,10 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.parts.surface import Surface, along_edges
+from cellcolor.memory import batches, check_memory
 
-__all__ = ["at_domain_border", "remains_valid", "strides"]
+__all__ = ["at_domain_border", "bytes_of_point", "remains_valid", "strides"]
 
-_AT_ONCE = 20_000  # configurations; a matter of memory: some kilobytes each
 _ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump
 
 Test = Callable[[Array, Array, NDArray[np.intp]], tuple[Mask, Array]]
@@ -55,6 +54,15 @@ def strides(first: Iterable[Array], second: Iterable[Array], longest: Array) -> 
     return np.sqrt(squares)
 
 
+def bytes_of_point(bodies: int) -> int:
+    """What testing one point of an edge takes at most, beside the test's own temporaries.
+
+    Args:
+        bodies: how many ends of bodies are followed.
+    """
+    return 120 * bodies + 1024
+
+
 def remains_valid(
     surface: Surface,
     edges: Index,
@@ -74,19 +82,27 @@ def remains_valid(
         ends: (ends, n, branches, 3) of the bodies at the vertices, m.
         longest: (ends,) how far each may move between two points, m.
         test: see :data:`Test`.
+
+    Raises:
+        TooLarge: the points of one edge would not fit into the machine's memory.
     """
     result = np.ones(len(edges), dtype=bool)
     i, j = edges.T
     at_i, at_j = (end[i, branches] for end in ends), (end[j, branches] for end in ends)
     pieces = np.maximum(pieces, np.ceil(strides(at_i, at_j, longest)).astype(int))
-    for first, last in _batches(np.cumsum(pieces - 1)):
+    cut, each = np.flatnonzero(pieces > 1), bytes_of_point(len(ends))
+    most = int(pieces.max(initial=0))
+    check_memory(most * each, f"testing {most:,} points on one mesh edge")
+    for batch in batches(pieces[cut] + 1, each):
         # Parts of edges: row, from where to where, what they are cut into, the bodies there.
-        rows = first + np.flatnonzero(pieces[first:last] > 1)
-        low, high, count = np.zeros(len(rows)), np.ones(len(rows)), pieces[rows]
+        rows = cut[batch]
         near, far = (ends[:, vertex[rows], branches[rows]] for vertex in (i, j))
-        for _ in range(_ROUNDS):
-            if not len(rows):
-                break
+        open_ = [(0, rows, np.zeros(len(rows)), np.ones(len(rows)), pieces[rows], near, far)]
+        while open_:
+            rounds, rows, low, high, count, near, far = open_.pop()
+            if rounds == _ROUNDS:
+                result[rows] = False
+                continue
             number, part = _numbered(count + 1)
             inner = (number > 0) & (number < count[part])
             row, way = rows[part], low[part] + (high - low)[part] * number / count[part]
@@ -101,7 +117,10 @@ def remains_valid(
             rows, low, high = row[here], way[here], way[here + 1]
             near, far = places[:, here], places[:, here + 1]
             count = np.ceil(stride[here]).astype(int)
-        result[rows] = False
+            open_ += [
+                (rounds + 1, rows[p], low[p], high[p], count[p], near[:, p], far[:, p])
+                for p in batches(count + 1, each)
+            ]
     return result
 
 
@@ -109,12 +128,3 @@ def _numbered(counts: Index) -> tuple[Index, Index]:
     """Items of groups of given sizes, one after the other: number in the group, and group."""
     group = np.repeat(np.arange(len(counts)), counts)
     return np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts), group
-
-
-def _batches(total: Index) -> list[tuple[int, int]]:
-    """Ranges of about equal numbers of points, from their running total."""
-    if not len(total):
-        return []
-    cuts = np.searchsorted(total, np.arange(_AT_ONCE, total[-1], _AT_ONCE))
-    bounds = np.unique([0, *cuts.tolist(), len(total)]).tolist()
-    return list(itertools.pairwise(bounds))

@@ -25,10 +25,11 @@ from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Tracker
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import in_file
+from cellcolor.memory import chunks
 
 __all__ = ["PreparedArm", "prepare_arm"]
 
-_AT_ONCE = 20_000  # points; inverse kinematics keeps some kilobytes for each
+_MOST_SOLUTIONS = 16  # of six revolute joints
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,16 +77,26 @@ class PreparedArm:
             OutOfTime: the deadline came first.
         """
         parts = []
-        for first in range(0, len(points), _AT_ONCE):
+        for rows in chunks(len(points), self._bytes_of_solving):
             deadline.check()
-            rows = slice(first, first + _AT_ONCE)
-            parts.append(self.kinematics.solve(points[rows], directions[rows]))
-        most = max([1, *(part.shape[1] for part in parts)])
+            parts.append((rows, self.kinematics.solve(points[rows], directions[rows])))
+        most = max([1, *(part.shape[1] for _, part in parts)])
         found = np.full((len(points), most, self.robot.joints), np.nan)
-        for number, part in enumerate(parts):
-            first = number * _AT_ONCE
-            found[first : first + len(part), : part.shape[1]] = part
+        for rows, part in parts:
+            found[rows, : part.shape[1]] = part
         return found
+
+    @property
+    def slots(self) -> int:
+        """How many solutions a pose may have."""
+        turn = self.setup.task.turn
+        unnamed = _MOST_SOLUTIONS * (1 if turn is None else len(turn.degrees))
+        return len(self.kinematics.branches) or unnamed
+
+    @property
+    def _bytes_of_solving(self) -> int:
+        """What the inverse kinematics of a pose takes at most."""
+        return 128 * self.robot.joints * self.slots
 
     @property
     def measure(self) -> Measure:
@@ -100,7 +111,7 @@ class PreparedArm:
         """Follows solutions that have no names, until a deadline (OutOfTime)."""
         limits = self.conditioning if self.setup.constraints.conditioning else None
         solve = partial(self.inverse, deadline=deadline)
-        return Tracker(self.robot, solve, self.measure, limits)
+        return Tracker(self.robot, solve, self.measure, limits, self.slots)
 
     def check_named(self) -> None:
         """Refuse an arm whose solutions have no names.
@@ -127,7 +138,12 @@ class PreparedArm:
 
     def follow(self, points: Array, directions: Array, branches: NDArray[np.intp]) -> Array:
         """One branch for each point, (n, joints) in rad, NaN where it has no solution."""
-        return self.kinematics.solve(points, directions, branches)[:, 0]
+        found = np.empty((len(points), self.robot.joints))
+        for rows in chunks(len(points), self._bytes_of_solving):
+            found[rows] = self.kinematics.solve(points[rows], directions[rows], branches[rows])[
+                :, 0
+            ]
+        return found
 
     def probe(
         self,

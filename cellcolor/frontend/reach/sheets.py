@@ -19,8 +19,14 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import stays_in_limits
-from cellcolor.frontend.reach.smooth import Measure, joint_step, shorter_way
+from cellcolor.frontend.reach.smooth import (
+    Measure,
+    bytes_of_following,
+    joint_step,
+    shorter_way,
+)
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
+from cellcolor.memory import at_once
 from cellcolor.mesh.triangle_mesh import grouped
 
 __all__ = ["MOST_SHEETS", "Sheets", "edges_at_once", "linked_pairs", "sheets_of"]
@@ -30,17 +36,10 @@ T = TypeVar("T", bound=np.generic)
 MOST_SHEETS = 60
 """A set of branches has to fit into one integer where slivers are cleaned."""
 
-MEMORY = 64_000_000
-"""Bytes that comparing all solutions of both ends of mesh edges may take at a time, at most."""
-
 
 def edges_at_once(slots: int, joints: int) -> int:
-    """How many edges :func:`linked_pairs` compares within ``MEMORY``, if there are so many slots.
-
-    The numbers of a pair are an upper bound, held against tracemalloc in the tests.
-    """
-    pair = 8 * (4 * joints + 8)
-    return max(1, MEMORY // max(1, slots * slots * pair))
+    """How many edges :func:`linked_pairs` compares within memory, if there are so many slots."""
+    return at_once(slots * (slots * 8 * (4 * joints + 8) + bytes_of_following(joints)))
 
 
 @dataclass(frozen=True)

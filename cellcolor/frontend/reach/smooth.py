@@ -17,12 +17,20 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.setup import Continuity
+from cellcolor.memory import chunks
 
-__all__ = ["Measure", "Motions", "Probe", "follow_edges", "joint_step", "shorter_way"]
+__all__ = [
+    "Measure",
+    "Motions",
+    "Probe",
+    "bytes_of_following",
+    "follow_edges",
+    "joint_step",
+    "shorter_way",
+]
 
 _TRUSTED = 0.5  # rad; a step in which a joint moves farther is always looked into
 _HALVINGS = 10  # of the probe spacing; what is too fast on the last one is a jump
-_AT_ONCE = 20_000  # probes; a matter of memory: some kilobytes each
 
 Probe = Callable[[Array, Array, NDArray[np.intp]], tuple[Array, Array]]
 """Points (k, 3), unit tool directions (k, 3) and branches (k,) to configurations (k, joints) in rad
@@ -132,6 +140,11 @@ def joint_step(first: Array, second: Array) -> Array:
     return np.asarray(np.abs(shorter_way(first, second)).max(axis=-1))
 
 
+def bytes_of_following(joints: int) -> int:
+    """What following one motion takes at most, as long as it is not halved again and again."""
+    return 256 * (joints + 1)
+
+
 def follow_edges(
     surface: Surface,
     edges: Index,
@@ -154,6 +167,7 @@ def follow_edges(
     lengths, turns = surface.lengths(edges), surface.turns(edges)
     smooth = np.ones(len(edges), dtype=bool)
     settled: list[_Steps] = []
+    probing = bytes_of_following(configurations[0].shape[1])
 
     def sort(steps: _Steps) -> list[_Steps]:
         """Keep what is settled, note jumps; what is open comes back in pieces."""
@@ -165,7 +179,7 @@ def follow_edges(
         settled.append(steps.take(done))
         smooth[row[~done & measure.too_short(change)]] = False
         rest = steps.take(~done)
-        return [rest.take(slice(k, k + _AT_ONCE)) for k in range(0, len(rest), _AT_ONCE)]
+        return [rest.take(part) for part in chunks(len(rest), probing)]
 
     at_ends = np.zeros(len(edges)), np.ones(len(edges))
     open_ = sort(_Steps(np.arange(len(edges)), *at_ends, *configurations, *determinants))

@@ -16,6 +16,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.arm.conditioning import Conditioning
 from cellcolor.frontend.arm.kinematics import (
+    bytes_of_poses,
     forward,
     manipulability,
     signed_task_determinant,
@@ -24,10 +25,9 @@ from cellcolor.frontend.arm.kinematics import (
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.reach.smooth import Measure, Motions, joint_step, shorter_way
+from cellcolor.memory import chunks
 
 __all__ = ["Solutions", "Tracker", "clearly_nearest"]
-
-_AT_ONCE = 2_048  # points; a matter of memory: each is compared with all solutions of its pose
 
 
 @dataclass(frozen=True)
@@ -69,6 +69,7 @@ class Tracker:
         solve: Callable[[Array, Array], Array],
         measure: Measure,
         limits: Conditioning | None,
+        slots: int,
     ) -> None:
         """An arm and what is asked of its motions.
 
@@ -76,8 +77,10 @@ class Tracker:
             solve: points (n, 3) and directions (n, 3) to all solutions (n, s, joints).
             measure: what is a jump.
             limits: what counts as well conditioned; everything, without.
+            slots: how many solutions a pose may have.
         """
         self._robot, self._solve, self._measure, self._limits = robot, solve, measure, limits
+        self._pose = slots * bytes_of_poses(robot.joints)  # bytes
 
     def described(self, joints: Array) -> Solutions:
         """Solutions (n, s, joints) of n poses, with what is needed to tell them apart."""
@@ -85,8 +88,8 @@ class Tracker:
         whole = Solutions(
             joints, np.full(shape, np.nan), np.full(shape, np.inf), np.zeros(shape, dtype=bool)
         )
-        for first in range(0, len(joints), _AT_ONCE):
-            self._describe(whole.take(slice(first, first + _AT_ONCE)))  # type: ignore[arg-type]
+        for rows in chunks(len(joints), joints.shape[1] * bytes_of_poses(self._robot.joints)):
+            self._describe(whole.take(rows))  # type: ignore[arg-type]
         return whole
 
     def _describe(self, part: Solutions) -> None:
@@ -158,8 +161,7 @@ class Tracker:
     def _nearest(self, surface: Surface, edges: Index, way: Array, now: Solutions) -> Solutions:
         """The solutions (k,) at points of edges that are nearest to others of the same sign."""
         parts = []
-        for first in range(0, len(edges), _AT_ONCE):
-            rows = slice(first, first + _AT_ONCE)
+        for rows in chunks(len(edges), self._pose):
             here = now.take(rows)  # type: ignore[arg-type]
             found = self.described(self._solve(*along_edges(surface, edges[rows], way[rows])))
             step = joint_step(found.joints, here.joints[:, None])

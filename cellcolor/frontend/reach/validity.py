@@ -12,19 +12,20 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.arm.kinematics import bytes_of_poses
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
 from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.reach.postures import Postures, Workplace
 from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
 from cellcolor.frontend.reach.validity_interface import ValidityTest
+from cellcolor.memory import cached, check_memory
 
 __all__ = ["NO_SOLUTION", "Candidates", "Judge", "Verdicts", "turned_into_limits"]
 
 NO_SOLUTION = 1
 """The code where a branch does not reach the pose, so that there is nothing to test."""
 _NAMES = ("valid", "no solution")  # of the codes that no test stands for
-_AT_ONCE = 2_048  # configurations; so few that their poses stay in the processor's cache
 _PAYS = 8  # parts of so many are worth a process of their own
 
 
@@ -136,19 +137,24 @@ class Judge:
 
         Raises:
             OutOfTime: the deadline came first.
+            TooLarge: the verdicts on so many would not fit into the machine's memory.
         """
         count = len(configurations)
-        parts = range(0, count, _AT_ONCE)
+        points, joints = len(self.tracked_steps), configurations.shape[1]
+        parts = list(cached(count, bytes_of_poses(joints) + 128 * points))
         # Of millions the ends of all bodies are a gigabyte: there is to be no second copy.
         # A solid has four times the points of a capsule, which single precision makes up for: a
         # tenth of a micrometer does not matter to how far bodies move.
         place = np.float32 if self._workplace.robot.has_solids else np.float64
+        check_memory(
+            count * self.bytes_kept(joints), f"judging {count:,} configurations of the arm"
+        )
         new = np.zeros if len(parts) < 2 * _PAYS else shared
         whole = Verdicts(
             new(configurations.shape, np.float64),
             new((count,), np.uint8),
             new((count,), np.float64),
-            new((len(self.tracked_steps), count, 3), place),
+            new((points, count, 3), place),
             {},
         )
         timed = ("forward kinematics", *(test.name for test in self._tests))
@@ -156,7 +162,7 @@ class Judge:
 
         def judge(number: int) -> None:
             deadline.check()
-            rows = slice(parts[number], parts[number] + _AT_ONCE)
+            rows = parts[number]
             part = self._judged(configurations[rows])
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
             whole.determinants[rows], whole.tracked[:, rows] = part.determinants, part.tracked
@@ -165,6 +171,10 @@ class Judge:
         processes = share_out(judge, len(parts), at_least=_PAYS)
         whole.seconds.update(zip(timed, (seconds.sum(axis=0) / processes).tolist(), strict=True))
         return whole
+
+    def bytes_kept(self, joints: int) -> int:
+        """What the verdict on one configuration takes."""
+        return 8 * joints + 9 + 24 * len(self.tracked_steps)
 
     def _judged(self, configurations: Array) -> Verdicts:
         count = len(configurations)
