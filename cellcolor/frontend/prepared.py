@@ -30,7 +30,7 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.contact.wider import wider
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.always_touching import always_touching
+from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
 from cellcolor.frontend.reach.coarse import too_coarse
 from cellcolor.frontend.reach.postures import Workplace
 from cellcolor.frontend.reach.smooth import Measure
@@ -212,6 +212,10 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     judge = Judge(workplace, scene.validity_test)
     notes = robot.warnings + notes_on_units(scene, kinematics.reach)
     if setup.constraints.collision:
+        with in_file(setup.file):
+            check_capsules(
+                workplace.near_itself, None if setup.motion is None else setup.motion.home_rad
+            )
         notes += _notes_on_contacts(workplace, float(lengths.max()))
     return PreparedScene(scene, workplace, kinematics, surface, judge, notes)
 

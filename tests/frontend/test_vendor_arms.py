@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
 from meshed_arm import with_collision, write_package
 from shipped import ROBOTS
 
@@ -101,6 +102,34 @@ def test_links_that_always_overlap_are_named_and_may_touch(scene: Varied) -> Non
     with pytest.raises(InputError, match="no link 'wrist_9_link'") as caught:
         build_surface(scene(setup={"may_touch": [("wrist_9_link", "wrist_1_link")]}))
     assert caught.value.field == "robot.may_touch[0]"
+
+
+@pytest.mark.parametrize("radius", [0.1, 0.05])
+def test_capsules_that_leave_nothing_free_are_refused(
+    scene: Varied, tmp_path: Path, radius: float
+) -> None:
+    """Balls as meshes about the frames of wrists 1 and 3, whose distance no joint changes."""
+    apart = np.hypot(0.093, 0.09465)  # wrist 1 to 2 and 2 to 3 are at right angles
+    ball = tmp_path / "ball.stl"
+    trimesh.creation.icosphere(subdivisions=3, radius=radius).export(ball)
+
+    def with_balls(text: str) -> str:
+        for link in ("wrist_1_link", "wrist_3_link"):
+            text = with_collision(text, link, f'<mesh filename="{ball}"/>')
+        return text
+
+    keys = {"arm": with_balls, "target_vertices": 100}
+    if 2 * radius < apart:
+        assert build_surface(scene(setup={"mesh_collision": "capsules"}, **keys)).report.candidates
+        return
+    with pytest.raises(InputError, match=r"'wrist_1_link' and 'wrist_3_link'.*exact") as caught:
+        build_surface(scene(setup={"mesh_collision": "capsules"}, **keys))
+    assert caught.value.field == "robot.mesh_collision"
+    said = re.search(r"by at least ([0-9.]+) mm", caught.value.message)
+    assert said is not None
+    balls = 1e3 * (2 * radius - apart)  # and capsules may be 5 mm farther out each
+    assert balls - 1 < float(said.group(1)) < balls + 10
+    build_surface(scene(setup={"mesh_collision": "hull"}, **keys))
 
 
 def test_a_tool_that_reaches_its_tip_is_warned_of(scene: Varied) -> None:
