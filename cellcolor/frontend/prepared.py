@@ -212,10 +212,10 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     judge = Judge(workplace, scene.validity_test)
     notes = robot.warnings + notes_on_units(scene, kinematics.reach)
     if setup.constraints.collision:
+        home = None if setup.motion is None else setup.motion.home_rad
         with in_file(setup.file):
-            check_capsules(
-                workplace.near_itself, None if setup.motion is None else setup.motion.home_rad
-            )
+            wide = check_capsules(workplace.near_itself, home)
+        notes += () if wide is None else (wide,)
         notes += _notes_on_contacts(workplace, float(lengths.max()))
     return PreparedScene(scene, workplace, kinematics, surface, judge, notes)
 
