@@ -121,7 +121,7 @@ def test_a_follower_hits_what_it_meets_only_where_it_has_moved() -> None:
         '<limit lower="-2" upper="2" effort="1" velocity="1"/>',
     )  # fmt: skip
     robot = load(ball)
-    tried = np.array([q, q + [0, 0, 0, 0, 0, 1.0]])
+    tried = np.array([q, q + np.eye(6)[5]])
     for own, expected in ((plain, [False, False]), (robot, [False, True])):
         poses = forward(own, tried)
         assert hits_itself(own, body_ends(own, poses), poses).tolist() == expected

@@ -69,7 +69,7 @@ def test_capsules_are_not_off_where_they_overlap() -> None:
 
 
 def test_faces_are_cut_between_capsules() -> None:
-    """A square plate of 12 faces: capsules of whole ones go 0.2 m off, four along strips 0.04."""
+    """A square plate of 12 faces: a capsule around whole ones goes 0.2 m off."""
     report = reported(trimesh.creation.box((0.4, 0.4, 0.02)), "capsules")
     assert report.contains
     assert report.error_m < 0.1
