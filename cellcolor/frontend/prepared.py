@@ -27,7 +27,7 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_units
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.reach.always_touching import always_touching
+from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
 from cellcolor.frontend.reach.coarse import too_coarse
 from cellcolor.frontend.reach.postures import Workplace
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
@@ -164,6 +164,10 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     judge = Judge(workplace, scene.validity_test)
     notes = arm.robot.warnings + notes_on_units(scene, arm.kinematics.reach)
     if setup.constraints.collision:
+        home = None if setup.motion is None else setup.motion.home_rad
+        with in_file(setup.file):
+            wide = check_capsules(workplace.near_itself, home)
+        notes += () if wide is None else (wide,)
         notes += _notes_on_contacts(workplace, float(lengths.max()))
     return PreparedScene(scene, workplace, part, surface, judge, notes)
 

@@ -35,7 +35,7 @@ class FreeSpace:
         self._place, self._on = place, prepared.setup.constraints.collision
         self.limits = joint_limits(prepared)
         self._leaving, margins = leaving, prepared.setup.margins
-        tip = replace(place.tip.body, link=place.robot.bodies[-1].link)
+        tip = replace(place.tip.body, link=place.robot.bodies[_last(place.robot)].link)
 
         def keeping(room: float, margin: float) -> Robot:
             """The robot with room around it, and a margin that the tip's region does not have."""
@@ -126,6 +126,12 @@ class FreeSpace:
 
 def _with_tip(robot: Robot, tip: Body) -> Robot:
     """The robot with the region at its tip as one more body of the tool."""
-    number, last = len(robot.bodies), len(robot.bodies) - 1
+    number, last = len(robot.bodies), _last(robot)
     pairs = tuple((i, number) for i, j in robot.tested_pairs if j == last)
     return replace(robot, bodies=(*robot.bodies, tip), tested_pairs=robot.tested_pairs + pairs)
+
+
+def _last(robot: Robot) -> int:
+    """The last body, but for those of followers, which may stand after the tool's."""
+    carried = [k for k, body in enumerate(robot.bodies) if body.joint <= robot.joints]
+    return max(carried, default=len(robot.bodies) - 1)

@@ -123,7 +123,7 @@ def body_mesh(body: Body) -> _Mesh:
 
 def _placed(body: Body, poses: Poses) -> _Mesh:
     points, triangles = body_mesh(body)
-    turned = points @ poses.rotation[0, body.joint].T + poses.origin[0, body.joint]
+    turned = points @ poses.body_rotation[0, body.joint].T + poses.body_origin[0, body.joint]
     return turned, triangles
 
 
@@ -220,7 +220,7 @@ def _free_view(robot: Robot, poses: Poses, normal: Array) -> Array:
     starts = tip + 0.05 * rays
     clearance = np.full(len(rays), 0.15)
     for body in robot.bodies:
-        rotation, origin = poses.rotation[0, body.joint], poses.origin[0, body.joint]
+        rotation, origin = poses.body_rotation[0, body.joint], poses.body_origin[0, body.joint]
         ends = [np.tile(origin + rotation @ end, (len(rays), 1)) for end in (body.start, body.end)]
         gap = segment_distance(starts, starts + 3.0 * rays, ends[0], ends[1]) - body.radius
         clearance = np.minimum(clearance, gap)

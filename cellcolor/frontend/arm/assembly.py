@@ -77,14 +77,29 @@ def fix_joints(urdf: Urdf, positions: Mapping[str, float]) -> Urdf:
         if name in urdf.kinds:
             _check_limits(joints[name], urdf.kinds[name], name, position)
             _fix(joints[name], urdf.kinds[name], position)
-    for name, follower in urdf.followers.items():
-        given = positions.get(name)
-        if given is None and follower.leader in positions:
-            given = follower.multiplier * positions[follower.leader] + follower.offset
-        if given is not None:
-            _fix(joints[name], follower.kind, given)
+    for name, position in _following(urdf, positions).items():
+        _fix(joints[name], urdf.followers[name].kind, position)
+        if name in locked:
             locked.remove(name)
     return check_urdf(urdf.file, urdf.folder, xml, tuple(locked), urdf.followers)
+
+
+def _following(urdf: Urdf, positions: Mapping[str, float]) -> dict[str, float]:
+    """The positions of all followers that are given one, or whose leader has one."""
+    found: dict[str, float] = {}
+    for name in urdf.followers:
+        path = [name]
+        while path[-1] not in positions and path[-1] in urdf.followers:
+            leader = urdf.followers[path[-1]].leader
+            if leader in path:
+                break
+            path.append(leader)
+        if path[-1] in positions:
+            position = positions[path[-1]]
+            for each in reversed(path[:-1]):
+                position = urdf.followers[each].multiplier * position + urdf.followers[each].offset
+            found[name] = position
+    return found
 
 
 def _check_limits(joint: ET.Element, kind: str, name: str, position: float) -> None:

@@ -1,20 +1,17 @@
-"""Capsules around points: one for a bound, or a few that follow the shape of a mesh."""
+"""A capsule around points, as small as can be found."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.cluster.vq import kmeans2
 from scipy.optimize import minimize
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 from cellcolor.frontend.arm.polyhedron import convex_hull
 
-__all__ = ["Capsule", "capsule_around", "capsules_around"]
+__all__ = ["Capsule", "along_axis", "capsule_around"]
 
-_MOST = 4  # capsules of one mesh
-_WORTH = 0.85  # another capsule has to save so much of the volume
 _ROUNDING = 1e-9  # of the radius, so that no point is left outside by rounding
 
 
@@ -47,7 +44,7 @@ def capsule_around(points: Array) -> Capsule:
             direction = axis + tried[2:4] @ across
             center = middle + size * tried[:2] @ across
             direction /= np.linalg.norm(direction)
-            return _along(outer, center, direction, 1 + abs(float(tried[4])))
+            return along_axis(outer, center, direction, 1 + abs(float(tried[4])))
 
         found = minimize(
             lambda tried, around=around: around(tried).volume / size**3,
@@ -65,7 +62,7 @@ def capsule_around(points: Array) -> Capsule:
 _SIMPLEX = np.concatenate([np.zeros((1, 5)), 0.1 * np.eye(5)])
 
 
-def _along(points: Array, center: Array, axis: Array, wider: float) -> Capsule:
+def along_axis(points: Array, center: Array, axis: Array, wider: float) -> Capsule:
     """The shortest capsule around points whose axis lies on a given line.
 
     Its radius is ``wider`` times the smallest one that is possible; with more it may be shorter.
@@ -79,24 +76,3 @@ def _along(points: Array, center: Array, axis: Array, wider: float) -> Capsule:
     if low > high:
         low = high = (low + high) / 2
     return Capsule(center + low * axis, center + high * axis, radius)
-
-
-def capsules_around(vertices: Array, faces: Index) -> list[Capsule]:
-    """One to four capsules that contain a mesh's faces, each of them in one capsule as a whole.
-
-    More capsules are taken as long as each saves a sixth of the volume. Faces are shared out by
-    the places of their middles (k-means, always the same way).
-    """
-    best = [capsule_around(vertices)]
-    middles = vertices[faces].mean(axis=1)
-    for count in range(2, min(_MOST, len(faces)) + 1):
-        label = kmeans2(middles, count, minit="++", seed=0)[1]
-        groups = [np.unique(faces[label == group]) for group in range(count)]
-        found = [capsule_around(vertices[group]) for group in groups if len(group)]
-        if _volume(found) < _WORTH * _volume(best):
-            best = found
-    return best
-
-
-def _volume(capsules: list[Capsule]) -> float:
-    return sum(capsule.volume for capsule in capsules)

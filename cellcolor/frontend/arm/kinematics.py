@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.robot import Robot
@@ -45,6 +46,8 @@ class Poses:
         tip: (n, 3) tool tip in m.
         tool_axis: (n, 3) the tool's z axis, from the flange to the tip.
         slides: (joints,) which joints are prismatic.
+        body_rotation, body_origin: of all frames that bodies hang on: the same, and after them
+            those of followers, if there are any.
     """
 
     rotation: Array
@@ -53,16 +56,22 @@ class Poses:
     tip: Array
     tool_axis: Array
     slides: Mask
+    body_rotation: Array
+    body_origin: Array
 
     def take(self, rows: NDArray[np.intp]) -> Poses:
         """The poses of some of the configurations."""
+        frames = self.axis.shape[1] + 1
+        rotation, origin = self.body_rotation[rows], self.body_origin[rows]
         return Poses(
-            self.rotation[rows],
-            self.origin[rows],
+            rotation[:, :frames],
+            origin[:, :frames],
             self.axis[rows],
             self.tip[rows],
             self.tool_axis[rows],
             self.slides,
+            rotation,
+            origin,
         )
 
 
@@ -75,8 +84,10 @@ def forward(robot: Robot, configurations: Array) -> Poses:
     """Poses of all frames for configurations (n, joints) in rad, prismatic joints in m."""
     n = len(configurations)
     # In memory joint after joint, so that one frame of all configurations is one piece.
-    rotation = np.empty((robot.joints + 1, n, 3, 3)).swapaxes(0, 1)
-    origin = np.empty((robot.joints + 1, n, 3)).swapaxes(0, 1)
+    frames = robot.joints + 1 + len(robot.followers)
+    all_rotations = np.empty((frames, n, 3, 3)).swapaxes(0, 1)
+    all_origins = np.empty((frames, n, 3)).swapaxes(0, 1)
+    rotation, origin = all_rotations[:, : robot.joints + 1], all_origins[:, : robot.joints + 1]
     axis = np.empty((n, robot.joints, 3))
     rotation[:, 0], origin[:, 0] = np.eye(3), 0.0
     for joint in range(robot.joints):
@@ -104,7 +115,22 @@ def forward(robot: Robot, configurations: Array) -> Poses:
         axis[:, joint] = turned(before, robot.axis[joint])
     tip = origin[:, -1] + turned(rotation[:, -1], robot.tip[:3, 3])
     tool_axis = turned(rotation[:, -1], robot.tip[:3, 2])
-    return Poses(rotation, origin, axis, tip, tool_axis, robot.slides)
+    for frame, follower in enumerate(robot.followers, robot.joints + 1):
+        # Out to the follower, moved by it, and back, in the frame that carries it.
+        turn, at = follower.placement[:3, :3], follower.placement[:3, 3]
+        along, position = turn @ follower.axis, follower.position(configurations)
+        if follower.slides:
+            own = np.broadcast_to(np.eye(3), (n, 3, 3))
+            shift = position[:, None] * along
+        else:
+            own = Rotation.from_rotvec(position[:, None] * along).as_matrix().reshape(n, 3, 3)
+            shift = at - own @ at
+        carrier = all_rotations[:, follower.parent]
+        all_rotations[:, frame] = carrier @ own
+        all_origins[:, frame] = all_origins[:, follower.parent] + np.einsum(
+            "nab,nb->na", carrier, shift
+        )
+    return Poses(rotation, origin, axis, tip, tool_axis, robot.slides, all_rotations, all_origins)
 
 
 def turned(rotation: Array, columns: Array) -> Array:

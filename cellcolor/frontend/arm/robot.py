@@ -13,10 +13,16 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount
 from cellcolor.frontend.arm.body import Body, StandIn
+from cellcolor.frontend.arm.followers import (
+    FollowingFrame,
+    following_frames,
+    hung_on,
+    within_limits,
+)
 from cellcolor.frontend.arm.pinocchio_text import pinocchio_text
 from cellcolor.frontend.arm.placed_shapes import Shapes, place_shapes
 from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
-from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Urdf, load_urdf
+from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Follower, Urdf, load_urdf
 
 __all__ = ["Body", "Robot", "Shapes", "load_robot"]
 
@@ -50,8 +56,9 @@ class Robot:
         joint_names: names of the joints.
         warnings: what its files have that is probably not meant, a sentence each.
         model, geometry: Pinocchio's own, for those who want to compute independently; meshes and
-            capsules are small spheres there.
+            capsules are small spheres there, and followers stand at zero.
         stand_ins: what collides in the place of meshes.
+        followers: frames beside the chain that move with its joints; bodies hang on them too.
         task: what it is asked to do with the tool; :func:`load_robot` leaves the turn free.
     """
 
@@ -74,6 +81,7 @@ class Robot:
     geometry: pin.GeometryModel = field(repr=False, compare=False)
     stand_ins: tuple[StandIn, ...] = ()
     task: TaskSpace = FREE_TURN
+    followers: tuple[FollowingFrame, ...] = ()
 
     @property
     def joints(self) -> int:
@@ -134,6 +142,11 @@ def load_robot(
     if tip_link != tool.root and tip_link not in tool.parent:
         raise InputError(str(tool_file), f"link[{tip_link}]", "the tip link is not in the tool")
     whole = mount(arm, flange_link, tool, *mounted)
+    try:
+        moving, standing = whole.settled_followers()
+    except InputError as error:
+        raise _in_its_file(error, arm, tool) from error
+    whole = fix_joints(whole, standing)
     _check_chain(whole, arm, tool, tip_link, (joints - prismatic, prismatic))
     if force and whole.weightless:
         fault = whole.weightless[0]
@@ -141,6 +154,8 @@ def load_robot(
         of_tool = any((fault.field or "").startswith(place) for place in places)
         message = f"{fault.message} ({_NO_FORCE})"
         raise InputError(str(tool_file if of_tool else arm_file), fault.field, message)
+    if force:
+        _check_weight(whole, moving, arm, tool)
     text = pinocchio_text(whole)
     try:
         model = pin.buildModelFromXML(text)
@@ -148,6 +163,13 @@ def load_robot(
     except (ValueError, RuntimeError) as error:
         raise InputError(str(arm_file), "robot", f"Pinocchio refuses it: {error}") from error
     bodies, stand_ins = place_shapes((arm, tool), whole, model, geometry, shapes or Shapes())
+    limits = model.lowerPositionLimit, model.upperPositionLimit
+    try:
+        frames = following_frames(whole, moving, model)
+        lower, upper = within_limits(whole, moving, frames, *limits)
+    except InputError as error:
+        raise _in_its_file(error, arm, tool) from error
+    bodies = hung_on(bodies, whole, frames, joints)
     tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
     names = tuple(model.names[1:])
     endless = np.array([whole.kinds[name] == CONTINUOUS for name in names], dtype=bool)
@@ -156,8 +178,8 @@ def load_robot(
         placement=np.array([model.jointPlacements[i].homogeneous for i in range(1, joints + 1)]),
         axis=_axes(model),
         slides=np.array([whole.kinds[name] == PRISMATIC for name in names], dtype=bool),
-        lower=np.where(endless, -np.inf, model.lowerPositionLimit),
-        upper=np.where(endless, np.inf, model.upperPositionLimit),
+        lower=np.where(endless & (lower <= limits[0]), -np.inf, lower),
+        upper=np.where(endless & (upper >= limits[1]), np.inf, upper),
         velocity=_where_given(model.velocityLimit),
         effort=_where_given(model.effortLimit),
         mass=np.array([model.inertias[i].mass for i in range(1, joints + 1)]),
@@ -170,6 +192,7 @@ def load_robot(
         model=model,
         geometry=geometry,
         stand_ins=stand_ins,
+        followers=frames,
     )
 
 
@@ -185,7 +208,10 @@ def _check_chain(
 
     for name in in_chain:
         if name in whole.locked:
-            message = "a joint between base and tip may not follow another one"
+            message = (
+                f"a joint between base and tip may not follow another one (here "
+                f"{whole.followers[name].leader!r}): no family of arms solves that"
+            )
             raise refuse(name, ".mimic", message)
     for name, kind in whole.kinds.items():
         if name in tool.kinds:
@@ -207,6 +233,27 @@ def _check_chain(
         raise InputError(str(arm.file), "robot", message + way_out)
 
 
+def _in_its_file(error: InputError, arm: Urdf, tool: Urdf) -> InputError:
+    """An error about a joint of arm and tool as one tree, with the file that has the joint."""
+    of_tool = any((error.field or "").startswith(f"joint[{n}]") for n in tool.joint_above.values())
+    return InputError(str((tool if of_tool else arm).file), error.field, error.message)
+
+
+def _check_weight(whole: Urdf, moving: Mapping[str, Follower], arm: Urdf, tool: Urdf) -> None:
+    """Refuse followers with a mass: the force constraint has it where they are at zero."""
+    heavy = {
+        link.get("name", "")
+        for link in whole.xml.findall("link")
+        if link.find("inertial") is not None
+    }
+    for link in whole.parent:
+        above = [whole.joint_above[each] for each in whole.chain(link)[1:]]
+        for name in [each for each in above if each in moving and link in heavy]:
+            message = f"the weight of what follows another joint is not known to move ({_NO_FORCE})"
+            error = InputError(str(arm.file), f"joint[{name}].mimic", message)
+            raise _in_its_file(error, arm, tool)
+
+
 def _counted(joints: tuple[int, int]) -> str:
     """Numbers of turning and prismatic joints in words."""
     turning, sliding = joints
@@ -225,8 +272,6 @@ def _warnings(urdf: Urdf) -> tuple[str, ...]:
         found.append("arm and tool have no collision shapes at all: nothing is ever hit")
     elif urdf.shapeless:
         found.append(f"no collision shape, so hits nothing: {_listed(urdf.shapeless)}")
-    if urdf.locked:
-        found.append(f"follows another joint (<mimic>), so fixed at zero: {_listed(urdf.locked)}")
     return tuple(found)
 
 

@@ -19,7 +19,16 @@ from cellcolor.files.documents import read_text
 from cellcolor.frontend.arm.link_shapes import LinkShape, shapes_of
 from cellcolor.frontend.arm.urdf_fields import check_origin, finite, named, number, triple
 
-__all__ = ["CONTINUOUS", "PRISMATIC", "Follower", "Urdf", "check_urdf", "load_urdf", "parse_urdf"]
+__all__ = [
+    "CONTINUOUS",
+    "PRISMATIC",
+    "Follower",
+    "Urdf",
+    "check_follower",
+    "check_urdf",
+    "load_urdf",
+    "parse_urdf",
+]
 
 CONTINUOUS, PRISMATIC = "continuous", "prismatic"
 _MOVING = ("revolute", CONTINUOUS, PRISMATIC)
@@ -30,7 +39,7 @@ _THING = ("inertial", "visual")  # what a link that is more than a frame has
 class Follower:
     """A joint with ``<mimic>``: its position is ``multiplier`` times the leader's plus ``offset``.
 
-    It has been fixed where it stands at zero; ``kind`` is the type that it had.
+    In the XML it is a fixed joint, which stands at zero; ``kind`` is the type that it had.
     """
 
     leader: str
@@ -54,8 +63,9 @@ class Urdf:
             picture, or a joint moves them.
         weightless: why the force constraint cannot be tested: what is wrong with the mass of
             links that a joint moves, and with the effort of joints.
-        locked: joints that would follow another one (``<mimic>``) and are fixed at zero instead.
-        followers: all joints that have followed another one.
+        locked: joints that follow another one (``<mimic>``) and are not fixed with it; they are
+            written as fixed at zero.
+        followers: all joints that follow another one, fixed or not.
     """
 
     file: Path
@@ -75,6 +85,33 @@ class Urdf:
     def moving(self) -> tuple[str, ...]:
         """Names of the joints that can move, in the order of the file."""
         return tuple(self.kinds)
+
+    def settled_followers(self) -> tuple[dict[str, Follower], dict[str, float]]:
+        """Those of the ``locked`` joints that move, and the positions of the others.
+
+        What follows a follower is written as if it followed the first leader at first hand. One
+        whose leader is fixed stands where it is with the leader at zero.
+
+        Raises:
+            InputError: a joint follows one that is not there, or itself.
+        """
+        moving, standing = {}, {}
+        known = set(self.joint_above.values())
+        for name in self.locked:
+            leader, factor, offset, seen = name, 1.0, 0.0, {name}
+            while leader in self.locked:
+                own = self.followers[leader]
+                leader, offset = own.leader, offset + factor * own.offset
+                factor *= own.multiplier
+                if leader not in known or leader in seen:
+                    fault = "follows itself" if leader in seen else f"no joint {leader!r}"
+                    raise InputError(str(self.file), f"joint[{name}].mimic", fault)
+                seen.add(leader)
+            if leader in self.kinds and factor:
+                moving[name] = Follower(leader, self.followers[name].kind, factor, offset)
+            else:
+                standing[name] = offset
+        return moving, standing
 
     def chain(self, link: str) -> tuple[str, ...]:
         """The links from the root to ``link``, both included."""
@@ -201,6 +238,20 @@ def check_urdf(
         locked, followers,
     )  # fmt: skip
     return replace(tree, weightless=tuple(_weightless(tree, links, joints, driven)))
+
+
+def check_follower(file: Path, name: str, joint: ET.Element, kind: str) -> None:
+    """Hold a joint that moves with another one to what is asked of others; limits may be left out.
+
+    Raises:
+        InputError: it is of another kind, or has no usable axis or limits.
+    """
+    if kind not in _MOVING:
+        message = f"{kind!r}: only revolute, continuous and prismatic joints can follow another one"
+        raise InputError(str(file), f"joint[{name}].type", message)
+    if kind != CONTINUOUS and joint.find("limit") is not None:
+        _limits(file, name, joint)
+    _axis(file, name, joint)
 
 
 def _weightless(

@@ -37,7 +37,7 @@ def body_ends(robot: Robot, poses: Poses) -> Array:
     """Both ends of every body's axis in the world, (bodies, 2, n, 3), m."""
     ends = np.empty((len(robot.bodies), 2, len(poses.tip), 3))
     for index, body in enumerate(robot.bodies):
-        rotation, origin = poses.rotation[:, body.joint], poses.origin[:, body.joint]
+        rotation, origin = poses.body_rotation[:, body.joint], poses.body_origin[:, body.joint]
         ends[index, 0] = origin + turned(rotation, body.start)
         ends[index, 1] = origin + turned(rotation, body.end)
     return ends
@@ -116,7 +116,7 @@ def hits_ground(
                 assert poses is not None
                 low &= ~hit
                 rows = np.flatnonzero(low)
-                at = (poses.rotation[rows, body.joint], poses.origin[rows, body.joint])
+                at = (poses.body_rotation[rows, body.joint], poses.body_origin[rows, body.joint])
                 low[rows] = lowest_points(body.solid, at, ground) - body.skin < ground.offset_m
             hit |= low
     return hit
@@ -186,8 +186,8 @@ def tracked_points(robot: Robot, ends: Array, poses: Poses) -> Array:
         if body.solid is None:
             points.append(both)
             continue
-        corners = turned(poses.rotation[:, body.joint], body.solid.corners.T)
-        place = corners.transpose(2, 0, 1) + poses.origin[:, body.joint]
+        corners = turned(poses.body_rotation[:, body.joint], body.solid.corners.T)
+        place = corners.transpose(2, 0, 1) + poses.body_origin[:, body.joint]
         points.append(place)
     return np.concatenate([np.empty((0, *ends.shape[2:])), *points])
 

@@ -56,7 +56,7 @@ def _middle_and_edges(
     """Middle (n, 3) and halved edges (n, 3 or 1, 3) of a solid's box or another body's axis."""
     if body.solid is None:
         return ends.mean(axis=0), (ends[1:] - ends[:1]).swapaxes(0, 1) / 2
-    corners, rotation = body.solid.corners, poses.rotation[rows, body.joint]
-    middle = turned(rotation, corners.mean(axis=0)) + poses.origin[rows, body.joint]
+    corners, rotation = body.solid.corners, poses.body_rotation[rows, body.joint]
+    middle = turned(rotation, corners.mean(axis=0)) + poses.body_origin[rows, body.joint]
     # The first corner's neighbors along the edges of the box.
     return middle, turned(rotation, (corners[[1, 2, 4]] - corners[0]).T / 2).swapaxes(1, 2)

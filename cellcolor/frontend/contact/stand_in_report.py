@@ -19,6 +19,7 @@ __all__ = ["StandInReport", "report_on"]
 _SAMPLES = 50_000  # of each surface, at most about so many
 _SLACK = 0.0005  # m; wanted distance of a surface's points to the nearest sample
 _FAR = 0.02  # m; a hull that is farther off its mesh is warned of
+_HALVINGS = 40  # of a face; a meter comes down to a micrometer
 _ROUNDING = 1e-8  # m; a mesh that comes out no farther is contained
 
 
@@ -92,11 +93,7 @@ def report_on(stand_in: StandIn) -> StandInReport:
             # from elsewhere on the surface no farther than from a sample and the way to that.
             error = max(error, float(apart.max() + slack))
             known = max(known, float(slack + mesh_slack))
-        # What contains the corners of a face contains the face, since each body is convex.
-        held = np.zeros(len(stand_in.faces), dtype=bool)
-        for body in stand_in.bodies:
-            held |= _inside(body, stand_in.vertices)[stand_in.faces].all(axis=1)
-        contains = bool(held.all())
+        contains = _all_inside(stand_in.bodies, stand_in.vertices[stand_in.faces])
     return StandInReport(
         stand_in.link,
         stand_in.file.name,
@@ -107,6 +104,28 @@ def report_on(stand_in: StandIn) -> StandInReport:
         contains,
         bool(trimesh.Trimesh(stand_in.vertices, stand_in.faces, process=False).is_watertight),
     )
+
+
+def _all_inside(bodies: tuple[Body, ...], triangles: Array) -> bool:
+    """Whether each point of triangles (m, 3, 3) is in a body; not known counts as no.
+
+    A body that contains the corners of a triangle contains all of it, since it is convex. A
+    triangle across the border of two bodies is halved until each part is in one of them.
+    """
+    rest = triangles
+    for _ in range(_HALVINGS):
+        inside = np.stack([_inside(body, rest.reshape(-1, 3)).reshape(-1, 3) for body in bodies])
+        if not inside.any(axis=0).all():
+            return False
+        rest = rest[~inside.all(axis=2).any(axis=0)]
+        if not len(rest) or len(bodies) == 1:
+            return not len(rest)
+        sides = np.linalg.norm(np.roll(rest, -1, axis=1) - rest, axis=2)
+        order = (np.argmax(sides, axis=1)[:, None] + np.arange(3)) % 3
+        a, b, c = np.take_along_axis(rest, order[:, :, None], axis=1).swapaxes(0, 1)
+        middle = (a + b) / 2
+        rest = np.concatenate([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)])
+    return False
 
 
 def _inside(body: Body, points: Array) -> Mask:

@@ -41,14 +41,20 @@ function turnedAbout([x, y, z], angle) {
   ];
 }
 
-// The poses of the world and of the frames behind all joints, and the tool's tip last.
+// The poses of the world and of the frames behind all joints and followers, and the tool's tip last.
 function armPoses(arm, joints) {
   const poses = [IDENTITY];
   for (let joint = 0; joint < arm.axis.length; joint++) {
     const fixed = times(poses[joint], arm.placement[joint]);
     poses.push(times(fixed, turnedAbout(arm.axis[joint], joints[joint])));
   }
-  return [...poses, times(poses[arm.axis.length], arm.tip)];
+  const tip = times(poses[arm.axis.length], arm.tip);
+  for (const { parent, placement, back, axis, slides, leader, multiplier, offset } of arm.followers) {
+    const position = multiplier * joints[leader] + offset, [x, y, z] = axis.map((a) => a * position);
+    const moved = slides ? [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1] : turnedAbout(axis, position);
+    poses.push(times(times(times(poses[parent], placement), moved), back));
+  }
+  return [...poses, tip];
 }
 
 // A unit normal for each corner of each face, smooth but across edges sharper than 40 degrees.

@@ -105,7 +105,7 @@ def _mode(surface: LabelledSurface, mode: SurfaceMode) -> dict[str, Any]:
 def _arm(robot: Robot) -> dict[str, Any]:
     """Joint frames and the bodies on them: the collision shapes, which are what is tested."""
     links = list(dict.fromkeys(body.link for body in robot.bodies))
-    last = max(body.joint for body in robot.bodies)
+    last = max(min(body.joint, robot.joints) for body in robot.bodies)
     bodies = []
     for body in robot.bodies:
         points, triangles = body_mesh(body)
@@ -122,6 +122,19 @@ def _arm(robot: Robot) -> dict[str, Any]:
         "placement": robot.placement.reshape(-1, 16).tolist(),  # row by row
         "axis": robot.axis.tolist(),
         "tip": robot.tip.ravel().tolist(),
+        "followers": [
+            {
+                "parent": each.parent,
+                "placement": each.placement.ravel().tolist(),
+                "back": np.linalg.inv(each.placement).ravel().tolist(),
+                "axis": each.axis.tolist(),
+                "slides": each.slides,
+                "leader": each.leader,
+                "multiplier": each.multiplier,
+                "offset": each.offset,
+            }
+            for each in robot.followers
+        ],
         "bodies": bodies,
     }
 

@@ -222,22 +222,6 @@ def test_links_that_cannot_collide_are_named(tmp_path: Path) -> None:
     assert "no collision shapes at all" in warning
 
 
-FOLLOWER = (
-    '<joint name="finger" type="{kind}"><parent link="tool_body"/><child link="nail"/>'
-    '<origin xyz="0 0.01 0.05"/><axis xyz="0 1 0"/>'
-    '<limit lower="0" upper="1" effort="1" velocity="1"/>'
-    '<mimic joint="wrist_1_joint"/></joint><link name="nail"/></robot>'
-)
-
-
-@pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
-def test_followers_beside_the_chain_stand_still(written: Callable[..., Path], kind: str) -> None:
-    robot = load(written(TOOL, "</robot>", FOLLOWER.format(kind=kind)))
-    (warning,) = robot.warnings
-    assert "mimic" in warning and warning.endswith("'finger'")
-    assert robot.model.nq == 6
-
-
 def test_followers_in_the_chain_are_refused(written: Callable[..., Path]) -> None:
     # Of the elbow: an arm whose forearm follows the upper arm.
     joint = r'(<joint name="elbow_joint" type="revolute">)'

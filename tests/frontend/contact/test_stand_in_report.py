@@ -9,7 +9,8 @@ import pytest
 import trimesh
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.body import mesh_bodies
+from cellcolor.frontend.arm.body import Body, StandIn, mesh_bodies
+from cellcolor.frontend.arm.capsules import capsule_around
 from cellcolor.frontend.contact.stand_in_report import StandInReport, report_on
 from cellcolor.frontend.setup import MeshCollision
 
@@ -58,10 +59,35 @@ def test_capsules_are_not_off_where_they_overlap() -> None:
     """Of an L two capsules follow the arms; what of one is inside the other does not count."""
     arms = [trimesh.creation.capsule(height=0.4, radius=0.05, count=(12, 12)) for _ in range(2)]
     arms[1].apply_transform(trimesh.transformations.rotation_matrix(np.pi / 2, (0, 1, 0)))
-    report = reported(trimesh.util.concatenate(arms), "capsules")
-    one = reported(trimesh.util.concatenate(arms).convex_hull, "capsules")
+    cross = trimesh.util.concatenate(arms)
+    report = reported(cross, "capsules")
+    vertices, faces = np.array(cross.vertices), np.array(cross.faces, dtype=np.int64)
+    body = Body("link", 1, *capsule_around(vertices), flat=False)
+    one = report_on(StandIn("link", Path("link.stl"), "capsules", vertices, faces, (body,)))
     assert report.contains and report.shapes >= 2
     assert report.error_m < 0.5 * one.error_m
+
+
+def test_faces_are_cut_between_capsules() -> None:
+    """A square plate of 12 faces: a capsule around whole ones goes 0.2 m off."""
+    report = reported(trimesh.creation.box((0.4, 0.4, 0.02)), "capsules")
+    assert report.contains
+    assert report.error_m < 0.1
+
+
+@pytest.mark.parametrize(("gap", "held"), [(-0.001, True), (0.001, False)])
+def test_a_face_between_capsules_is_held_if_they_meet(gap: float, held: bool) -> None:
+    """A bar: both ends are in a capsule, and the middle if these overlap."""
+    bar = trimesh.creation.box((0.4, 0.02, 0.02))
+    vertices, faces = np.array(bar.vertices), np.array(bar.faces, dtype=np.int64)
+    radius = 0.05
+    inner = gap / 2 + np.sqrt(radius**2 - 2 * 0.01**2)  # where the ball meets the bar's edges
+    bodies = tuple(
+        Body("link", 1, np.array([side * inner, 0, 0]), np.array([side * 0.2, 0, 0]), radius, False)
+        for side in (-1, 1)
+    )
+    report = report_on(StandIn("link", Path("link.stl"), "capsules", vertices, faces, bodies))
+    assert report.contains == held
 
 
 def test_a_flat_mesh_has_no_hull() -> None:
