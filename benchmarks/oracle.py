@@ -3,16 +3,18 @@
     faults [COUNT]    COUNT faults (1,000) planted in valid plans on 63 surfaces, 17 sorts in turn
     valid [COUNT]     COUNT valid plans (10,000) of six sorts on the same surfaces; every seventh
                       is judged by an oracle whose time limit left its range open
+    tampered [COUNT]  COUNT kept proofs (500) that somebody has changed, in 32 sorts in turn
     speed             plans on 8,000 vertices; a suite of 100 plans, run twice
     planners          what three planners pay on the six scenes, beside what is proved
 
-Each prints Markdown; ``faults`` and ``valid`` end with exit code 1 if anything was not as it has to
-be. The seed of each draw is its number.
+Each prints Markdown; ``faults``, ``valid`` and ``tampered`` end with exit code 1 if anything was
+not as it has to be. The seed of each draw is its number.
 """
 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import os
 import re
@@ -37,6 +39,7 @@ from planners import (
 )
 from planted_plans import PLANTERS
 from planting import Case, caught
+from tampered import TAMPERERS, Kept, is_honest, what_is_wrong
 from valid_plans import (
     SORTS,
     any_colors,
@@ -57,6 +60,7 @@ SCENES = sorted((ROOT / "instances" / "scenes").glob("*.surface.json"))
 STORED = sorted(set((ROOT / "instances").rglob("*.surface.json")) - set(SCENES))
 DRAWS = 18  # directions of the raster, and seeds
 LIMIT = 20.0  # seconds for each proof
+LARGEST = 600  # vertices, of a surface whose proofs are tampered with
 SUITE_SURFACES = PLANS_EACH = 10
 SUITE = """
 import json
@@ -175,6 +179,36 @@ def valid(count: int) -> bool:
         print(f"| {sort} | {' | '.join(str(found[column][sort]) for column in columns)} |")
     print(f"| all | {' | '.join(str(found[column].total()) for column in columns)} |")
     return not found[columns[-1]].total()
+
+
+def tampered(count: int) -> bool:
+    """Change what is kept, judge with it and print; whether nothing was believed."""
+    pool = [surface for surface, _ in surfaces()]
+    pairs = zip(pool, [*pool[1:], pool[0]], strict=True)
+    small = [Kept(*pair) for pair in pairs if len(pair[0].vertices) < LARGEST]
+    made, believed, names = Counter[str](), Counter[str](), list(TAMPERERS)
+    for number in itertools.count():
+        if made.total() == count:
+            break
+        # Shifted by one each round, so that every sort meets every surface.
+        name, round_number = names[number % len(names)], number // len(names)
+        kept = small[(number + round_number) % len(small)]
+        random = np.random.default_rng(number)
+        tamper, proves_nothing = TAMPERERS[name]
+        content = tamper(kept, random)
+        if is_honest(kept, content):
+            continue
+        wrong = what_is_wrong(kept, content, proves_nothing, random)
+        made[name] += 1
+        believed[name] += bool(wrong)
+        for text in wrong:
+            print(f"{name}, seed {number}, {kept.surface.name}: {text}", flush=True)
+    print(f"{len(small)} surfaces, each with its minimum proved\n")
+    print("| what was kept is changed | times | believed, or a traceback |\n|---|--:|--:|")
+    for name in names:
+        print(f"| {name} | {made[name]} | {believed[name]} |")
+    print(f"| all | {made.total()} | {believed.total()} |")
+    return not believed.total()
 
 
 def planners() -> bool:
@@ -313,11 +347,13 @@ def main() -> int:
     tables = parser.add_subparsers(dest="table", required=True)
     tables.add_parser("faults").add_argument("count", nargs="?", type=int, default=1000)
     tables.add_parser("valid").add_argument("count", nargs="?", type=int, default=10_000)
+    tables.add_parser("tampered").add_argument("count", nargs="?", type=int, default=500)
     tables.add_parser("speed")
     tables.add_parser("planners")
     chosen = parser.parse_args()
-    if chosen.table in ("faults", "valid"):
-        good = {"faults": faults, "valid": valid}[chosen.table](chosen.count)
+    if chosen.table in ("faults", "valid", "tampered"):
+        counted = {"faults": faults, "valid": valid, "tampered": tampered}
+        good = counted[chosen.table](chosen.count)
     else:
         good = {"speed": speed, "planners": planners}[chosen.table]()
     return 0 if good else 1

@@ -39,6 +39,8 @@ from cellcolor.door.showing import show as show
 from cellcolor.door.solving import build as build
 from cellcolor.door.solving import decompose as decompose
 from cellcolor.door.solving import solve as solve
+from cellcolor.door.starting import Started as Started
+from cellcolor.door.starting import new as new
 from cellcolor.door.unfinished import PlanOutOfTime as PlanOutOfTime
 from cellcolor.door.versions import show_versions as show_versions
 from cellcolor.errors import CellcolorError as CellcolorError

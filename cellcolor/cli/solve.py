@@ -17,7 +17,7 @@ import click
 
 from cellcolor.checker.known_results import contradictions
 from cellcolor.cli.exits import Exit, worst
-from cellcolor.cli.inputs import read_instance
+from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.search_end import Interrupted, end_the_search
@@ -27,6 +27,7 @@ from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.files.writing import (
     Output,
@@ -89,9 +90,10 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
         deadline = Deadline.after(request.time_limit, begun)
         begun = None
         try:
-            instance = read_instance(file, deadline)
+            subject = read_subject(file, deadline)
+            instance = subject.graph(deadline)
             options = replace(request.options, deadline=deadline)
-            solution = _solve(instance, file, target, request, options)
+            solution = _solve(subject, file, target, request, options)
         except Interrupted:
             _say_failed(request, file, f"{file}: interrupted, nothing found yet")
             codes.append(Exit.STOPPED)
@@ -186,7 +188,7 @@ def _inputs(request: Request) -> list[Path]:
 
 
 def _solve(
-    instance: Instance,
+    subject: Subject,
     file: Path,
     target: Path | None,
     request: Request,
@@ -196,11 +198,12 @@ def _solve(
     from cellcolor.door.solving import solve
     from cellcolor.solvers.checked import check_able_to_list
 
+    instance = subject.graph()
     if request.every:
         check_able_to_list(request.solver, instance)
     with progress_of(file) as report, end_the_search():
         solution = solve(
-            instance,
+            subject,
             solver=request.solver,
             search_space=options.search_space,
             strands=options.strands,

@@ -67,6 +67,7 @@ def cover(
         plan = Plan.read(plan)
     require_motion("tool paths", ("scipy", "potpourri3d"))
 
+    from cellcolor.tool_paths.cover import check_spacing
     from cellcolor.tool_paths.cover import cover as cover_segments
 
     report = check_plan(surface, plan)
@@ -77,6 +78,7 @@ def cover(
     for segment, color in zip(report.segment_of, plan.vertex_colors, strict=True):
         if color is not None:
             colors[segment] = color
+    check_spacing(surface, segment_of, spacing_m)
     rows = surface.vertex_normals if normals is None else _unit_rows(normals, len(segment_of))
     return cover_segments(
         surface,

@@ -10,6 +10,7 @@ from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.raw_minimum import with_raw_minimum
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import Solvable, build_scene, is_made_by, is_scene, open_subject
@@ -84,7 +85,8 @@ def solve(
 ) -> Result:
     """Find the fewest segments of a scene, a labelled surface or an instance.
 
-    A scene is built and a surface decomposed on the way; the checker sees every result.
+    A scene is built and a surface decomposed on the way; the checker sees every result. Where a
+    scene's slivers were given up, a note says how many segments there are with them.
 
     Args:
         source: what to solve: its file, its shipped name (``cellcolor.library``), the value.
@@ -119,6 +121,7 @@ def solve(
         fewest_cuts=fewest_cuts,
     )
     solution = checked.solve(instance, options, solver, progress)
+    solution = with_raw_minimum(solution, subject, options)
     return Result(solution, subject)
 
 

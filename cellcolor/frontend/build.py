@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -18,10 +18,13 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.stand_in_report import report_on
 from cellcolor.frontend.finer_borders import with_finer_borders
+from cellcolor.frontend.parts.rounding import longest_beside_sharp
+from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.continuity import Coloring
+from cellcolor.frontend.reach.continuity import Coloring, find_cracks
 from cellcolor.frontend.report import BuildReport, make_report
 from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.frontend.stages import Stages
 from cellcolor.frontend.survey import survey
@@ -106,6 +109,20 @@ class BuildResult:
             self.configurations,
             self.node_color,
             self.surface.sha256,
+        )
+
+    @property
+    def raw_surface(self) -> LabelledSurface | None:
+        """The surface with its slivers, where the sliver policy has given some up; else None."""
+        if not self.surface.given_up:
+            return None
+        stages = self.stages
+        return replace(
+            self.surface,
+            colors=stages.coloring.names,
+            vertex_colors=_vertex_colors(stages.coloring),
+            cracks=find_cracks(stages.links.edges, stages.links.linked, stages.coloring),
+            given_up=(),
         )
 
     def __eq__(self, other: object) -> bool:
@@ -211,6 +228,21 @@ def _report(prepared: PreparedScene, stages: Stages, seconds: dict[str, float]) 
         tuple(map(report_on, prepared.robot.stand_ins)),
         stages.cleaned.report,
         None if stages.named else _INJECTIVE,
+        _rounding_in_words(surface, prepared.setup.task) if surface.faceted else None,
+    )
+
+
+def _rounding_in_words(surface: Surface, task: Task) -> str:
+    """Over what normals are rounded, and whether the triangles let them be."""
+    radius = task.rounding_m
+    key = "contact_radius_m" if task.edge_radius_m is None else "edge_radius_m"
+    text = f"rounded over {1e3 * radius:g} mm (task.{key})"
+    longest = longest_beside_sharp(surface)
+    if longest <= radius / 2:
+        return text
+    return (
+        f"{text}; triangles beside sharp edges are up to {1e3 * longest:.2g} mm long, and the tool "
+        "turns over the whole of them: on smaller triangles the minimum may be another"
     )
 
 

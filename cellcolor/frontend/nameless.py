@@ -14,13 +14,11 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.between import Test
-from cellcolor.frontend.reach.sheets import Sheets, linked_pairs, sheets_of
+from cellcolor.frontend.reach.sheets import Sheets, edges_at_once, linked_pairs, sheets_of
 from cellcolor.frontend.reach.tracking import Solutions, Tracker
 from cellcolor.frontend.reach.validity import NO_SOLUTION, Candidates
 
 __all__ = ["Nameless", "arranged_in_sheets"]
-
-_AT_ONCE = 4_000  # mesh edges; all solutions of both ends are compared, tens of kilobytes an edge
 
 
 @dataclass(frozen=True)
@@ -81,9 +79,10 @@ def arranged_in_sheets(
     limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
     solutions = tracker.described(candidates.configurations)
     pairs = [np.empty((0, 3), dtype=np.int64)]
-    for first in range(0, len(edges), _AT_ONCE):
+    at_once = edges_at_once(nodes.shape[1], robot.joints)
+    for first in range(0, len(edges), at_once):
         deadline.check()
-        part = edges[first : first + _AT_ONCE]
+        part = edges[first : first + at_once]
         found = linked_pairs(surface, part, nodes, solutions, tracker, prepared.measure, limits)
         pairs.append(found + np.array([first, 0, 0]))
     sheets = sheets_of(surface, edges, np.concatenate(pairs), nodes, solutions)

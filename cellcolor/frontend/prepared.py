@@ -41,7 +41,7 @@ from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points
 from cellcolor.frontend.tables import in_file
 
-__all__ = ["PreparedScene", "family_of", "prepare", "robot_of"]
+__all__ = ["PreparedScene", "family_of", "kinematics_of", "prepare", "robot_of"]
 
 _AT_ONCE = 20_000  # points; inverse kinematics keeps some kilobytes for each
 
@@ -196,7 +196,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     setup = scene.setup
     with in_file(setup.file):
         robot = _robot(setup)
-        kinematics = _kinematics(setup, robot)
+        kinematics = kinematics_of(setup, robot)
     surface = scene.covered(deadline)
     check_part(surface, scene, kinematics.reach)
     lengths = surface.lengths(surface.edges())
@@ -242,8 +242,12 @@ def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
     return tuple(found)
 
 
-def _kinematics(setup: Setup, robot: Robot) -> InverseKinematics:
-    """The arm's inverse kinematics for the task of its setup."""
+def kinematics_of(setup: Setup, robot: Robot) -> InverseKinematics:
+    """The arm's inverse kinematics for the task of its setup.
+
+    Raises:
+        InputError: the arm is not of the family that the setup names.
+    """
     family, turn = family_of(setup), setup.task.turn
     kinematics = (
         family(robot, setup.robot)

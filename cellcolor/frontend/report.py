@@ -54,6 +54,7 @@ class BuildReport:
         stand_ins: what collides in the place of the meshes of links, and how far off it is.
         slivers: what the sliver policy did, None without one.
         injectivity: of an arm whose solutions have no names, what was found; None for others.
+        rounding: over what the normals of a mesh are rounded; None for a shape that has its own.
         seconds: wall time of each stage.
     """
 
@@ -71,11 +72,13 @@ class BuildReport:
     stand_ins: tuple[StandInReport, ...] = ()
     slivers: SliverReport | None = None
     injectivity: str | None = None
+    rounding: str | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
         """What is probably not meant, a sentence each."""
-        return self.survey.warnings + self.notes
+        hulls = (stand_in.warning for stand_in in self.stand_ins)
+        return self.survey.warnings + self.notes + tuple(text for text in hulls if text)
 
     @property
     def nothing_covered(self) -> str | None:
@@ -96,6 +99,8 @@ class BuildReport:
     def __str__(self) -> str:
         share = 100 * self.reachable_area_m2 / self.area_m2
         lines = [f"object  {self.survey}", *(f"warning  {text}" for text in self.warnings)]
+        if self.rounding is not None:
+            lines += [f"normals  {self.rounding}"]
         lines += [f"collides  {stand_in}" for stand_in in self.stand_ins]
         lines += [
             f"reachable  {self.reachable} of {self.vertices} vertices, {share:.1f} % of the area"
@@ -145,6 +150,7 @@ def make_report(
     stand_ins: tuple[StandInReport, ...],
     slivers: SliverReport | None = None,
     injectivity: str | None = None,
+    rounding: str | None = None,
 ) -> BuildReport:
     """Count what a build found."""
     areas = surface.vertex_areas()
@@ -176,6 +182,7 @@ def make_report(
         stand_ins=stand_ins,
         slivers=slivers,
         injectivity=injectivity,
+        rounding=rounding,
     )
 
 

@@ -29,11 +29,12 @@ from cellcolor.frontend.parts.arrays import ArraysObject
 from cellcolor.frontend.parts.cover import Cover
 from cellcolor.frontend.parts.part import PARTS, Part
 from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.validity_interface import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
-from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector
+from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, in_file
 
 __all__ = ["Ground", "Scene"]
 
@@ -154,7 +155,7 @@ class Scene(FileTable):
         return self.collision_object
 
     def covered(self, deadline: Deadline = NEVER) -> Surface:
-        """What has to be covered, in the world.
+        """What has to be covered, in the world; of a mesh with its normals rounded.
 
         Raises:
             InputError: there is no such surface.
@@ -163,6 +164,9 @@ class Scene(FileTable):
         surface = self.object.surface(self.folder, deadline)
         if self.cover is not None:
             surface = self.cover.patch(surface, self.folder, deadline)
+        if surface.faceted:
+            with in_file(self.setup.file):
+                surface = rounded(surface, self.setup.task.rounding_m, deadline)
         return surface.placed(self.placement)
 
     def __str__(self) -> str:

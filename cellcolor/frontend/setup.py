@@ -155,20 +155,28 @@ class Turn(Table):
 class Task(Table):
     """What the tool has to do on each point, and how much room it needs there.
 
-    Without ``turn`` the tool's turn about its axis is free.
+    Without ``turn`` the tool's turn about its axis is free. The normals of a mesh are rounded over
+    ``edge_radius_m``; without it that is ``contact_radius_m``, the tool's footprint.
     """
 
     normal_force_n: NotNegative
     contact_radius_m: Annotated[FiniteFloat, Field(ge=0.001)] = 0.005
+    edge_radius_m: NotNegative | None = None
     gravity_m_per_s2: Vector
     turn: Turn | None = None
 
+    @property
+    def rounding_m(self) -> float:
+        """The radius over which the normals of a mesh are rounded."""
+        return self.contact_radius_m if self.edge_radius_m is None else self.edge_radius_m
+
     @model_serializer(mode="wrap")
-    def _turn_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before a turn could be given stay the same to the byte."""
+    def _newer_if_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        """Surfaces of before there were these keys stay the same to the byte."""
         content: dict[str, Any] = whole(self)
-        if self.turn is None:
-            del content["turn"]
+        for key in ("edge_radius_m", "turn"):
+            if getattr(self, key) is None:
+                del content[key]
         return content
 
 

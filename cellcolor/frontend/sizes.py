@@ -16,6 +16,7 @@ __all__ = [
     "check_faces",
     "check_points",
     "check_refinement",
+    "check_rounding",
     "check_turns",
     "check_vertices",
 ]
@@ -23,6 +24,7 @@ __all__ = [
 MOST_VERTICES = 250_000
 _MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches
 _MOST_ON_AN_EDGE = 500_000  # they are tested together
+_MOST_AROUND = 200_000_000  # faces around vertices; some microseconds each
 
 
 def check_vertices(count: int, field: str | None = None) -> None:
@@ -106,4 +108,19 @@ def check_points(lengths: Array, spacing: float, field: str) -> None:
             field,
             f"puts {total:.2g} points on the mesh's edges, {counts.max():.2g} on the longest; "
             f"at most {_MOST_POINTS:,} and {_MOST_ON_AN_EDGE:,} are tested",
+        )
+
+
+def check_rounding(vertices: int, faces: float) -> None:
+    """Refuse to round normals over a radius that holds too many triangles.
+
+    Raises:
+        InputError: names the key and the numbers.
+    """
+    if vertices * faces > _MOST_AROUND:
+        raise InputError(
+            None,
+            "task.edge_radius_m",
+            f"holds about {faces:,.0f} triangles, for each of {vertices:,} vertices; at most "
+            f"{_MOST_AROUND:,} are looked at: a smaller radius, or larger triangles",
         )

@@ -13,7 +13,7 @@ from cellcolor.frontend.setup import Motion
 from cellcolor.frontend.tables import in_file
 from cellcolor.motion.free_space import FreeSpace
 
-__all__ = ["check_home", "home_of"]
+__all__ = ["check_home", "free_near", "home_of"]
 
 _TRIED = 256  # configurations at each distance
 _FIRST, _FARTHER = 0.1, 1.3  # rad, and the factor from one distance to the next
@@ -43,7 +43,7 @@ def check_home(prepared: PreparedScene, motion: Motion) -> None:
         how, found = "are nearer than motion.clearance_m or a margin allows", free.touched(home)
     more = f" and {len(found) - _SHOWN} more" if len(found) > _SHOWN else ""
     shown = ", ".join(found[:_SHOWN]) + more
-    near = _free_near(free, home)
+    near = free_near(free, home)
     proposed = (
         "; no free position was found near it"
         if near is None
@@ -54,7 +54,7 @@ def check_home(prepared: PreparedScene, motion: Motion) -> None:
         raise InputError(None, "motion.home_rad", message)
 
 
-def _free_near(free: FreeSpace, home: Array) -> list[float] | None:
+def free_near(free: FreeSpace, home: Array) -> list[float] | None:
     """A free configuration, the nearest of some hundred drawn around home at growing distances."""
     drawn = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIED, len(home)))
     distances = (_FIRST * _FARTHER**step for step in range(100))

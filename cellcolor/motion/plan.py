@@ -30,7 +30,7 @@ from cellcolor.motion.small_triangles import (
 )
 from cellcolor.motion.transfers import Transfers
 from cellcolor.painting.paint import Painted
-from cellcolor.tool_paths.cover import ASKED_FOR, Covered, cover
+from cellcolor.tool_paths.cover import ASKED_FOR, Covered, check_spacing, cover
 from cellcolor.tool_paths.measures import PathMeasures, in_all
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
@@ -102,6 +102,7 @@ def plan_motion(
     clock = StageClock(deadline, progress)
     surface, segment_of = painted.surface, painted.segment_of
     color_of = _colors(painted)
+    check_spacing(surface, segment_of, motion.spacing_m)
     branch_of = built.stages.cleaned.coloring.branch
     with clock.timed("corners of small triangles"):
         small = small_triangles(surface.vertices, surface.faces, normals, segment_of)

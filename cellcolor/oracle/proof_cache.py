@@ -53,8 +53,11 @@ class ProofCache:
             seconds: the time limit of now.
             deadline: when there has to be an answer.
         """
+        file = self._file(surface)
+        if not file.is_file():  # a pipe would be waited for
+            return None
         try:
-            kept = read_document(self._file(surface))
+            kept = read_document(file)
             solutions, had = kept.get("solutions"), kept.get("seconds")
             if type(had) is not float or not isinstance(solutions, list) or not solutions:
                 return None
@@ -87,7 +90,7 @@ class ProofCache:
         """Keep what was found within a time limit; the folder is made if there is none.
 
         Raises:
-            InputError: the folder cannot be written to.
+            InputError: the folder cannot be written to, or something else has the file's name.
         """
         if not proof.found:
             return
@@ -96,16 +99,21 @@ class ProofCache:
             "seconds": min(float(seconds), 1e300),
             "solutions": [solution.to_document() for solution in proof.found],
         }
+        place, written = self.folder, None
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             # Several processes may write at once: each file is whole whoever is last.
             handle, name = tempfile.mkstemp(dir=self.folder)
+            place, written = self._file(surface), Path(name)
             with os.fdopen(handle, "w", encoding="utf-8") as file:
                 json.dump(kept, file)
-            Path(name).replace(self._file(surface))
+            written.replace(place)
         except OSError as error:
             reason = error.strerror or "cannot be written"
-            raise InputError(str(self.folder), None, reason) from error
+            raise InputError(str(place), None, reason) from error
+        finally:
+            if written is not None:
+                written.unlink(missing_ok=True)
 
     def _file(self, surface: LabelledSurface) -> Path:
         depends_on = {

@@ -20,7 +20,7 @@ from cellcolor.tool_paths.region import Region, regions_of, small_triangle_areas
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.spurs import with_spurs
 
-__all__ = ["ASKED_FOR", "Covered", "cover"]
+__all__ = ["ASKED_FOR", "Covered", "check_spacing", "cover"]
 
 ASKED_FOR = "left out as asked for"
 """The cause of what is uncovered because it must not be entered."""
@@ -85,15 +85,13 @@ def cover(
 
     Raises:
         InputError: there is no such pattern, a length is not positive, the tool's radius is larger
-            than the part or the spacing than every segment, or the spacing is so small that the
-            meshes would not fit into memory.
+            than the part, or the spacing is so small that the meshes would not fit into memory.
         OutOfTime: the deadline came first.
     """
     lay = find_pattern(pattern)
     _check_lengths(surface, spacing_m, tool_radius_m)
     paths, measures, uncovered = [], [], []
     regions = regions_of(surface, segment_of, colors, normals, walls, left_out)
-    _check_spacing(regions, spacing_m)
     for number, region in enumerate(regions):
         deadline.check()
         if progress is not None:
@@ -137,9 +135,24 @@ def _check_lengths(surface: LabelledSurface, spacing_m: float, tool_radius_m: fl
         raise InputError(None, "spacing_m", text)
 
 
-def _check_spacing(regions: Sequence[Region], spacing_m: float) -> None:
-    """Refuse a spacing that is larger than every segment; small segments may be among them."""
-    sizes = [np.ptp(region.mesh.points, axis=0) for region in regions]
+def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float) -> None:
+    """Refuse a spacing that is larger than every segment; small segments may be among them.
+
+    Args:
+        surface: the painted surface.
+        segment_of: (n,) the segment of each vertex, -1 where it has none: all segments of it.
+        spacing_m: wanted distance between neighboring passes, m.
+
+    Raises:
+        InputError: it is larger.
+    """
+    at = segment_of[surface.faces]
+    # A segment ends inside the triangles that it shares with others.
+    sizes = [
+        np.ptp(surface.vertices[surface.faces[(at == segment).any(axis=1)]], axis=(0, 1))
+        for segment in np.unique(segment_of[segment_of >= 0]).tolist()
+        if (at == segment).any()
+    ]
     largest = max(sizes, key=lambda size: float(np.linalg.norm(size)), default=None)
     if largest is not None and spacing_m > float(np.linalg.norm(largest)):
         message = (

@@ -16,7 +16,11 @@ _AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh t
 
 
 def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultList) -> None:
-    """Note lift-offs that are stated but not there, and a number that the proof contradicts."""
+    """Note lift-offs that are stated but not there, and a number that the proof contradicts.
+
+    The proof is for the whole surface. Where a segment is stated to be left out and is never
+    touched, one fewer does not contradict it: with that segment the division would be whole again.
+    """
     ends = {after - 1 for _, after in trajectory.strokes[:-1]}
     stated = {extra.sample for extra in trajectory.extra_lift_offs}
     for extra in trajectory.extra_lift_offs:
@@ -28,7 +32,9 @@ def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultLi
     found = count(trajectory.lift_offs, "lift-off")
     said = f"{count(len(stated), 'extra lift-off')} stated" if stated else "none stated as extra"
     needed = trajectory.lift_offs - len(stated & ends)
-    if needed < minimum:
+    touched = set(trajectory.segment[trajectory.contact].tolist())
+    skipped = {part.segment for part in trajectory.left_out} - touched
+    if needed < minimum - len(skipped):
         text = (
             f"{found}, {said}: that contradicts the proved minimum of {minimum}, so something is "
             "left out, or a place is covered twice in different branches"

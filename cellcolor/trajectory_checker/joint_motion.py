@@ -11,6 +11,7 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.tolerances import (
     ANGLE_ROUNDING,
+    BOW,
     JUMP,
     POSE_ROUNDING,
     SHARE_OVER_LIMIT,
@@ -152,6 +153,10 @@ def _judge_accelerations(
     two velocities the mean is at most at/4 off the middle of both: v is at most
     a(r + t + s)/4 off (u + w)/2. The arm rests before the first sample and after the last.
 
+    Along a line of many samples the motion cannot have been elsewhere. It is allowed ``BOW`` off
+    the line, so where the line ends its velocity is within sqrt(2 a BOW) of the line's: longer
+    lines have no more time for a change than those for which that is ar/2.
+
     Args:
         known: (k - 1,) steps that are motions.
     """
@@ -184,17 +189,20 @@ def _note_accelerations(
         return
     # What a rounding of angles makes of a velocity; rest has none.
     rounding = np.divide(ANGLE_ROUNDING, passed, where=passed > 0, out=np.zeros_like(passed))
-    between = (passed[1:] + passed[:-1]) / 2
-    found = np.abs(np.diff(velocity, axis=0)) / between[:, None]
-    over = (
-        found > most * (1 + SHARE_OVER_LIMIT) + ((rounding[1:] + rounding[:-1]) / between)[:, None]
-    )
+    rounding = rounding[:, None]
+    # In which a velocity can change beside a line, and from one end of it to the other.
+    longest = np.sqrt(8 * BOW / most)
+    beside = np.minimum(passed[:, None], longest)
+    along = np.minimum(passed[:, None], 2 * longest)
+    between = (beside[1:] + beside[:-1]) / 2
+    found = np.abs(np.diff(velocity, axis=0)) / between
+    over = found > most * (1 + SHARE_OVER_LIMIT) + (rounding[1:] + rounding[:-1]) / between
     if len(passed) > 2:
-        mean = (passed[2:] + passed[1:-1] + passed[:-2]) / 4
-        off = np.abs(velocity[1:-1] - (velocity[2:] + velocity[:-2]) / 2) / mean[:, None]
+        mean = (beside[2:] + along[1:-1] + beside[:-2]) / 4
+        off = np.abs(velocity[1:-1] - (velocity[2:] + velocity[:-2]) / 2) / mean
         slack = (rounding[1:-1] + (rounding[2:] + rounding[:-2]) / 2) / mean
         # Both ends of the middle step are at fault; it is noted where it begins.
-        over[:-1] |= off > most * (1 + SHARE_OVER_LIMIT) + slack[:, None]
+        over[:-1] |= off > most * (1 + SHARE_OVER_LIMIT) + slack
         found[:-1] = np.maximum(found[:-1], off)
     at_fault = np.zeros(trajectory.joints.shape, dtype=bool)
     excess = np.zeros(trajectory.joints.shape)

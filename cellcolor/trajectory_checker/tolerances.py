@@ -8,6 +8,7 @@ from dataclasses import dataclass
 __all__ = [
     "ANGLE_ROUNDING",
     "AT_VERTEX",
+    "BOW",
     "BRANCH",
     "JUMP",
     "LEAVING",
@@ -27,6 +28,9 @@ STEP = 0.001  # m; between samples whose tips are farther apart, others are put 
 STEP_ANGLE = math.radians(1.0)  # the same for the turn of the tool and of each joint
 
 ANGLE_ROUNDING = 1e-6  # rad; files with six decimals are off by half of that
+# rad; what a motion may be off the line between two samples. With 12 rad/s² it is if they are more
+# than 0.24 s apart, with less acceleration if they are farther apart.
+BOW = math.radians(5.0)
 POSE_ROUNDING = 2e-6  # m; what a rounding of all angles moves a tip by, at a meter's reach
 SHARE_OVER_LIMIT = 0.01  # of a velocity or acceleration; for planners that keep a limit just so
 JUMP = 0.5  # rad; farther between neighbors nothing says any more which way a joint goes

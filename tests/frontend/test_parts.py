@@ -121,6 +121,23 @@ def test_minima(name: str) -> None:
     assert not covers(result.surface, SEGMENTS[name] - 1)
 
 
+@pytest.mark.slow
+def test_the_minimum_of_the_bracket_is_not_that_of_its_triangles() -> None:
+    """With triangles of the size of the radius, and with smaller ones: the same number."""
+    scene = Scene.read(PARTS / "bracket.toml")
+    part = scene.object.surface(scene.folder)
+    mesh, found = (part.vertices, part.faces), []
+    for finer in (False, True):
+        mesh = trimesh.remesh.subdivide(*mesh)
+        result = build_surface(scene.with_object(mesh))
+        assert result.report.rounding is not None
+        assert result.report.rounding.startswith("rounded over 5 mm (task.contact_radius_m); tri")
+        solution = solve(decompose(result.surface), Options(deadline=Deadline.after(60)))
+        assert solution.proved_for_surface, finer
+        found.append(solution.segments)
+    assert found[0] == found[1]
+
+
 @pytest.mark.parametrize("name", MESHES)
 def test_the_arm_is_free_at_home(name: str) -> None:
     """A motion begins and ends there, as the setup has it."""

@@ -1,7 +1,8 @@
 """Drives forged from an honest one, each with the kinds of faults of which one has to be found.
 
 An honest drive is a trajectory that is judged valid and goes round in two strokes or more. A sort
-draws what it needs at random, so one sort stands for many drives.
+draws what it needs at random, so one sort stands for many drives. A part left out is one that is
+missed: a tenth of a stroke may be so winding that a straight line instead of it covers as much.
 """
 
 from __future__ import annotations
@@ -9,9 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
@@ -21,6 +24,10 @@ from cellcolor.frontend.prepared import PreparedScene
 __all__ = ["FORGERS", "HONEST", "Forger", "Honest", "dropped_stroke", "resampled"]
 
 Random = np.random.Generator
+# What docs/judging-trajectories.md lets a drive miss, by how many spacings from a pass, and a tenth
+# more, since it is measured at random points.
+_MISSED = ((1.5, 0.011), (0.75, 0.033))
+_POINTS, _DRAWS = 20_000, 60
 _ARRAYS = ("times", "joints", "points", "normals", "contact", "segment")
 
 
@@ -49,6 +56,38 @@ class Honest:
         first, after = self.stroke(random)
         begin = int(random.integers(first + 30, after - length - 30))
         return np.arange(begin, begin + length)
+
+    @cached_property
+    def covered(self) -> Array:
+        """Random points (n, 3) of the surface that are closely covered, as many for equal areas."""
+        surface, random = self.prepared.surface, np.random.default_rng(0)
+        corners = surface.vertices[surface.faces]
+        sides = np.diff(corners, axis=1)
+        areas = np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+        drawn = corners[random.choice(len(areas), _POINTS, p=areas / areas.sum())]
+        weights = random.dirichlet(np.ones(3), _POINTS)
+        points = (drawn * weights[:, :, None]).sum(axis=1)
+        return np.asarray(points[self.away(self.trajectory, points) <= _MISSED[1][0]])
+
+    def away(self, trajectory: Trajectory, points: Array) -> Array:
+        """How far points are from the passes as the crow flies, in spacings.
+
+        The way along the surface, which the judge measures, is no shorter.
+        """
+        motion = self.prepared.setup.motion
+        assert motion is not None
+        tips = []
+        for first, after in trajectory.strokes:
+            at = np.asarray(trajectory.points[first:after])
+            length = np.insert(np.cumsum(np.linalg.norm(np.diff(at, axis=0), axis=1)), 0, 0.0)
+            along = np.arange(0.0, length[-1] + 0.001, 0.001)
+            tips.append(np.stack([np.interp(along, length, column) for column in at.T], axis=1))
+        return np.asarray(cKDTree(np.concatenate(tips)).query(points)[0]) / motion.spacing_m
+
+    def misses(self, trajectory: Trajectory) -> bool:
+        """Whether a drive leaves out more than one may."""
+        away = self.away(trajectory, self.covered)
+        return any(float((away > far).mean()) > most for far, most in _MISSED)
 
 
 Forger = Callable[[Honest, Random], Trajectory]
@@ -146,11 +185,17 @@ HONEST: dict[str, Callable[[Honest], Trajectory]] = {
 
 def _part_dropped(share: float) -> Forger:
     def forge(honest: Honest, random: Random) -> Trajectory:
-        first, after = honest.stroke(random)
-        length = int(share * (after - first))
-        begin = int(random.integers(first, after - length + 1))
-        rows = np.arange(len(honest.trajectory.times))
-        return rows_of(honest.trajectory, np.delete(rows, np.arange(begin, begin + length)))
+        for _ in range(_DRAWS):
+            first, after = honest.stroke(random)
+            length = int(share * (after - first))
+            begin = int(random.integers(first, after - length + 1))
+            rows = np.delete(
+                np.arange(len(honest.trajectory.times)), np.arange(begin, begin + length)
+            )
+            forged = rows_of(honest.trajectory, rows)
+            if honest.misses(forged):
+                return forged
+        raise LookupError(f"no {share:.0%} of a stroke whose lack misses anything")
 
     return forge
 

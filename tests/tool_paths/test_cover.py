@@ -7,19 +7,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from examples import examples
 from flat import one_segment, slit, square, whole
 from hypothesis import example, given
 from hypothesis import strategies as st
 from painted_at_random import SHAPES, Painting, painted_at_random
 from path_checker import PathChecker
 
+import cellcolor
+from cellcolor.data.plan import Plan
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.tool_paths.cover import Covered, cover
+from cellcolor.tool_paths.cover import Covered, check_spacing, cover
 from cellcolor.tool_paths.region import regions_of, small_triangle_areas
 from cellcolor.tool_paths.registry import PATTERNS, pattern_names
+from examples import examples
 
 
 def covered(painting: Painting, pattern: str, spacing: float, **options: object) -> Covered:
@@ -109,14 +111,18 @@ def test_lengths_in_millimeters(key: str) -> None:
     """On a square of 1 m: as wide as its diagonal is allowed, 15 mm given in meters are not."""
     painting = square(8)
     usual = {"spacing_m": 0.2, "tool_radius_m": 0.2}
-    cover(*painting, **usual | {key: 1.41})
+    painted = painting.surface, Plan((0,) * len(painting.surface.vertices))
+    cellcolor.cover(*painted, **usual | {key: 1.41})
     with pytest.raises(InputError, match=r"15 looks like millimeters: 0\.015 m\?") as caught:
-        cover(*painting, **usual | {key: 15.0})
+        cellcolor.cover(*painted, **usual | {key: 15.0})
     assert caught.value.field == key
 
 
 def test_a_small_segment_beside_a_large_one_is_no_fault_of_the_spacing() -> None:
-    """It is listed as uncovered, and the large one has its path."""
+    """It is listed as uncovered, and the large one has its path.
+
+    A motion lays out segment by segment: there the small one is alone.
+    """
     painting = square(16)
     segment_of = painting.segment_of.copy()
     segment_of[0] = 1  # a corner of the square
@@ -124,8 +130,11 @@ def test_a_small_segment_beside_a_large_one_is_no_fault_of_the_spacing() -> None
     found = covered(both, "contour", 0.3)
     assert [path.segment for path in found.paths.paths] == [0]
     assert [place.segment for place in found.uncovered] == [1]
+    alone = both._replace(segment_of=np.where(segment_of == 1, 1, -1))
+    assert covered(alone, "contour", 0.3).paths.paths == ()
+    check_spacing(both.surface, segment_of, 1.41)
     with pytest.raises(InputError, match="larger than the largest segment"):
-        cover(*both, spacing_m=1.42, tool_radius_m=0.3)
+        check_spacing(both.surface, segment_of, 1.42)
 
 
 def test_the_checker_finds_what_is_wrong() -> None:

@@ -5,7 +5,7 @@ from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.library import import_, library
 from cellcolor.cli.commands.minimum import build, check, show, solve
 from cellcolor.cli.commands.motion import cover, paint, plan
-from cellcolor.cli.commands.parts import inspect, repair
+from cellcolor.cli.commands.parts import inspect, new, repair
 from cellcolor.cli.commands.portable import answer, export
 
 __all__ = [
@@ -19,6 +19,7 @@ __all__ = [
     "import_",
     "inspect",
     "library",
+    "new",
     "paint",
     "plan",
     "repair",

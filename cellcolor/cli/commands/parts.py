@@ -10,7 +10,7 @@ import click
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.options import METRES, PATH, TIME_LIMIT
 
-__all__ = ["inspect", "repair"]
+__all__ = ["inspect", "new", "repair"]
 
 _PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
 _UNIT = click.option(
@@ -97,3 +97,47 @@ def repair(
         Deadline.after(time_limit, begun),
         as_json,
     )
+
+
+@cellcolor.command()
+@_PART
+@click.argument("arm", metavar="ARM.urdf", type=PATH)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    required=True,
+    type=PATH,
+    help="For the files; it is made if it does not exist.",
+)
+@click.option(
+    "--tool",
+    metavar="TOOL.urdf",
+    type=PATH,
+    help="The tool, its root fixed to the flange.  [default: a polisher of 100 mm is written]",
+)
+@click.option("--tip-link", metavar="LINK", default="tip", show_default=True, help="Of the tool.")
+@_UNIT
+@TIME_LIMIT
+def new(
+    part: Path,
+    arm: Path,
+    output: Path,
+    tool: Path | None,
+    tip_link: str,
+    unit: str | None,
+    time_limit: float | None,
+) -> int:
+    """Begin with a part and an arm: write a scene and a setup, ready to plan.
+
+    The arm has six turning joints. Its family and flange, links that always overlap, a place where
+    most of the part can be reached and a free home position are found out, and every key is
+    explained.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.new import begin_scene
+    from cellcolor.deadline import Deadline
+
+    deadline = Deadline.after(time_limit, begun)
+    return begin_scene(part, arm, output, tool, tip_link, unit, deadline)

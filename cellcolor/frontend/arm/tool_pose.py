@@ -20,6 +20,7 @@ from cellcolor.frontend.arm.tool_turn import angle_about
 __all__ = ["last_frames", "on_last_axis", "shoulder_of", "with_last_joint", "wrist_of"]
 
 _PARALLEL = 1e-6  # rad
+_SAME_HEIGHT = 1e-6  # m
 _LEAST = 0.01  # m; no tool on the axis ends nearer to the wrist than this
 
 
@@ -64,12 +65,15 @@ def last_frames(
 def on_last_axis(robot: Robot) -> Robot:
     """The same arm with another tool, whose turn is free: on the last axis, beside the true tip.
 
-    Its z axis goes along the last axis, away from the wrist, to the true tip's side.
+    Its z axis goes along the last axis, away from the wrist, to the true tip's side. A tip at the
+    wrist's height has no side, as behind two parallel axes: there the true tool's z axis decides,
+    since an arm whose axes are all parallel points its tool one way only.
     """
     poses, wrist = pose_at_zero(robot), wrist_of(robot)
     axis = poses.axis[0, robot.turning[-1]]
     out = float((poses.tip[0] - wrist) @ axis)
-    sense = -1.0 if out < 0 else 1.0
+    side = out if abs(out) > _SAME_HEIGHT else float(poses.tool_axis[0] @ axis)
+    sense = -1.0 if side < 0 else 1.0
     foot = wrist + sense * max(abs(out), _LEAST) * axis
     within = poses.rotation[0, -1].T
     tip = np.eye(4)

@@ -56,6 +56,8 @@ class TurnedKinematics(InverseKinematics):
             message = "no joint is locked with the tool's turn given (task.turn): leave it out"
             raise InputError(None, "robot.locked_joint_6_rad", message)
         _check_slides(robot)
+        if not family.given_turn.direction:
+            _check_along(robot)
         self._robot, self.turn = robot, turn
         self._straight = on_last_axis(robot)
         # What the last joint is locked at does not matter: it is solved for afterwards.
@@ -170,6 +172,20 @@ def _check_slides(robot: Robot) -> None:
             name = robot.joint_names[joint]
             message = "slides across the last axis that turns, so the tool's turn cannot be given"
             raise InputError(str(robot.files[0]), f"joint[{name}]", message)
+
+
+def _check_along(robot: Robot) -> None:
+    """Refuse a tool that is tilted on an arm whose tool cannot be tilted by any joint.
+
+    The tool on the last axis points along it, and the true one would be taken for that one.
+    """
+    poses, last = pose_at_zero(robot), robot.turning[-1]
+    off = np.linalg.norm(np.cross(poses.tool_axis[0], poses.axis[0, last]))
+    if off > _PARALLEL:
+        name = robot.joint_names[last]
+        message = "not parallel to the tool's z axis, which arms of this family keep along their "
+        message += "axes (mount_rpy_rad under [robot] turns the tool)"
+        raise InputError(str(robot.files[0]), f"joint[{name}]", message)
 
 
 def _spread(found: Array, rows: NDArray[np.intp], count: int) -> Array:

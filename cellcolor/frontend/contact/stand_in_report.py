@@ -18,6 +18,7 @@ __all__ = ["StandInReport", "report_on"]
 
 _SAMPLES = 50_000  # of each surface, at most about so many
 _SLACK = 0.0005  # m; wanted distance of a surface's points to the nearest sample
+_FAR = 0.02  # m; a hull that is farther off its mesh is warned of
 _ROUNDING = 1e-8  # m; a mesh that comes out no farther is contained
 
 
@@ -45,6 +46,18 @@ class StandInReport:
     known_to_m: float
     contains: bool
     closed: bool
+
+    @property
+    def warning(self) -> str | None:
+        """Of a hull that is certainly far off its mesh, what to choose instead."""
+        certain = self.error_m - self.known_to_m
+        if self.chosen != "hull" or certain <= _FAR:
+            return None
+        return (
+            f"{self.link!r}: the convex hull of {self.file} is more than "
+            f"{math.floor(1e4 * certain) / 10:g} mm off the mesh, and fills what is hollow there: "
+            f'"exact" collides as the mesh is (mesh_collision_of under [robot])'
+        )
 
     def __str__(self) -> str:
         if self.chosen == "exact":

@@ -51,6 +51,7 @@ def bisected(surface: Surface, marked: Mask, field: str) -> Surface:
         np.concatenate([surface.vertices, points]),
         _parted(surface.faces, middle[number], _longest(surface.lengths(edges), number)),
         np.concatenate([surface.normals, -directions]),
+        surface.faceted,
     )
 
 

@@ -124,7 +124,7 @@ class Cover(Table):
             whole.faces.ravel(), minlength=len(whole.vertices)
         )
         normals = np.where(inside[used][:, None], whole.normals[used], patch.normals)
-        return Surface(patch.vertices, patch.faces, normals)
+        return Surface(patch.vertices, patch.faces, normals, whole.faceted)
 
     def chosen(self, whole: Surface, folder: Path = Path()) -> Mask:
         """Which faces (m,) of the object are chosen; see :meth:`patch`."""

@@ -82,7 +82,7 @@ def mesh_surface(
         vertex = np.argmin(size)
         raise InputError(None, f"vertices[{vertex}]", "has no normal: its faces cancel out")
     normals /= size
-    return Surface(vertices * meters_per_unit, faces, normals)
+    return Surface(vertices * meters_per_unit, faces, normals, faceted=True)
 
 
 def _check_size(vertices: Array, meters_per_unit: float) -> None:

@@ -16,37 +16,42 @@ _MEMORY = 3 << 30  # bytes
 
 
 def main() -> None:
-    """Remesh what is on standard input, and measure how far both meshes are from each other."""
+    """Remesh what is on standard input, or measure how far two meshes are from each other."""
     import numpy as np
-    from gpytoolbox import remesh_botsch, squared_distance
 
     resource.setrlimit(resource.RLIMIT_DATA, (_MEMORY, _MEMORY))
     given = np.load(io.BytesIO(sys.stdin.buffer.read()))
-    vertices, faces = given["vertices"], given["faces"].astype(np.int32)
-    made, new = remesh_botsch(
-        vertices.copy(), faces, _ITERATIONS, float(given["length"]), True,
-        feature_edges=given["kept"].astype(np.int32),
+    content = io.BytesIO()
+    np.savez(content, **(_remeshed(given) if "length" in given else _measured(given)))
+    sys.stdout.buffer.write(content.getvalue())
+
+
+def _remeshed(given: Any) -> dict[str, Any]:
+    import numpy as np
+    from gpytoolbox import remesh_botsch
+
+    vertices, faces = remesh_botsch(
+        given["vertices"], given["faces"].astype(np.int32), _ITERATIONS, float(given["length"]),
+        True, feature_edges=given["kept"].astype(np.int32),
     )  # fmt: skip
-    new = new.astype(np.int32)
+    return {"vertices": vertices, "faces": faces}
+
+
+def _measured(given: Any) -> dict[str, Any]:
+    """Greatest and mean distance of vertices and middles of faces from the other mesh."""
+    import numpy as np
+    from gpytoolbox import squared_distance
+
+    old = given["vertices"], given["faces"].astype(np.int32)
+    new = given["new_vertices"], given["new_faces"].astype(np.int32)
 
     def apart(points: Any, corners: Any, other: tuple[Any, Any]) -> list[float]:
-        """Greatest and mean distance of vertices and middles of faces from the other mesh."""
         asked = np.concatenate([points, points[corners].mean(axis=1)])
         squared, _, _ = squared_distance(asked, other[0], other[1], use_cpp=True, use_aabb=True)
-        return [
-            float(np.sqrt(np.maximum(squared, 0.0)).max()),
-            float(np.sqrt(np.maximum(squared, 0.0)).mean()),
-        ]
+        distance = np.sqrt(np.maximum(squared, 0.0))
+        return [float(distance.max()), float(distance.mean())]
 
-    content = io.BytesIO()
-    np.savez(
-        content,
-        vertices=made,
-        faces=new,
-        there=apart(vertices, faces, (made, new)),
-        back=apart(made, new, (vertices, faces)),
-    )
-    sys.stdout.buffer.write(content.getvalue())
+    return {"there": apart(*old, new), "back": apart(*new, old)}
 
 
 if __name__ == "__main__":

@@ -1,5 +1,8 @@
 """A mesh remeshed to edges of about one length, by gpytoolbox in a process of its own.
 
+What comes back may have faces without area, and faces laid back onto the ones beside them, along
+sharp edges above all. They are mended here.
+
 The method is Botsch and Kobbelt's ("A remeshing approach to multiresolution modeling", 2004): edges
 are parted, drawn together and flipped, and vertices moved along the surface and put back onto it.
 """
@@ -13,14 +16,18 @@ import tempfile
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from cellcolor.arrays import Array
+from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.parts.folds import fold_angle, folds, unfolded
+from cellcolor.frontend.parts.holes import border_groups
 from cellcolor.frontend.parts.remesh import refine
-from cellcolor.frontend.parts.repairing import Telling
+from cellcolor.frontend.parts.repairing import Change, Mending, Telling, mended
 from cellcolor.frontend.parts.sharp import SHARP, sharp_edges
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.parts.topology import edge_table, face_areas
@@ -31,6 +38,7 @@ __all__ = ["Deviation", "expected_vertices", "length_for", "remeshed"]
 _CHILD = Path(__file__).with_name("remesh_child.py")
 _ASK = 0.2  # s, between two looks at the time
 _LONGEST = 4 / 3  # of the wanted length: edges of a border above that are halved first
+_ROUNDS = 3  # of mending folds and what else is wrong; the second seldom finds more
 _FEWEST = 10  # vertices; a mesh so coarse has lost its shape
 
 
@@ -65,19 +73,20 @@ def remeshed(
     length: float,
     deadline: Deadline = NEVER,
     tell: Telling = lambda _: None,
-) -> tuple[Array, Faces, Deviation]:
+) -> tuple[Array, Faces, list[Change], Deviation]:
     """A manifold mesh with edges of about one length; sharp edges stay, and so does the border.
 
     Vertices of the border keep their places; its edges are halved where they are longer than four
-    thirds of the length, and not joined where they are shorter.
+    thirds of the length, and not joined where they are shorter. Folds that the remeshing has made
+    are mended, and the list says what that took and what is left.
 
     Args:
         length: wanted, in the unit of the vertices.
         tell: told what is being done.
 
     Raises:
-        InputError: too many vertices would come of it, or too few; the library has failed, or was
-            out of memory.
+        InputError: too many vertices would come of it, or too few; the library has failed, was out
+            of memory, or has torn holes.
         ModuleNotFoundError: gpytoolbox is not installed.
         OutOfTime: the deadline came first.
     """
@@ -96,13 +105,59 @@ def remeshed(
             vertices, faces = refine(vertices, faces, _LONGEST * length, deadline)
         except InputError as error:
             raise InputError(None, "edge_length_m", error.message) from error
-    given = io.BytesIO()
     kept = sharp_edges(vertices, faces, SHARP)
-    np.savez(given, vertices=vertices, faces=faces, length=length, kept=kept)
     tell(f"remeshing to about {expected:,.0f} vertices")
-    made = np.load(io.BytesIO(_run(given.getvalue(), deadline)))
-    deviation = Deviation(*made["there"].tolist(), *made["back"].tolist())
-    return made["vertices"], made["faces"].astype(np.int64), deviation
+    made = _asked(deadline, vertices=vertices, faces=faces, length=length, kept=kept)
+    tell("mending folds")
+    points, corners, changes = _mended(
+        made["vertices"], made["faces"].astype(np.int64), fold_angle(vertices, faces), length,
+        deadline,
+    )  # fmt: skip
+    if _borders(corners) > _borders(faces):
+        message = "gpytoolbox has torn holes into the mesh; shorter edges keep more of its shape"
+        raise InputError(None, "edge_length_m", message)
+    tell("measuring the deviation")
+    measured = _asked(
+        deadline, vertices=vertices, faces=faces, new_vertices=points, new_faces=corners
+    )
+    deviation = Deviation(*measured["there"].tolist(), *measured["back"].tolist())
+    return points, corners, changes, deviation
+
+
+def _mended(
+    vertices: Array, faces: Faces, angle: float, length: float, deadline: Deadline
+) -> tuple[Array, Faces, list[Change]]:
+    """A remeshed mesh without folds as far as possible, and what that took."""
+    taken = 0
+    changes: list[Change] = []
+    for _ in range(_ROUNDS):
+        vertices, faces, gone = unfolded(vertices, faces, angle, length, deadline)
+        taken += gone
+        vertices, faces, more = mended(vertices, faces, Mending(0.0, 0.0), deadline)
+        changes += more
+        left = folds(vertices, faces, angle)
+        if not left or not more:
+            break
+    if taken:
+        name = "1 vertex" if taken == 1 else f"{taken:,} vertices"
+        changes.insert(0, Change(f"folds mended: {name} drawn into neighbors"))
+    if left:
+        place = ", ".join(f"{x:.4g}" for x in vertices[left[0]].mean(axis=0))
+        where = f"at ({place}) m" if len(left) == 1 else f"the first at ({place}) m"
+        text = f"{count(len(left), 'fold')} of {np.degrees(angle):.0f} degrees and more left"
+        changes.append(Change(f"{text}, {where}"))
+    return vertices, faces, changes
+
+
+def _borders(faces: Faces) -> int:
+    return int(border_groups(edge_table(faces))[1].max(initial=-1)) + 1
+
+
+def _asked(deadline: Deadline, **question: Any) -> Any:
+    """What the child answers to an archive of arrays, which is one as well."""
+    given = io.BytesIO()
+    np.savez(given, **question)
+    return np.load(io.BytesIO(_run(given.getvalue(), deadline)))
 
 
 def _run(given: bytes, deadline: Deadline) -> bytes:

@@ -156,8 +156,7 @@ def repair_mesh(
     if edge_length_m is not None:
         was = len(points)
         old = float(face_areas(points, faces).sum())
-        points, faces, deviation = remeshed(points, faces, edge_length_m, deadline, tell)
-        points, faces, again = mended(points, faces, Mending(0.0, 0.0), deadline)
+        points, faces, again, deviation = remeshed(points, faces, edge_length_m, deadline, tell)
         gained = float(face_areas(points, faces).sum()) - old
         text = f"remeshed to edges of about {1e3 * edge_length_m:.3g} mm: {len(points):,} vertices"
         change = Change(f"{text} instead of {was:,}", max(-gained, 0.0), max(gained, 0.0))

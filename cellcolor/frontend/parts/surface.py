@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,17 +17,25 @@ Faces = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class Surface:
-    """A triangle mesh with outward unit normals at its vertices; faces ccw from outside, m."""
+    """A triangle mesh with outward unit normals at its vertices; faces ccw from outside, m.
+
+    Attributes:
+        vertices: (n, 3).
+        faces: (m, 3).
+        normals: (n, 3).
+        faceted: whether the normals are means of its faces' normals, not those of a smooth shape.
+    """
 
     vertices: Array
     faces: Faces
     normals: Array
+    faceted: bool = False
 
     def placed(self, placement: Placement) -> Surface:
         """The same surface in the world."""
         rotation = rotation_from_rpy(*placement.rpy_rad)
         vertices = self.vertices @ rotation.T + np.array(placement.position_m)
-        return Surface(vertices, self.faces, self.normals @ rotation.T)
+        return replace(self, vertices=vertices, normals=self.normals @ rotation.T)
 
     def vertex_areas(self) -> Array:
         """A third of the adjoining faces' areas, (n,), m^2; they add up to the whole."""

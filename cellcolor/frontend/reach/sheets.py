@@ -23,12 +23,24 @@ from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import Measure, joint_step, shorter_way
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
 
-__all__ = ["MOST_SHEETS", "Sheets", "linked_pairs", "sheets_of"]
+__all__ = ["MOST_SHEETS", "Sheets", "edges_at_once", "linked_pairs", "sheets_of"]
 
 T = TypeVar("T", bound=np.generic)
 
 MOST_SHEETS = 60
 """A set of branches has to fit into one integer where slivers are cleaned."""
+
+MEMORY = 64_000_000
+"""Bytes that comparing all solutions of both ends of mesh edges may take at a time, at most."""
+
+
+def edges_at_once(slots: int, joints: int) -> int:
+    """How many edges :func:`linked_pairs` compares within ``MEMORY``, if there are so many slots.
+
+    The numbers of a pair are an upper bound, held against tracemalloc in the tests.
+    """
+    pair = 8 * (4 * joints + 8)
+    return max(1, MEMORY // max(1, slots * slots * pair))
 
 
 @dataclass(frozen=True)

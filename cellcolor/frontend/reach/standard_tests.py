@@ -88,7 +88,7 @@ class Manipulability(StandardTest):
     sentence = "Yoshikawa's translational measure of the task's joints below its threshold"
     remedy = (
         "move the part away from where the arm is stretched out, or lower"
-        " conditioning.min_manipulability"
+        " thresholds.min_manipulability"
     )
     constraint = "conditioning"
 
@@ -107,7 +107,7 @@ class TaskDeterminant(StandardTest):
         "absolute determinant of the Jacobian of tip position, tool direction and, if it is given,"
         " the tool's turn below its threshold"
     )
-    remedy = "move or turn the part, or lower conditioning.min_task_determinant"
+    remedy = "move or turn the part, or lower thresholds.min_task_determinant"
     constraint = "conditioning"
 
     def failed(self, postures: Postures) -> Mask:

@@ -69,3 +69,16 @@ def test_a_flat_mesh_has_no_hull() -> None:
     with pytest.raises(InputError, match="'exact'") as caught:
         reported(sheet, "hull")
     assert caught.value.file == "folder/link.stl"
+
+
+@pytest.mark.parametrize(("gap", "said"), [(0.1, True), (0.03, False)])
+def test_a_hull_that_is_far_off_is_warned_of(gap: float, said: bool) -> None:
+    """Two plates apart by a gap: the middle of it is half of it off the mesh."""
+    plates = [trimesh.creation.box((0.3, 0.3, 0.01)) for _ in range(2)]
+    plates[1].apply_translation([0, 0, gap + 0.01])
+    both = trimesh.util.concatenate(plates)
+    report = reported(both, "hull")
+    assert (report.warning is not None) == said
+    if report.warning is not None:
+        assert "more than 4" in report.warning and '"exact"' in report.warning
+    assert reported(both, "exact").warning is None

@@ -46,6 +46,38 @@ def test_a_part_with_sharp_edges() -> None:
     assert "remeshed to edges of about 6 mm" in str(made)
 
 
+@pytest.mark.parametrize("length", [0.003, 0.005])
+def test_a_part_whose_sharp_edges_fold(length: float) -> None:
+    """A thin ring: remeshed faces lie back on others, on some meshes so that normals cancel out."""
+    ring = trimesh.creation.annulus(0.048, 0.05, 0.002, sections=24)
+    made = repair_mesh(np.array(ring.vertices), np.array(ring.faces), edge_length_m=length)
+    new = trimesh.Trimesh(made.vertices, made.faces, process=False)
+    assert new.is_watertight and new.is_winding_consistent
+    assert np.degrees(new.face_adjacency_angles.max()) < 150
+    assert "folds mended: " in str(made)
+    # What is said of the deviation is of the mesh that is handed out.
+    assert made.deviation is not None
+    _, distance, _ = trimesh.proximity.closest_point_naive(ring, made.vertices[::7])
+    assert distance.max() <= made.deviation.greatest_back + 1e-9 < length
+    _, distance, _ = trimesh.proximity.closest_point_naive(new, ring.vertices)
+    assert distance.max() <= made.deviation.greatest + 1e-9 < 1.5 * length
+
+
+def test_holes_torn_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A remesher that loses a face; nothing is handed out with a hole that was not there."""
+    ball = trimesh.creation.icosphere(2)
+    ask = remeshing._asked
+
+    def losing(deadline: Deadline, **question: Any) -> Any:
+        made = dict(ask(deadline, **question))
+        return made | {"faces": made["faces"][1:]} if "faces" in made else made
+
+    monkeypatch.setattr(remeshing, "_asked", losing)
+    with pytest.raises(InputError, match="torn holes into the mesh; shorter edges") as caught:
+        repair_mesh(np.array(ball.vertices), np.array(ball.faces), edge_length_m=0.4)
+    assert caught.value.field == "edge_length_m"
+
+
 def test_a_coarse_border_is_halved_and_stays_where_it_is() -> None:
     """A square of two triangles: its border and area stay, its edges become 50 mm."""
     corners = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]], dtype=float)

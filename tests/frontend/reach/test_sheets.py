@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import dh_arms
 import numpy as np
@@ -28,8 +30,10 @@ from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, 
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.frontend.reach.sheets import linked_pairs, sheets_of
-from cellcolor.frontend.reach.tracking import Solutions, clearly_nearest
+from cellcolor.frontend.reach.sheets import MEMORY, edges_at_once, linked_pairs, sheets_of
+from cellcolor.frontend.reach.smooth import Measure
+from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
+from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Stages, run_stages
 from cellcolor.motion.limits import motion_of
@@ -247,3 +251,49 @@ def test_a_solution_linked_to_another_one_of_its_vertex_is_refused() -> None:
     with pytest.raises(InputError, match=r"2 configurations, \[0.0, .*\] and \[2.0, ") as caught:
         sheets_of(disc.surface, disc.edges, pairs, nodes, disc.solutions)
     assert caught.value.field == "vertices[1]"
+
+
+class Nowhere:
+    """Follows no motion; where all are settled at once there is none to be followed."""
+
+    def walk(self, *given: Any) -> tuple[Array, Any]:
+        start = given[2]
+        assert not len(start.joints)
+        nothing = np.zeros(0, dtype=bool)
+        return start.joints, SimpleNamespace(
+            smooth=nothing, lowest=start.joints, highest=start.joints
+        )
+
+
+@pytest.mark.parametrize("joints", [2, 6, 7])
+@pytest.mark.parametrize("slots", [2, 8, 24])
+def test_as_many_edges_as_are_compared_at_once_take_what_was_estimated(
+    slots: int, joints: int
+) -> None:
+    """All that numpy holds at one time, beside what was there before."""
+    count = edges_at_once(slots, joints)
+    flat, faces = disc_mesh(7, 0.0, 0)
+    surface = Surface(np.column_stack([flat, np.zeros(7)]), faces, np.tile([0.0, 0.0, 1.0], (7, 1)))
+    own = surface.edges()
+    edges = own[np.arange(count) % len(own)]
+    random = np.random.default_rng(0)
+    angles = np.tile(random.uniform(-3, 3, (slots, joints)), (7, 1, 1))
+    angles[:, :, 0] = np.linspace(-3, 3, slots)  # no two are near each other
+    ones = np.ones((7, slots))
+    solutions = Solutions(angles, ones, 0.5 * ones, ones.astype(bool))
+    policy = Continuity(
+        base_step_rad=0.1,
+        step_per_length_rad_per_m=1.0,
+        near_singular_determinant=0.0,
+        probe_spacing_m=0.01,
+    )
+    measure, follower = Measure(policy, 0.0, 0.0), cast(Tracker, Nowhere())
+    tracemalloc.start()
+    try:
+        # Every solution has its like at the other end, so nothing has to be followed.
+        found = linked_pairs(surface, edges, ones > 0, solutions, follower, measure, None)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert len(found) == count * slots
+    assert MEMORY / 4 < peak <= MEMORY

@@ -1,0 +1,324 @@
+"""``cellcolor.new``: a scene and a setup to begin with, from a part's mesh and an arm's URDF."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import tomllib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from itertools import product
+from os import PathLike
+from pathlib import Path
+from string import Template
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.extras import require_motion
+from cellcolor.door.parts import inspect
+from cellcolor.door.starting_texts import MARK, SCENE, SETUP, TOOL
+from cellcolor.errors import InputError
+from cellcolor.files.paths import path_of
+from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
+
+if TYPE_CHECKING:
+    from cellcolor.frontend.arm.robot import Robot
+    from cellcolor.frontend.parts.inspected import Inspection
+    from cellcolor.frontend.prepared import PreparedScene
+    from cellcolor.frontend.setup import Setup
+
+__all__ = ["Started", "new"]
+
+_FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
+_FAMILIES = ("ur", "eaik")
+_NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "ompl")
+_JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
+_MOST_ASKED = 300  # vertices of the part, wherever it is tried
+_FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
+"""Places that are tried: of the part's middle before the robot, and of its lowest point above the
+ground, as shares of the arm's reach."""
+
+_FILE = FileKind("a file begun by cellcolor new", re.compile(re.escape(MARK).encode()))
+_TOOL_FILE = FileKind("a tool begun by cellcolor new", re.compile(rb"<!-- begun by cellcolor new"))
+
+
+@dataclass(frozen=True)
+class Started:
+    """What was written, and how far one gets with it.
+
+    Attributes:
+        scene: its file; beside it are ``setup.toml`` and, if none was given, ``tool.urdf``.
+        reachable_share: of the part's vertices that were asked about where it was put, 0 to 1.
+        notes: what to look at, a sentence each.
+    """
+
+    scene: Path
+    reachable_share: float
+    notes: tuple[str, ...]
+
+
+def new(
+    part: str | PathLike[str],
+    arm: str | PathLike[str],
+    folder: str | PathLike[str],
+    *,
+    tool: str | PathLike[str] | None = None,
+    tip_link: str = "tip",
+    unit: str | None = None,
+    time_limit: TimeLimit = None,
+    progress: Callable[[str], None] | None = None,
+) -> Started:
+    """Write a scene and its setup, with every key explained, ready for ``cellcolor plan``.
+
+    The arm has six turning joints. Its family, its flange and what overlaps always are found out;
+    the part is put where most of it can be reached, of nine places before the robot; and a home
+    position that is free is proposed.
+
+    Args:
+        part: a mesh file (STL, OBJ, PLY).
+        arm: a URDF.
+        folder: for the files; it is made if it does not exist.
+        tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
+        tip_link: of the tool.
+        unit: ``m`` or ``mm``, of the mesh; without it the likely one.
+        time_limit: seconds, None for as long as it takes.
+        progress: told what is being done.
+
+    Raises:
+        InputError: mesh or URDF cannot be used, no part of the mesh can be reached anywhere, or
+            the folder has files of its own by these names.
+        OutOfTime: the time limit came first.
+    """
+    deadline, tell = Deadline.of(time_limit), progress or (lambda _: None)
+    require_motion("finding a home position", _NEEDED)
+    mesh, urdf, place = path_of(part), path_of(arm), path_of(folder)
+    names = ["setup.toml", "scene.toml", *(["tool.urdf"] if tool is None else [])]
+    kinds = {name: _TOOL_FILE if name.endswith(".urdf") else _FILE for name in names}
+    if is_folder_or_nothing(place):
+        for name, kind in kinds.items():
+            check_output(place / name, kind, [mesh, urdf])
+    tip = "tip" if tool is None else tip_link
+
+    tell("the arm")
+    robot = _arm(urdf, None if tool is None else path_of(tool), tip, place)
+    tell("the part")
+    part_keys = _part(mesh, place, inspect(mesh, unit=unit, time_limit=deadline))
+    tell("where the part can stand")
+    best, share = _best_place(robot, mesh, part_keys, deadline)
+    home = _home(best)
+    robot.keys.update(_found(best, home))
+    part_keys["position"] = json.dumps(list(best.scene.placement.position_m))
+    content = {
+        "setup.toml": Template(SETUP).substitute(robot.keys),
+        "scene.toml": Template(SCENE).substitute(part_keys),
+        "tool.urdf": TOOL,
+    }
+    place.mkdir(parents=True, exist_ok=True)
+    write([Output(place / name, kinds[name], [content[name].encode()]) for name in names])
+    return Started(place / "scene.toml", share, tuple(_notes(best, home, tool is None)))
+
+
+@dataclass(frozen=True)
+class _Arm:
+    """An arm of a family that was found out.
+
+    Attributes:
+        urdf: its file.
+        tool: the tool's; None for the one that is written beside the setup.
+        keys: what is filled into the setup's text.
+        reach: of the arm, m.
+    """
+
+    urdf: Path
+    tool: Path | None
+    keys: dict[str, str]
+    reach: float = 0.0
+
+    @property
+    def setup(self) -> Setup:
+        """As its file will have it; the folder of that is not there yet."""
+        from cellcolor.frontend.setup import Setup
+
+        table = tomllib.loads(Template(SETUP).substitute(self.keys))
+        table["robot"]["arm_urdf"] = str(self.urdf.resolve())
+        table["robot"]["tool_urdf"] = TOOL if self.tool is None else str(self.tool.resolve())
+        return Setup(**table)
+
+
+def _arm(urdf: Path, tool: Path | None, tip: str, folder: Path) -> _Arm:
+    """The arm with the first family that fits it; its setup will be in the folder.
+
+    Raises:
+        InputError: none does.
+    """
+    from cellcolor.frontend.arm.urdf import load_urdf
+    from cellcolor.frontend.prepared import kinematics_of, robot_of
+
+    arm = load_urdf(urdf)
+    flange = next((link for link in _FLANGES if link in arm.parent), None) or _last_link(arm.parent)
+    chain = arm.chain(flange)
+    moved = next((at for at, link in enumerate(chain) if arm.joint_above.get(link) in arm.kinds), 0)
+    standing = [link for link in chain[: moved + 1] if link in arm.shapes]
+    keys = {
+        "arm": urdf.name,
+        "arm_urdf": json.dumps(_relative(urdf, folder)),
+        "flange": json.dumps(flange),
+        "tool": json.dumps("tool.urdf" if tool is None else _relative(tool, folder)),
+        "tip": json.dumps(tip),
+        "standing": json.dumps(standing),
+        "force": "false" if arm.weightless else "true",
+        "why_force": "the URDF lacks masses or efforts" if arm.weightless else "true or false",
+        "touching": "[]",
+        "velocities": "",
+        "accelerations": json.dumps([_ACCELERATION] * _JOINTS),
+        "joints": "",
+        "home": "",
+    }
+    fault: InputError | None = None
+    for family in _FAMILIES:
+        found = _Arm(urdf, tool, keys | {"family": json.dumps(family)})
+        try:
+            setup = found.setup
+            return replace(found, reach=kinematics_of(setup, robot_of(setup)).reach)
+        except InputError as error:
+            fault = error
+    assert fault is not None
+    raise fault if fault.file else fault.in_file(str(urdf))
+
+
+def _relative(file: Path, folder: Path) -> str:
+    return Path(os.path.relpath(file.resolve(), folder.resolve())).as_posix()
+
+
+def _last_link(parent: dict[str, str]) -> str:
+    """The link farthest from the root; of several the first."""
+    if not parent:
+        return ""
+
+    def depth(link: str) -> int:
+        count = 0
+        while link in parent:
+            link, count = parent[link], count + 1
+        return count
+
+    return max(parent, key=depth)
+
+
+def _part(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]:
+    """What is filled into the scene's text.
+
+    Raises:
+        InputError: the mesh cannot be used, not even repaired.
+    """
+    if looked.refusal is not None:
+        raise InputError(str(mesh), None, looked.refusal)
+    return {
+        "name": json.dumps(mesh.stem),
+        "part": json.dumps(_relative(mesh, folder)),
+        "meters_per_unit": "0.001" if looked.unit == "mm" else "1.0",
+        "repair": "true" if looked.repairs else "false",
+    }
+
+
+def _best_place(
+    arm: _Arm, mesh: Path, part_keys: dict[str, str], deadline: Deadline
+) -> tuple[PreparedScene, float]:
+    """The scene where most of the part can be reached, and the share of it.
+
+    Raises:
+        InputError: nothing of it can be reached anywhere.
+    """
+    from cellcolor.data.candidate_table import VALID
+    from cellcolor.frontend.prepared import prepare
+    from cellcolor.frontend.scene import Scene
+
+    table = tomllib.loads(Template(SCENE).substitute(part_keys, position="[0.0, 0.0, 0.0]"))
+    table["object"]["file"] = str(mesh.resolve())
+    scene = Scene(**table | {"setup": arm.setup})
+    try:
+        vertices = scene.object.surface(scene.folder, deadline).vertices
+    except InputError as error:
+        raise error if error.file else error.in_file(str(mesh)) from error
+    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    middle = (low + high) / 2
+    best: tuple[PreparedScene, float] | None = None
+    fault: InputError | None = None
+    for far, raised in product(_FARTHER, _HIGHER):
+        position = far * arm.reach - middle[0], -middle[1], raised * arm.reach - low[2]
+        try:
+            prepared = prepare(
+                scene.moved(position_m=(np.round(position, 3) + 0.0).tolist()), deadline
+            )
+        except InputError as error:  # such as a part that would stand in the robot
+            fault = error
+            continue
+        surface = prepared.surface
+        step = -(-len(surface.vertices) // _MOST_ASKED)
+        found = prepared.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
+        verdicts = prepared.judge(found.reshape(-1, prepared.robot.joints), deadline)
+        valid = (verdicts.reasons == VALID).reshape(found.shape[:2]).any(axis=1)
+        share = float(valid.mean())
+        if best is None or share > best[1]:
+            best = prepared, share
+    if best is None:
+        assert fault is not None
+        raise fault
+    if best[1] == 0:
+        message = (
+            "nothing of the part can be reached at any of nine places before the robot: does its "
+            "outside face the robot, and is its size one for this arm?"
+        )
+        raise InputError(str(mesh), None, message)
+    return best
+
+
+def _home(prepared: PreparedScene) -> list[float] | None:
+    """A free position near the middle of the joints' limits, rad."""
+    from cellcolor.motion.free_space import FreeSpace
+    from cellcolor.motion.home import free_near
+    from cellcolor.motion.limits import motion_of
+
+    robot = prepared.robot
+    lower = np.where(np.isfinite(robot.lower), robot.lower, -np.pi)
+    upper = np.where(np.isfinite(robot.upper), robot.upper, np.pi)
+    motion = motion_of(prepared)
+    return free_near(FreeSpace(prepared, motion.clearance_m), np.round((lower + upper) / 2, 2))
+
+
+def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
+    """What of the setup's file only the prepared scene tells."""
+    from cellcolor.frontend.reach.always_touching import always_touching
+
+    robot = prepared.robot
+    touching = [list(pair) for pair in always_touching(prepared.workplace.near_itself)]
+    return {
+        "touching": json.dumps(touching),
+        "accelerations": json.dumps([_ACCELERATION] * robot.joints),
+        "velocities": _velocities(robot),
+        "home": "# home_rad = []" if home is None else f"home_rad = {json.dumps(home)}",
+        "joints": ", ".join(robot.joint_names),
+    }
+
+
+def _velocities(robot: Robot) -> str:
+    """The line on velocities, which is needed where the URDF has none."""
+    lacks = bool(np.isnan(robot.velocity).any())
+    line = f"joint_velocities_rad_per_s = {json.dumps([1.0] * robot.joints)}"
+    why = "the URDF lacks them: take the data sheet's" if lacks else "lower than the URDF's"
+    return f"{'' if lacks else '# '}{line}  # {why}"
+
+
+def _notes(prepared: PreparedScene, home: list[float] | None, own_tool: bool) -> Iterator[str]:
+    if own_tool:
+        yield "tool.urdf is a polisher of 100 mm: put your tool's shape and length into it"
+    yield "setup.toml has accelerations of 5 rad/s²: take those of the arm's data sheet"
+    if np.isnan(prepared.robot.velocity).any():
+        yield "setup.toml has velocities of 1 rad/s, since the URDF has none"
+    if not prepared.setup.constraints.force:
+        yield "torques are not tested, since the URDF lacks masses or efforts"
+    if home is None:
+        yield "no free home position was found: the motion begins and ends anywhere"
+    yield from prepared.notes

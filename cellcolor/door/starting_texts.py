@@ -1,0 +1,108 @@
+"""The files that ``cellcolor.new`` writes, with places to be filled (``string.Template``)."""
+
+from __future__ import annotations
+
+__all__ = ["MARK", "SCENE", "SETUP", "TOOL"]
+
+MARK = "# begun by cellcolor new"
+
+TOOL = """<!-- begun by cellcolor new: a polisher on the axis of the last joint, 100 mm long -->
+<robot name="polisher">
+  <link name="body">
+    <inertial><origin xyz="0 0 0.045"/><mass value="0.5"/>
+      <inertia ixx="4e-4" ixy="0" ixz="0" iyy="4e-4" iyz="0" izz="1e-4"/></inertial>
+    <!-- ends 10 mm above the tip, so that only the tip touches the part -->
+    <collision><origin xyz="0 0 0.045"/>
+      <geometry><cylinder radius="0.02" length="0.09"/></geometry></collision>
+  </link>
+  <joint name="tip_joint" type="fixed">
+    <parent link="body"/><child link="tip"/><origin xyz="0 0 0.1"/>
+  </joint>
+  <link name="tip"/>
+</robot>
+"""
+
+SETUP = (
+    MARK
+    + """: the robot, its tool, and what counts as valid (docs/frontend.md).
+# File names are relative to this file. The world frame is the root link of $arm.
+
+[robot]
+arm_urdf = $arm_urdf
+kinematics = $family                # the family of the arm, which has its inverse kinematics
+flange_link = $flange               # where the tool's root link is fixed
+tool_urdf = $tool
+tip_link = $tip                     # where the tool touches; its z axis goes into the part
+locked_joint_6_rad = 0.0            # the tool may turn about its axis: the last joint stands still
+may_touch_ground = $standing
+may_touch = $touching               # pairs of links that overlap in every posture
+# mesh_collision_of = { some_link = "exact" }   # a link's mesh itself instead of its convex hull
+
+[task]
+normal_force_n = 20.0               # pressed along the tool's axis
+contact_radius_m = 0.005            # obstacles and the ground stay farther off the tip than this
+gravity_m_per_s2 = [0.0, 0.0, -9.81]
+
+[constraints]
+force = $force                      # whether torques are tested; $why_force
+
+# How near a singularity is too near, as shares of the cube of the arm's reach.
+[thresholds]
+min_manipulability = 0.009
+min_task_determinant = 0.0009
+
+# When two configurations on neighboring vertices are joined by a continuous motion.
+[continuity]
+base_step_rad = 0.1
+step_per_length_rad_per_m = 30.0
+near_singular_determinant = 0.0045
+probe_spacing_m = 0.0005
+validity_spacing_m = 0.001
+
+# Very small cells, as shares of the surface: simplified, or given up and said so.
+[slivers]
+simplify_below_share = 0.01
+uncover_below_share = 0.005
+
+# Lists of joints: $joints.
+[motion]
+tool_radius_m = 0.015               # of the tool's footprint
+spacing_m = 0.01                    # between neighboring passes
+speed_m_per_s = 0.05                # of the tool on the part
+$velocities
+joint_accelerations_rad_per_s2 = $accelerations   # take the data sheet's
+retract_m = 0.05                    # along the normal, before moving on
+clearance_m = 0.005                 # to everything, between strokes
+# Where the arm begins and ends; free in this scene.
+$home
+"""
+)
+
+SCENE = (
+    MARK
+    + """: the part, and what stands where (docs/frontend.md). Lengths are in meters.
+name = $name
+setup = "setup.toml"
+
+[object]
+kind = "mesh"
+file = $part
+meters_per_unit = $meters_per_unit  # 0.001 for a file in millimeters
+max_edge_m = 0.01                   # longer edges are halved: the tool's contact region
+repair = $repair
+
+# Put where most of the part was found to be reachable, of nine places before the robot.
+[placement]
+position_m = $position              # of the file's origin, from the robot's root link
+rpy_rad = [0.0, 0.0, 0.0]           # extrinsic x, y, z
+
+[ground]
+height_m = 0.0
+
+# [[obstacle]]
+# kind = "box"
+# size_m = [0.1, 0.1, 0.5]
+# position_m = [0.3, 0.4, 0.25]
+# rpy_rad = [0.0, 0.0, 0.0]
+"""
+)

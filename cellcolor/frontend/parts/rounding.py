@@ -1,0 +1,248 @@
+"""Normals of a faceted surface, rounded over a radius: they are the part's, not the mesh's.
+
+The normal at a point x is the mean of the faces' normals around it, where each point y of the
+surface has the weight 1 - (d / r)^2. Here d is the radius of the smallest ball around x in which
+the surface connects y with x. That is their distance, and more on the other side of a thin wall.
+How the faces are divided into triangles has no part in it (``docs/semantics.md``, section 1).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.parts.sharp import SHARP, sharp_edges
+from cellcolor.frontend.parts.surface import Surface, face_normals
+from cellcolor.frontend.parts.topology import edge_table, face_areas
+from cellcolor.frontend.processes import share_out, shared
+from cellcolor.frontend.sizes import check_rounding
+
+__all__ = ["longest_beside_sharp", "rounded"]
+
+_ROWS = 1000  # vertices that are rounded together
+_MOST_AT_ONCE = 200_000  # faces around them, half a kilobyte each; else fewer vertices together
+_SAME = 1e-9  # of the radius; a ball that is smaller by less is no smaller
+_BENT = 1e-6  # between the normals of two faces; less is a plane
+
+
+def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surface:
+    """A faceted surface with its normals rounded over a radius, m.
+
+    A vertex whose own faces fill its ball keeps its normal: there the mean is that of the faces,
+    weighted with their angles. So does one that has a plane around it.
+
+    Args:
+        surface: with the normals of its faces, weighted with their angles.
+        radius: m.
+        deadline: when to give up.
+
+    Raises:
+        InputError: the radius holds too many triangles; names the key.
+        OutOfTime: the deadline came first.
+    """
+    if not radius:
+        return surface
+    around = _Around.of(surface)
+    asked = np.flatnonzero((around.rims() < radius) & around.is_bent(radius))
+    size = float(face_areas(surface.vertices, surface.faces).mean())
+    check_rounding(len(asked), min(np.pi * radius**2 / size, len(surface.faces)))
+    normals = shared(surface.normals.shape, np.float64)
+    normals[:] = surface.normals
+
+    def work(number: int) -> None:
+        parts = [asked[number * _ROWS : (number + 1) * _ROWS]]
+        while parts:
+            deadline.check()
+            rows = parts.pop()
+            found = around.means(rows, radius)
+            if found is None:
+                parts += np.array_split(rows, 2)
+            else:
+                normals[rows] = found
+
+    share_out(work, -(-len(asked) // _ROWS))
+    return replace(surface, normals=np.array(normals))
+
+
+def longest_beside_sharp(surface: Surface) -> float:
+    """The longest mesh edge that leads from a sharp edge into a face beside it, m; 0 if none does.
+
+    Normals are known at vertices, and the tool turns evenly between them.
+    """
+    sharp = sharp_edges(surface.vertices, surface.faces, SHARP)
+    on = np.zeros(len(surface.vertices), dtype=bool)
+    on[sharp] = True
+    edges = surface.edges()
+    count = len(surface.vertices)
+    beside = on[edges].any(axis=1) & ~np.isin(edges @ [count, 1], sharp @ [count, 1])
+    return float(surface.lengths(edges[beside]).max(initial=0.0))
+
+
+@dataclass(frozen=True)
+class _Around:
+    """A surface, and what is beside its faces.
+
+    Attributes:
+        unit: (m, 3) unit normals of the faces.
+        beside: (m, 3) the face across each side ab, bc, ca; -1 at the border.
+    """
+
+    surface: Surface
+    unit: Array
+    beside: Index
+
+    @classmethod
+    def of(cls, surface: Surface) -> _Around:
+        unit = face_normals(surface.vertices, surface.faces)
+        unit /= np.linalg.norm(unit, axis=1, keepdims=True)
+        _, sides = edge_table(surface.faces).pairs()
+        beside = np.full(surface.faces.size, -1, dtype=np.int64)
+        beside[sides[:, 0]], beside[sides[:, 1]] = sides[:, 1] // 3, sides[:, 0] // 3
+        return cls(surface, unit, beside.reshape(-1, 3))
+
+    def rims(self) -> Array:
+        """How near to each vertex (n,) the far side of one of its faces is."""
+        points, faces = self.surface.vertices, self.surface.faces
+        rims = np.full(len(points), np.inf)
+        for corner in range(3):
+            a, b, c = (faces[:, (corner + k) % 3] for k in range(3))
+            np.minimum.at(rims, a, _distance(points[a], points[b], points[c]))
+        return rims
+
+    def is_bent(self, radius: float) -> Mask:
+        """Which vertices (n,) may have another plane than their own faces' within a radius."""
+        table = edge_table(self.surface.faces)
+        edges, sides = table.pairs()
+        chord = self.unit[sides[:, 0] // 3] - self.unit[sides[:, 1] // 3]
+        ends = self.surface.vertices[table.ends[edges[np.linalg.norm(chord, axis=1) > _BENT]]]
+        # Points on the edges, none of them farther than half the radius from the next.
+        number = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / radius * 2).astype(int)
+        edge = np.repeat(np.arange(len(ends)), number + 1)
+        step = np.arange(len(edge)) - np.repeat(np.cumsum(number + 1) - number - 1, number + 1)
+        at = (step / np.repeat(number, number + 1))[:, None]
+        points = (1 - at) * ends[edge, 0] + at * ends[edge, 1]
+        if not len(points):
+            return np.zeros(len(self.surface.vertices), dtype=bool)
+        return np.asarray(cKDTree(points).query(self.surface.vertices)[0] < 1.25 * radius)
+
+    def means(self, rows: Index, radius: float) -> Array | None:
+        """Unit normals (k, 3) at some vertices, rounded over a radius; None: they are too many."""
+        reached = self._reached(rows, radius)
+        if reached is None:
+            return None
+        which, face, ball = reached
+        points, corners = self.surface.vertices, self.surface.faces[face]
+        weights = _weights(
+            points[corners] - points[rows[which]][:, None], self.unit[face], ball, radius
+        )
+        sums = np.zeros((len(rows), 3))
+        np.add.at(sums, which, weights[:, None] * self.unit[face])
+        return np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))
+
+    def _reached(self, rows: Index, radius: float) -> tuple[Index, Index, Array] | None:
+        """The faces that balls around vertices reach, in them, from the vertices' own faces.
+
+        Returns:
+            Numbers (p,) of rows, a face of each, and the radius of the smallest ball in which they
+            are connected; 0 of a vertex's own faces. None if that is too much.
+        """
+        faces, points, count = self.surface.faces, self.surface.vertices, len(self.surface.faces)
+        place = np.full(len(points), -1, dtype=np.int64)
+        place[rows] = np.arange(len(rows))
+        face, corner = np.nonzero(place[faces] >= 0)
+        known = np.sort(place[faces[face, corner]] * count + face)
+        ball = np.zeros(len(known))
+        new, its_ball = known, ball
+        while len(new):
+            which, face = np.divmod(new, count)
+            pairs = []
+            for side in range(3):
+                across = self.beside[face, side]
+                a, b = faces[face, side], faces[face, (side + 1) % 3]
+                least = np.maximum(its_ball, _distance(points[rows[which]], points[a], points[b]))
+                going = (across >= 0) & (least < radius)
+                pairs.append((which[going] * count + across[going], least[going]))
+            new, its_ball = _least(*map(np.concatenate, zip(*pairs, strict=True)))
+            at = np.minimum(np.searchsorted(known, new), len(known) - 1)
+            there = known[at] == new
+            better = ~there | (its_ball < ball[at] - _SAME * radius)
+            ball[at[there & better]] = its_ball[there & better]
+            unknown = ~there
+            known = np.concatenate([known, new[unknown]])
+            order = np.argsort(known, kind="stable")
+            known, ball = known[order], np.concatenate([ball, its_ball[unknown]])[order]
+            new, its_ball = new[better], its_ball[better]
+            if len(known) > _MOST_AT_ONCE and len(rows) > 1:
+                return None
+        which, face = np.divmod(known, count)
+        return which, face, ball
+
+
+def _least(keys: Index, values: Array) -> tuple[Index, Array]:
+    """Each key once, in order, with its least value."""
+    order = np.lexsort((values, keys))
+    keys, values = keys[order], values[order]
+    first = np.diff(keys, prepend=-1) > 0
+    return keys[first], values[first]
+
+
+def _distance(points: Array, a: Array, b: Array) -> Array:
+    """How far points (k, 3) are from the segments between a and b."""
+    way = b - a
+    at = np.einsum("ij,ij->i", points - a, way) / np.einsum("ij,ij->i", way, way)
+    return np.asarray(np.linalg.norm(a + np.clip(at, 0.0, 1.0)[:, None] * way - points, axis=1))
+
+
+def _weights(corners: Array, unit: Array, ball: Array, radius: float) -> Array:
+    """Integrals (p,) of 1 - (max(d, ball) / radius)^2, while positive, over triangles.
+
+    Args:
+        corners: (p, 3, 3) of the triangles, seen from the point that distances d are taken from.
+        unit: (p, 3) normals of the triangles.
+        ball: (p,) see above.
+    """
+    height = np.einsum("ij,ij->i", corners[:, 0], unit)
+    flat = corners - height[:, None, None] * unit[:, None]
+
+    def within(reach: Array) -> tuple[Array, Array]:
+        return _disc(flat, unit, np.sqrt(np.maximum(reach**2 - height**2, 0.0)))
+
+    area, second = within(np.full(len(ball), radius))
+    whole = area - (height**2 * area + second) / radius**2
+    area, second = within(ball)
+    return np.asarray(whole - (ball**2 * area - height**2 * area - second) / radius**2)
+
+
+def _disc(corners: Array, unit: Array, size: Array) -> tuple[Array, Array]:
+    """What triangles have in common with discs (p,) around the origin of their planes.
+
+    Returns:
+        Area, and the integral of the squared distance from the origin.
+    """
+    area, second = np.zeros((2, len(corners)))
+    for side in range(3):
+        a, b = corners[:, side], corners[:, (side + 1) % 3]
+        way = b - a
+        square = np.einsum("ij,ij->i", way, way)
+        half = np.einsum("ij,ij->i", a, way) / square
+        under = half**2 - (np.einsum("ij,ij->i", a, a) - size**2) / square
+        root = np.sqrt(np.maximum(under, 0.0))
+        enter, leave = np.clip(-half - root, 0.0, 1.0), np.clip(-half + root, 0.0, 1.0)
+        p, q = a + enter[:, None] * way, a + leave[:, None] * way
+        for u, v in ((a, p), (q, b)):
+            angle = np.arctan2(_cross(u, v, unit), np.einsum("ij,ij->i", u, v))
+            area += size**2 * angle / 2
+            second += size**4 * angle / 4
+        doubled = _cross(p, q, unit)
+        area += doubled / 2
+        products = [np.einsum("ij,ij->i", *pair) for pair in ((p, p), (p, q), (q, q))]
+        second += doubled / 12 * sum(products)
+    return area, second
+
+
+def _cross(u: Array, v: Array, unit: Array) -> Array:
+    return np.asarray(np.einsum("ij,ij->i", np.cross(u, v), unit))

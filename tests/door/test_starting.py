@@ -1,0 +1,115 @@
+"""``cellcolor new``: what it writes is read, stands where it can be reached, and is planned."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+pytest.importorskip("ompl", reason="the extra 'motion' is not installed")
+
+import trimesh
+from commands import run
+from shipped import ROBOTS
+
+import cellcolor
+from cellcolor.errors import InputError
+from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.scene import Scene
+from cellcolor.motion.home import check_home
+from cellcolor.motion.limits import motion_of
+
+Capture = pytest.CaptureFixture[str]
+
+
+@pytest.fixture
+def plate(tmp_path: Path) -> Path:
+    """A plate of 160 x 120 mm with a low hump, in millimeters, as its file's origin has it."""
+    x, y = np.meshgrid(np.linspace(300, 460, 17), np.linspace(-20, 100, 13), indexing="ij")
+    z = 10 * np.exp(-((x - 380) ** 2 + (y - 40) ** 2) / 40**2)
+    corner = (13 * np.arange(16)[:, None] + np.arange(12)).ravel()
+    low = np.column_stack([corner, corner + 13, corner + 14])
+    high = np.column_stack([corner, corner + 14, corner + 1])
+    points = np.column_stack([x.ravel(), y.ravel(), z.ravel()])
+    file = tmp_path / "plate.stl"
+    trimesh.Trimesh(points, np.concatenate([low, high]), process=False).export(file)
+    return file
+
+
+@pytest.mark.parametrize(("arm", "family"), [("ur5", "ur"), ("kr6", "eaik")])
+def test_family_flange_place_and_home_are_found(
+    arm: str, family: str, plate: Path, tmp_path: Path
+) -> None:
+    made = cellcolor.new(plate, ROBOTS / f"{arm}.urdf", tmp_path / "new")
+    assert {file.name for file in (tmp_path / "new").iterdir()} == {
+        *("scene.toml", "setup.toml", "tool.urdf")
+    }
+    scene = Scene.read(made.scene)
+    assert scene.setup.robot.kinematics == family
+    assert scene.setup.robot.flange_link == {"ur5": "wrist_3_link", "kr6": "tool0"}[arm]
+    prepared = prepare(scene)
+    assert np.allclose(np.ptp(prepared.surface.vertices, axis=0)[:2], (0.16, 0.12))
+    assert motion_of(prepared).home_rad is not None
+    check_home(prepared, motion_of(prepared))
+    built = cellcolor.build(scene)
+    # It asked some of the vertices.
+    whole = built.report.reachable / built.report.vertices
+    assert made.reachable_share == pytest.approx(whole, abs=0.1)
+    assert whole > 0.9
+
+
+def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
+    folder = tmp_path / "new"
+    assert run("new", plate, ROBOTS / "ur5.urdf", "-o", folder) == 0
+    said = capsys.readouterr().out
+    assert f"next: cellcolor plan {folder / 'scene.toml'} -o {folder / 'plan'}" in said
+    planned = cellcolor.plan(folder / "scene.toml", spacing_m=0.03)
+    assert planned.verdict.valid, planned.verdict
+    assert planned.trajectory.lift_offs == planned.solution.lift_offs
+
+
+def test_only_its_own_files_are_replaced(plate: Path, tmp_path: Path, capsys: Capture) -> None:
+    folder, arm = tmp_path / "new", ROBOTS / "ur5.urdf"
+    assert run("new", plate, arm, "-o", folder) == 0
+    first = {file: file.read_bytes() for file in folder.iterdir()}
+    assert run("new", plate, arm, "-o", folder) == 0
+    assert {file: file.read_bytes() for file in folder.iterdir()} == first
+    (folder / "setup.toml").write_text("# mine\n")
+    assert run("new", plate, arm, "-o", folder) == 2
+    assert "setup.toml" in capsys.readouterr().err
+    assert (folder / "setup.toml").read_text() == "# mine\n"
+
+
+def test_what_cannot_be_used_is_one_line_and_nothing_is_written(
+    plate: Path, tmp_path: Path, capsys: Capture
+) -> None:
+    scara = ROBOTS / "cobra600.urdf"
+    faulty = tmp_path / "faulty.stl"
+    faulty.write_text("solid\nendsolid\n")
+    arm = ROBOTS / "ur5.urdf"
+    for part, urdf, options, named in (
+        (plate, scara, [], "cobra600.urdf"),
+        (plate, tmp_path / "none.urdf", [], "none.urdf"),
+        (faulty, arm, [], "faulty.stl"),
+        (plate, arm, ["--unit", "m"], "the part is 160 x 120"),
+    ):
+        assert run("new", part, urdf, "-o", tmp_path / "new", *options) == 2
+        (line,) = capsys.readouterr().err.splitlines()
+        assert named in line
+        assert not (tmp_path / "new").exists()
+    assert run("new", plate, arm, "-o", tmp_path / "new", "--time-limit", "0.001") == 3
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_tool_of_ones_own(plate: Path, tmp_path: Path) -> None:
+    tool = ROBOTS / "polishing_tool.urdf"
+    made = cellcolor.new(
+        plate, ROBOTS / "ur5.urdf", tmp_path / "new", tool=tool, tip_link="tool_tip"
+    )
+    assert not (tmp_path / "new" / "tool.urdf").exists()
+    robot = Scene.read(made.scene).setup.robot
+    assert (made.scene.parent / robot.tool_urdf).resolve() == tool
+    with pytest.raises(InputError, match="tip link"):
+        cellcolor.new(plate, ROBOTS / "ur5.urdf", tmp_path / "other", tool=tool)

@@ -1,0 +1,163 @@
+"""Normals rounded over a radius, against sums over tiny triangles and closed forms."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import trimesh
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from shipped import shipped
+
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.frontend import sizes
+from cellcolor.frontend.parts import rounding
+from cellcolor.frontend.parts.bisect import bisected
+from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.rounding import longest_beside_sharp, rounded
+from cellcolor.frontend.parts.surface import Surface, face_normals
+
+
+def surface_of(mesh: trimesh.Trimesh) -> Surface:
+    return mesh_surface(np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64))
+
+
+def angle(first: np.ndarray, second: np.ndarray) -> float:
+    return float(np.degrees(np.arccos(np.clip(first @ second, -1, 1))))
+
+
+def tiny(surface: Surface, times: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Middles, areas and normals of its triangles, each cut into four so many times."""
+    points, faces = surface.vertices, surface.faces
+    for _ in range(times):
+        points, faces = trimesh.remesh.subdivide(points, faces)
+    doubled = face_normals(points, faces)
+    areas = np.linalg.norm(doubled, axis=1) / 2
+    return points[faces].mean(axis=1), areas, doubled / (2 * areas[:, None])
+
+
+@settings(max_examples=15, deadline=None)
+@given(st.integers(0, 10_000), st.floats(0.3, 0.9))
+def test_the_mean_around_a_vertex(seed: int, radius: float) -> None:
+    """On bumpy convex shapes nothing lies between a vertex and what is near: d is the distance."""
+    rng = np.random.default_rng(seed)
+    ball = rng.normal(size=(30, 3))
+    hull = trimesh.convex.convex_hull(ball / np.linalg.norm(ball, axis=1)[:, None])
+    surface = surface_of(hull)
+    made = rounded(surface, radius)
+    middles, areas, normals = tiny(surface, 5)
+    vertex = int(rng.integers(len(surface.vertices)))
+    away = np.linalg.norm(middles - surface.vertices[vertex], axis=1)
+    weights = areas * np.maximum(1 - (away / radius) ** 2, 0)
+    mean = weights @ normals
+    assert angle(made.normals[vertex], mean / np.linalg.norm(mean)) < 0.5
+    assert np.linalg.norm(made.normals, axis=1) == pytest.approx(1.0)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 10_000), st.floats(0.2, 0.9))
+def test_triangles_have_no_part_in_it(seed: int, radius: float) -> None:
+    """A box whose faces are divided at random: its old vertices keep their normals."""
+    rng = np.random.default_rng(seed)
+    box = surface_of(trimesh.creation.box((1.0, 1.5, 0.4)).subdivide())
+    other = box
+    for _ in range(3):
+        other = bisected(other, rng.random(len(other.edges())) < 0.1, "test")
+    before, after = (rounded(surface_of_arrays(x), radius).normals for x in (box, other))
+    assert after[: len(before)] == pytest.approx(before, abs=1e-7)
+
+
+def surface_of_arrays(surface: Surface) -> Surface:
+    return mesh_surface(surface.vertices, surface.faces)
+
+
+def test_beside_an_edge_of_ninety_degrees() -> None:
+    """Sums over a square grid in each of both faces, for vertices at many distances."""
+    box = surface_of(trimesh.creation.box((2, 2, 2)).subdivide().subdivide().subdivide())
+    made = rounded(box, 0.5)
+    u, v = np.meshgrid(*[np.linspace(-0.5, 0.5, 801)] * 2)
+    found = []
+    for vertex in np.flatnonzero((abs(box.vertices[:, 1]) < 0.3) & (box.vertices[:, 2] == 1)):
+        distance = 1 - abs(box.vertices[vertex, 0])
+        top = np.maximum(1 - 4 * (u**2 + v**2), 0)[u <= distance].sum()
+        side = np.maximum(1 - 4 * (distance**2 + u**2 + v**2), 0)[v <= 0].sum()
+        expected = np.array([np.sign(box.vertices[vertex, 0]) * side, 0, top])
+        assert angle(made.normals[vertex], expected / np.linalg.norm(expected)) < 0.3
+        found.append(distance)
+    assert {0, 0.25, 0.5} <= set(found)
+
+
+def test_the_other_side_of_a_thin_plate() -> None:
+    """It counts for nothing in the middle, and comes in without a jump towards the rim."""
+    x = np.linspace(0, 3, 61)
+    thick, wide = 0.2, np.array([-1.5, 0.0, 1.5])
+    rows = np.array([[a, thick / 2] for a in x] + [[a, -thick / 2] for a in x[::-1]])
+    count = len(rows)
+    points = np.array([[a, b, c] for b in wide for a, c in rows])
+    low = np.array([k * count + i for k in range(2) for i in range(count - 1)])
+    faces = np.concatenate(
+        [
+            np.column_stack([low, low + count, low + 1]),
+            np.column_stack([low + 1, low + count, low + count + 1]),
+        ]
+    )
+    strip = mesh_surface(points, faces[:, ::-1] if _points_down(points, faces) else faces)
+    normals = rounded(strip, 0.5).normals[count : count + len(x)]
+    assert normals[x < 2.4] == pytest.approx(np.tile([0.0, 0.0, 1.0], ((x < 2.4).sum(), 1)))
+    turns = [angle(*pair) for pair in pairwise(normals)]
+    assert 30 < sum(turns) < 120 and max(turns) < 20
+
+
+def _points_down(points: np.ndarray, faces: np.ndarray) -> bool:
+    return bool(face_normals(points, faces)[0, 2] < 0)
+
+
+def test_faces_larger_than_the_radius_keep_their_normals() -> None:
+    """To the bit: what was built before there was a radius is built the same on such a mesh."""
+    ball = surface_of(trimesh.creation.icosphere(2))
+    assert (rounded(ball, 0.2).normals == ball.normals).all()
+    assert rounded(ball, 0.0) is ball
+    assert not (rounded(ball, 0.5).normals == ball.normals).all()
+
+
+def test_many_faces_around_a_vertex(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fewer vertices are then rounded together, to the same normals; too many are refused."""
+    part = surface_of(trimesh.creation.box((1, 1, 1)).subdivide().subdivide())
+    usual = rounded(part, 0.6).normals
+    monkeypatch.setattr(rounding, "_MOST_AT_ONCE", 20)
+    assert rounded(part, 0.6).normals == pytest.approx(usual)
+    with pytest.raises(OutOfTime):
+        rounded(part, 0.6, Deadline.after(0.0))
+    monkeypatch.setattr(sizes, "_MOST_AROUND", 1000)
+    with pytest.raises(InputError, match="a smaller radius, or larger triangles") as caught:
+        rounded(part, 0.6)
+    assert caught.value.field == "task.edge_radius_m"
+
+
+def test_the_longest_edge_beside_a_sharp_one() -> None:
+    """A box of two triangles a side has diagonals; a ball has no sharp edge."""
+    assert longest_beside_sharp(surface_of(trimesh.creation.box((3, 4, 12)))) == pytest.approx(
+        np.hypot(4, 12)
+    )
+    assert not longest_beside_sharp(surface_of(trimesh.creation.icosphere(3)))
+
+
+def test_a_mesh_in_a_scene_has_the_radius_of_the_tool() -> None:
+    """By default the contact radius; a key replaces it; a simple shape keeps its own normals."""
+    scene = shipped("wok", 500)
+    task = scene.setup.task
+    assert task.edge_radius_m is None and task.rounding_m == task.contact_radius_m == 0.005
+    assert "edge_radius_m" not in task.model_dump()
+    shape = scene.covered()
+    assert not shape.faceted
+    mesh = scene.with_object(trimesh.creation.box((0.02, 0.02, 0.02)).subdivide_to_size(0.004))
+    given = scene.setup.varied(task=task.model_copy(update={"edge_radius_m": 0.01}))
+    wider = mesh.with_setup(given)
+    assert given.task.model_dump()["edge_radius_m"] == 0.01
+    part = mesh.object.surface()
+    for asked, radius in ((mesh, 0.005), (wider, 0.01)):
+        expected = rounded(part, radius).placed(asked.placement)
+        assert (asked.covered().normals == expected.normals).all()
