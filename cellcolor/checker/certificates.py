@@ -19,7 +19,7 @@ from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.crossing_segments import TwoRegions
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.filled_surface import WORK
 from cellcolor.checker.hubs import Hubs
 from cellcolor.checker.plan_search import (
     BudgetExceeded,
@@ -330,7 +330,9 @@ class _Proof:
                 self._one_area(cells, second, first)
             if (first, second) not in two_regions:
                 cells_of = frozenset(self._cells_of(first)), frozenset(self._cells_of(second))
-                two_regions[first, second] = TwoRegions(self._instance, crossing.colors, cells_of)
+                two_regions[first, second] = TwoRegions(
+                    self._instance, crossing.colors, cells_of, self._count
+                )
             two = two_regions[first, second]
             one, other, far, farther = (min(cells) for cells in ends)
             if not two.must_cross((one, other), (far, farther)):
@@ -342,7 +344,6 @@ class _Proof:
         """A tangle that is verified."""
         found: list[TangledSegment] = []
         drawn: list[Tangled] = []
-        surface: set[int] = set()
         for segment in tangle.segments:
             named = [cell for group in segment.groups for area in group for cell in area]
             areas = [area for group in segment.groups for area in group]
@@ -358,16 +359,13 @@ class _Proof:
                 raise _Refused("a segment of a tangle avoids what it touches")
             cells = frozenset(self._cells_of(region))
             self._count(1 + (len(cells) + len(named)) // 100)
-            surface |= cells
             groups = tuple(tuple(map(frozenset, group)) for group in segment.groups)
             for area in (area for group in groups for area in group):
-                if not is_connected(self._instance, segment.color, area):
-                    text = f"the cells {_few(area)} are not connected in color {segment.color}"
-                    raise _Refused(text)
+                self._connected(area, segment.color)
             whole = tuple(frozenset[int]().union(*group) for group in groups)
             found.append(TangledSegment(region, whole, avoided))
             drawn.append(Tangled(segment.color, cells - avoided, groups))
-        if not cannot_be_drawn(self._instance, frozenset(surface), drawn, self._count):
+        if not cannot_be_drawn(self._instance, drawn, self._count):
             named = [min(min(area) for area in s.groups[0]) for s in drawn]
             raise _Refused(f"the segments of a tangle, of cells {_few(named)}, could be drawn")
         return Tangle(tuple(found))
@@ -377,20 +375,19 @@ class _Proof:
 
         What touches one of them can then be grown over all of them: the other segment is in none.
         """
-        together: Groups[int] = Groups()
         for cell in cells:
             if region not in self._regions_of(cell):
                 raise _Refused(f"cell {cell} is not in the color region of cell {min(cells)}")
             if other in self._regions_of(cell):
                 raise _Refused(f"cell {cell} is in the color regions of both segments")
-            together.find(cell)
-            for dart in (dart for loop in self._instance.cells[cell].loops for dart in loop):
-                edge = self._instance.edge(abs(dart))
-                within = edge.left in cells and edge.right in cells
-                if within and region[0] in self._instance.joinable(abs(dart)):
-                    together.join(edge.left, edge.right)
-        if len(together.sets()) > 1:
-            raise _Refused(f"the cells {_few(cells)} are not connected in color {region[0]}")
+        self._connected(cells, region[0])
+
+    def _connected(self, cells: frozenset[int], color: int) -> None:
+        """Hold an area to be connected in a color."""
+        loops = [loop for cell in cells for loop in self._instance.cells[cell].loops]
+        self._count((len(cells) + sum(map(len, loops))) // WORK)
+        if not is_connected(self._instance, color, cells):
+            raise _Refused(f"the cells {_few(cells)} are not connected in color {color}")
 
     def _region(self, color: int, cell: int) -> ColorRegion:
         for region in self._regions_of(cell):

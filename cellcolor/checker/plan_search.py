@@ -1,10 +1,11 @@
 """Whether so many segments can touch some cells: every way is tried.
 
 A segment lies in one color region, and touches some of its cells. Two segments that are in
-conflict cannot both touch all that the conflict names, nor can those of a tangle all do what the
-tangle says; what it says they avoid, one of them has to touch after all. Each cell has to be touched by some segment,
-so a cell that is not touched yet is given to each segment that can still touch it, and to a new one
-in each of its color regions. With no conflicts that is a search for a set cover.
+conflict cannot both touch all that the conflict names. Those of a tangle cannot all touch what it
+names without touching what it says they avoid, so one of them touches some of that as well. Each
+cell has to be touched by some segment, so a cell that is not touched yet is given to each segment
+that can still touch it, and to a new one in each of its color regions. With no conflicts that is a
+search for a set cover.
 
 Cells that neither color regions nor conflicts connect, not even by way of other cells, are touched
 by different segments that do not mind each other. So each such group is searched by itself, and the
@@ -227,6 +228,8 @@ class PlanSearch:
 
     def _tangled(self, found: Sequence[_Segment]) -> list[tuple[int, _Needed]] | None:
         """Segments that a tangle forbids, each by its number and with what the tangle says."""
+        if len(self._tangles) * len(found) > 50:
+            self._count(len(self._tangles) * len(found))
         for tangle in self._tangles:
             places = [
                 [
@@ -247,7 +250,7 @@ class PlanSearch:
     def _untangling(
         self, tangled: Sequence[tuple[int, _Needed]], state: _State
     ) -> Iterator[_State]:
-        """A state in which one of some segments touches what it would have avoided, for each way."""
+        """A state for each way in which a segment touches what it would have avoided."""
         found = state.found
         tried: set[tuple[int, _Segment]] = set()
         for number, needed in tangled:
