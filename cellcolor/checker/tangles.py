@@ -126,7 +126,8 @@ class _Finder:
 
     def _equations(self, drawn: Sequence[_Drawn]) -> Iterator[tuple[list[_Side], bool]]:
         """Sides whose sum is known, eight at a time, of areas of two segments."""
-        for one, two in combinations(drawn, 2):
+        for number, (one, two) in enumerate(combinations(drawn, 2), start=1):
+            self._count(number % 2)
             own, its = one.domain, two.domain
             near = [area for area in one.areas if self._lies_outside(area, its)]
             far = [area for area in two.areas if self._lies_outside(area, own)]

@@ -18,6 +18,7 @@ from typing import Any
 import networkx as nx
 from library import INSTANCES
 from meshes import drawn
+from rooms import ISLAND_BETWEEN, ROUND_A_PETAL
 
 import cellcolor
 from cellcolor.data.bound import Bound
@@ -88,7 +89,9 @@ def small(seed: int) -> Iterator[Original]:
 
 
 def large() -> Iterator[Original]:
-    """The bounds of stored instances, scenes, blobs and thin bands, one after the other."""
+    """The bounds of rooms, stored instances, scenes, blobs, tori and thin bands, one by one."""
+    yield from _originals("an island between", ISLAND_BETWEEN)
+    yield from _originals("round a petal", ROUND_A_PETAL)
     for name in LARGE_FILES:
         yield from _originals(name, Instance.read(INSTANCES / name))
     for file in sorted((INSTANCES / "scenes" / "feasibility").glob("*.surface.json")):
@@ -96,14 +99,19 @@ def large() -> Iterator[Original]:
     for seed in range(6):
         yield from _originals(f"blobs {seed}", cellcolor.decompose(blobs(seed)))
     yield from _originals("cells without loops", cells_without_loops())
-    for seed in range(3):
-        torus = LARGE["torus"](seed)
-        graph = torus if isinstance(torus, Instance) else cellcolor.decompose(torus)
-        yield from _originals(f"torus {seed}", graph)
+    for seed in (0, 1, 2, 10):
+        yield from _originals(f"torus {seed}", _graph(LARGE["torus"](seed)))
     for seed in (5, 22):
         thin = cellcolor.decompose(blobs(seed, size=20, thin=True))
         yield from _originals(f"thin bands {seed}", thin)
+    thin = MEDIUM["thin"](11)
+    yield from _originals("thin bands with tangles", _graph(thin))
     yield from _originals("rim 1", cellcolor.decompose(MEDIUM["rim"](1)))
+
+
+def _graph(made: Instance | LabelledSurface) -> Instance:
+    """The graph of what a family made."""
+    return made if isinstance(made, Instance) else cellcolor.decompose(made)
 
 
 def cells_without_loops() -> Instance:
@@ -171,6 +179,7 @@ def _not_minimal(_: random.Random, original: Original, forged: Certificate) -> i
             "value": original.bound.value + 1,
             "cells": [cell.id for cell in original.instance.cells],
             "conflicts": [c for part in forged["parts"] for c in part["conflicts"]],
+            "tangles": [t for part in forged["parts"] for t in part.get("tangles", ())],
         }
     ]
     return 1
@@ -197,6 +206,7 @@ def _wrong_hub(chance: random.Random, original: Original, forged: Certificate) -
     hub = chance.randrange(len(original.instance.cells))
     part["cells"] = [cell for cell in part["cells"] if cell != hub]
     part["conflicts"] = []
+    part.pop("tangles", None)
     part["hubs"] = [*part.get("hubs", ())[1:], hub]
     return 0
 
@@ -263,6 +273,105 @@ def _duplicates(chance: random.Random, _: Original, forged: Certificate) -> int:
     return max(1, part["value"]) if kind == 0 else 1
 
 
+def _tangle_of(chance: random.Random, original: Original, forged: Certificate) -> list[Any]:
+    """The segments of a tangle of the certificate, or of one that is made up and put there."""
+    part = chance.choice(forged["parts"])
+    if not part.get("tangles") or chance.random() < 0.2:
+        made = [_tangled_segment(chance, original) for _ in range(chance.randint(1, 3))]
+        part.setdefault("tangles", []).append({"segments": made})
+        part.pop("hubs", None)
+        return made
+    return chance.choice(part["tangles"])["segments"]
+
+
+def _tangled_segment(chance: random.Random, original: Original) -> dict[str, Any]:
+    """A segment of a made-up tangle, from two cells of a color or more, some of them avoided."""
+    color = chance.randrange(len(original.instance.colors))
+    own = [cell.id for cell in original.instance.cells if color in cell.colors] or [0]
+    cells = chance.sample(own, min(len(own), chance.randint(2, 4)))
+    return {"color": color, "groups": [[[c]] for c in cells[:2]], "avoided": cells[2:]}
+
+
+def _wrong_color_in_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A segment of a tangle has another color."""
+    segment = chance.choice(_tangle_of(chance, original, forged))
+    segment["color"] = chance.randrange(-1, len(original.instance.colors) + 1)
+    return 0
+
+
+def _dropped_segment(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A segment of a tangle is missing."""
+    segments = _tangle_of(chance, original, forged)
+    segments.pop(chance.randrange(len(segments)))
+    return 0
+
+
+def _changed_group(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A segment of a tangle touches an area more, another one, a larger one, or a group less."""
+    segment = chance.choice(_tangle_of(chance, original, forged))
+    group = chance.choice(segment["groups"])
+    own = [c.id for c in original.instance.cells if segment["color"] in c.colors] or [0]
+    match chance.randrange(4):
+        case 0:
+            group.append([chance.choice(own)])
+        case 1:
+            group[chance.randrange(len(group))] = [chance.choice(own)]
+        case 2:
+            chance.choice(group).append(chance.choice(own))
+        case _:
+            segment["groups"].remove(group)
+    return 0
+
+
+def _changed_avoided(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A segment of a tangle avoids a cell less, or one more."""
+    segments = _tangle_of(chance, original, forged)
+    segment = chance.choice([own for own in segments if own["avoided"]] or segments)
+    if segment["avoided"] and chance.random() < 0.7:
+        segment["avoided"].pop(chance.randrange(len(segment["avoided"])))
+    else:
+        own = [c.id for c in original.instance.cells if segment["color"] in c.colors] or [0]
+        segment["avoided"].append(chance.choice(own))
+    return 0
+
+
+def _another_region(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A tangle names a cell that does not lie in the segment's color region, or anywhere."""
+    segment = chance.choice(_tangle_of(chance, original, forged))
+    cells = chance.choice([*(a for group in segment["groups"] for a in group), segment["avoided"]])
+    others = [c.id for c in original.instance.cells if segment["color"] not in c.colors]
+    cells.append(chance.choice([*others, len(original.instance.cells)]))
+    return 0
+
+
+def _empty_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A tangle without segments, groups, areas or cells."""
+    segments = _tangle_of(chance, original, forged)
+    groups = chance.choice(segments)["groups"]
+    chance.choice([segments, groups, chance.choice(groups), chance.choice(groups)[0]]).clear()
+    return 0
+
+
+def _no_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A tangle of made-up segments, beside the others."""
+    made = [_tangled_segment(chance, original) for _ in range(chance.randint(1, 3))]
+    part = chance.choice(forged["parts"])
+    part.setdefault("tangles", []).append({"segments": made})
+    part.pop("hubs", None)
+    return 0
+
+
+def _long_tangle(chance: random.Random, original: Original, forged: Certificate) -> int:
+    """A tangle with thousands of segments, groups, areas or avoided cells."""
+    segments = _tangle_of(chance, original, forged)
+    segment = chance.choice(segments)
+    listed = [segments, segment["groups"], segment["groups"][0], segment["avoided"]]
+    longer = chance.choice(listed)
+    longer.extend(copy.deepcopy(longer[:2]) * 2_000)
+    chance.choice(forged["parts"])["value"] += 1
+    return 1
+
+
 def _places(holder: Any) -> Iterator[tuple[Any, Any]]:
     """Every place in some nested lists and objects: what holds it, and the key or index there."""
     todo = [holder]
@@ -289,6 +398,14 @@ FORGERIES: dict[str, Callable[[random.Random, Original, Certificate], int]] = {
     "a wrong member": _wrong_member,
     "a cell that is not there": _wrong_id,
     "something twice": _duplicates,
+    "a wrong color in a tangle": _wrong_color_in_tangle,
+    "a segment of a tangle dropped": _dropped_segment,
+    "a changed group of a tangle": _changed_group,
+    "a cell avoided less or more": _changed_avoided,
+    "a tangle in another region": _another_region,
+    "an empty tangle": _empty_tangle,
+    "a tangle that is none": _no_tangle,
+    "a long tangle": _long_tangle,
 }
 """Each changes a certificate and says how many segments more the bound claims."""
 
@@ -360,10 +477,13 @@ def claims_truth(original: Original, forged: Bound) -> bool:
     if any(part.get("hubs") for part in certificate["parts"]):
         cells = {cell.id for cell in original.instance.cells}  # hubs count for what they save
     conflicts = [conflict for part in certificate["parts"] for conflict in part["conflicts"]]
+    tangles = [tangle for part in certificate["parts"] for tangle in part.get("tangles", ())]
     for segments in colorings:
         if sum(not cells.isdisjoint(s.cells) for s in segments) < forged.value:
             return False
         if any(_both_connected(segments, conflict) for conflict in conflicts):
+            return False
+        if any(_all_drawn(segments, tangle["segments"]) for tangle in tangles):
             return False
     return True
 
@@ -399,3 +519,20 @@ def _both_connected(segments: Sequence[_Segment], conflict: dict[str, Any]) -> b
         for color, areas in ends
     ]
     return any(one != other for one, other in itertools.product(*connecting))
+
+
+def _all_drawn(segments: Sequence[_Segment], tangle: Sequence[dict[str, Any]]) -> bool:
+    """Whether a coloring has all segments of a tangle, each a different one."""
+    fitting = [
+        [
+            number
+            for number, segment in enumerate(segments)
+            if segment.color == own["color"]
+            and segment.cells.isdisjoint(own["avoided"])
+            and all(
+                any(not segment.cells.isdisjoint(area) for area in group) for group in own["groups"]
+            )
+        ]
+        for own in tangle
+    ]
+    return any(len(set(chosen)) == len(chosen) for chosen in itertools.product(*fitting))
