@@ -43,7 +43,8 @@ def _part(part: PartSearch) -> dict[str, Any]:
         hubs, hard = (cells(found) for found in (part.hubs.hubs, part.hubs.cells))
         return {"value": part.surface_bound, "cells": hard, "conflicts": [], "hubs": hubs}
     conflicts = []
-    planner = part.planning.planner
+    # A part that a smallest cover proves needs nothing of what was planned.
+    planner = part.planning.planner if part.surface_bound > part.cover_bound else None
     for one, other, parting in planner.partings if planner is not None else ():
         for group, further in combinations(parting.groups, 2):
             for pair in product(group, further):
@@ -93,7 +94,7 @@ def _hardest(
             groups = [*segment["groups"], [segment["avoided"]]]
             for group, areas in enumerate(groups):
                 for cell in (cell for area in areas for cell in area):
-                    ends[cell].add((number, f"tangle, segment {place}", group))
+                    ends[cell].add((number, f"segment {place} of a tangle", group))
     first: dict[tuple[frozenset[int], frozenset[tuple[int, str, int]]], int] = {}
     for cell in sorted(part.cells):
         first.setdefault((frozenset(regions[cell]), frozenset(ends[cell])), cell)
