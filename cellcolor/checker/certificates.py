@@ -2,9 +2,10 @@
 
 The certificate of a ``cover`` or of ``strangers`` names some cells, and the claim is that fewer
 color regions than the bound says do not touch all of them. That of ``conflicts`` names, for each
-part of the surface, such cells as well, and pairs of segments that would have to cross. The color
-regions that another color can stand in for are left out before. What crosses is verified by
-:mod:`cellcolor.checker.crossing_segments`, and then every way to touch the cells is tried by
+part of the surface, such cells as well, pairs of segments that would have to cross, and tangles of
+more of them. The color regions that another color can stand in for are left out before. What
+crosses is verified by :mod:`cellcolor.checker.crossing_segments`, what is tangled by
+:mod:`cellcolor.checker.tangles`, and then every way to touch the cells is tried by
 :mod:`cellcolor.checker.plan_search`, to the end or until the budget is used up.
 """
 
@@ -18,9 +19,16 @@ from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.crossing_segments import TwoRegions
-from cellcolor.checker.groups import Groups
+from cellcolor.checker.filled_surface import WORK
 from cellcolor.checker.hubs import Hubs
-from cellcolor.checker.plan_search import BudgetExceeded, Conflict, PlanSearch
+from cellcolor.checker.plan_search import (
+    BudgetExceeded,
+    Conflict,
+    PlanSearch,
+    Tangle,
+    TangledSegment,
+)
+from cellcolor.checker.tangles import Tangled, cannot_be_drawn, is_connected
 from cellcolor.data.bound import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
@@ -98,6 +106,32 @@ class _Crossing:
 
 
 @dataclass(frozen=True, slots=True)
+class _TangledSegment:
+    """What a tangle says of one of its segments.
+
+    Attributes:
+        color: its color.
+        groups: groups of areas, each a set of cells; it touches a cell of some area of each group.
+        avoided: cells of its color region, none of which it touches.
+    """
+
+    __pydantic_config__ = _STRICT
+
+    color: int
+    groups: tuple[tuple[tuple[int, ...], ...], ...]
+    avoided: tuple[int, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Tangle:
+    """Segments that cannot all be drawn."""
+
+    __pydantic_config__ = _STRICT
+
+    segments: tuple[_TangledSegment, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class _Part:
     """Cells that so many segments at least are needed to touch, and why fewer cannot.
 
@@ -105,6 +139,7 @@ class _Part:
         value: so many.
         cells: what they are needed to touch.
         conflicts: what two segments cannot do.
+        tangles: what one segment or more cannot do.
         hubs: cells that are taken away, to see how many pieces of segments are needed.
     """
 
@@ -113,6 +148,7 @@ class _Part:
     value: NonNegativeInt
     cells: tuple[int, ...]
     conflicts: tuple[_Crossing, ...] = ()
+    tangles: tuple[_Tangle, ...] = ()
     hubs: tuple[int, ...] = ()
 
 
@@ -239,24 +275,26 @@ class _Proof:
                 raise _Refused("one color region lies in two parts")
             used |= own
             conflicts = list(self._conflicts(part))
+            tangles = [self._tangle(tangle) for tangle in part.tangles]
             pieces = part.value
             if part.hubs:
                 demands = self._beside_hubs(part)
                 pieces += self._saved(part)
-            search = PlanSearch(demands, conflicts, self._budget - self.tried, self._deadline)
+            left = self._budget - self.tried
+            search = PlanSearch(demands, conflicts, left, self._deadline, tangles)
             try:
                 possible = search.is_possible(pieces - 1)
             finally:
                 self.tried += search.tried
             if possible:
                 least = f"fewer than {pieces}"
-                what = "segments" if part.conflicts else "color regions"
+                what = "segments" if part.conflicts or part.tangles else "color regions"
                 raise _Refused(f"{least} {what} touch all of the cells {_few(part.cells)}")
 
     def _beside_hubs(self, part: _Part) -> dict[int, frozenset[ColorRegion]]:
         """The color regions that are left of each cell to be touched when hubs are taken away."""
-        if part.conflicts:
-            raise _Refused("a part with hubs has conflicts as well")
+        if part.conflicts or part.tangles:
+            raise _Refused("a part with hubs has conflicts or tangles as well")
         regions = Hubs(self._instance, self._regions, part.hubs).regions()
         for cell in part.cells:
             if not regions[cell]:
@@ -271,8 +309,8 @@ class _Proof:
                 raise _Refused(problem)
         return sum(hubs.links(hub, self._count) for hub in sorted(set(part.hubs)))
 
-    def _count(self) -> None:
-        self.tried += 1
+    def _count(self, choices: int = 1) -> None:
+        self.tried += choices
         if self.tried > self._budget or self._deadline.over:
             raise BudgetExceeded
 
@@ -292,7 +330,9 @@ class _Proof:
                 self._one_area(cells, second, first)
             if (first, second) not in two_regions:
                 cells_of = frozenset(self._cells_of(first)), frozenset(self._cells_of(second))
-                two_regions[first, second] = TwoRegions(self._instance, crossing.colors, cells_of)
+                two_regions[first, second] = TwoRegions(
+                    self._instance, crossing.colors, cells_of, self._count
+                )
             two = two_regions[first, second]
             one, other, far, farther = (min(cells) for cells in ends)
             if not two.must_cross((one, other), (far, farther)):
@@ -300,25 +340,54 @@ class _Proof:
                 raise _Refused(f"{text}, need not cross")
             yield Conflict((first, second), (ends[0], ends[1], ends[2], ends[3]))
 
+    def _tangle(self, tangle: _Tangle) -> Tangle:
+        """A tangle that is verified."""
+        found: list[TangledSegment] = []
+        drawn: list[Tangled] = []
+        for segment in tangle.segments:
+            named = [cell for group in segment.groups for area in group for cell in area]
+            areas = [area for group in segment.groups for area in group]
+            if not areas or not all(segment.groups) or not all(areas):
+                raise _Refused("a tangle names no cells")
+            region = self._region(segment.color, named[0])
+            for cell in (*named, *segment.avoided):
+                if region not in self._regions_of(cell):
+                    text = f"cell {cell} is not in the color region of cell {named[0]}"
+                    raise _Refused(f"{text}, as a tangle says")
+            avoided = frozenset(segment.avoided)
+            if not avoided.isdisjoint(named):
+                raise _Refused("a segment of a tangle avoids what it touches")
+            cells = frozenset(self._cells_of(region))
+            self._count(1 + (len(cells) + len(named)) // 100)
+            groups = tuple(tuple(map(frozenset, group)) for group in segment.groups)
+            for area in (area for group in groups for area in group):
+                self._connected(area, segment.color)
+            whole = tuple(frozenset[int]().union(*group) for group in groups)
+            found.append(TangledSegment(region, whole, avoided))
+            drawn.append(Tangled(segment.color, cells - avoided, groups))
+        if not cannot_be_drawn(self._instance, drawn, self._count):
+            named = [min(min(area) for area in s.groups[0]) for s in drawn]
+            raise _Refused(f"the segments of a tangle, of cells {_few(named)}, could be drawn")
+        return Tangle(tuple(found))
+
     def _one_area(self, cells: frozenset[int], region: ColorRegion, other: ColorRegion) -> None:
         """Hold cells of one region to be connected in its color, and outside of the other region.
 
         What touches one of them can then be grown over all of them: the other segment is in none.
         """
-        together: Groups[int] = Groups()
         for cell in cells:
             if region not in self._regions_of(cell):
                 raise _Refused(f"cell {cell} is not in the color region of cell {min(cells)}")
             if other in self._regions_of(cell):
                 raise _Refused(f"cell {cell} is in the color regions of both segments")
-            together.find(cell)
-            for dart in (dart for loop in self._instance.cells[cell].loops for dart in loop):
-                edge = self._instance.edge(abs(dart))
-                within = edge.left in cells and edge.right in cells
-                if within and region[0] in self._instance.joinable(abs(dart)):
-                    together.join(edge.left, edge.right)
-        if len(together.sets()) > 1:
-            raise _Refused(f"the cells {_few(cells)} are not connected in color {region[0]}")
+        self._connected(cells, region[0])
+
+    def _connected(self, cells: frozenset[int], color: int) -> None:
+        """Hold an area to be connected in a color."""
+        loops = [loop for cell in cells for loop in self._instance.cells[cell].loops]
+        self._count((len(cells) + sum(map(len, loops))) // WORK)
+        if not is_connected(self._instance, color, cells):
+            raise _Refused(f"the cells {_few(cells)} are not connected in color {color}")
 
     def _region(self, color: int, cell: int) -> ColorRegion:
         for region in self._regions_of(cell):

@@ -1,9 +1,11 @@
 """Whether so many segments can touch some cells: every way is tried.
 
 A segment lies in one color region, and touches some of its cells. Two segments that are in
-conflict cannot both touch all that the conflict names. Each cell has to be touched by some segment,
-so a cell that is not touched yet is given to each segment that can still touch it, and to a new one
-in each of its color regions. With no conflicts that is a search for a set cover.
+conflict cannot both touch all that the conflict names. Those of a tangle cannot all touch what it
+names without touching what it says they avoid, so one of them touches some of that as well. Each
+cell has to be touched by some segment, so a cell that is not touched yet is given to each segment
+that can still touch it, and to a new one in each of its color regions. With no conflicts that is a
+search for a set cover.
 
 Cells that neither color regions nor conflicts connect, not even by way of other cells, are touched
 by different segments that do not mind each other. So each such group is searched by itself, and the
@@ -16,13 +18,14 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from itertools import product
 from operator import or_
 
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.groups import Groups
 from cellcolor.deadline import NEVER, Deadline
 
-__all__ = ["BudgetExceeded", "Conflict", "PlanSearch"]
+__all__ = ["BudgetExceeded", "Conflict", "PlanSearch", "Tangle", "TangledSegment"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +42,28 @@ class Conflict:
     cells: tuple[frozenset[int], frozenset[int], frozenset[int], frozenset[int]]
 
 
+@dataclass(frozen=True, slots=True)
+class TangledSegment:
+    """What a tangle says of one of its segments.
+
+    Attributes:
+        region: its color region.
+        groups: it touches a cell of each of these groups.
+        avoided: it touches none of these cells.
+    """
+
+    region: ColorRegion
+    groups: tuple[frozenset[int], ...]
+    avoided: frozenset[int]
+
+
+@dataclass(frozen=True, slots=True)
+class Tangle:
+    """What so many different segments cannot be side by side."""
+
+    segments: tuple[TangledSegment, ...]
+
+
 class BudgetExceeded(Exception):
     """More choices than were allowed, or the deadline came first."""
 
@@ -51,16 +76,28 @@ _Ends = tuple[int, int, int, int]
 class _Segment:
     region: ColorRegion
     ends: _Ends = (0, 0, 0, 0)
+    places: int = 0
 
     @property
     def connects(self) -> tuple[int, int]:
         """The conflicts whose first segment it is by now, and those whose second it is, as bits."""
         return self.ends[0] & self.ends[1], self.ends[2] & self.ends[3]
 
-    def grown(self, more: _Ends) -> _Segment:
-        """It with more ends touched."""
+    def grown(self, more: _Ends, places: int) -> _Segment:
+        """It with more ends of conflicts touched, and more places of tangles, as bits."""
         a, b, c, d = self.ends
-        return _Segment(self.region, (a | more[0], b | more[1], c | more[2], d | more[3]))
+        ends = (a | more[0], b | more[1], c | more[2], d | more[3])
+        return _Segment(self.region, ends, self.places | places)
+
+
+@dataclass(frozen=True, slots=True)
+class _Needed:
+    """Of a segment of a tangle the bits of its groups, that of what it avoids, and these cells."""
+
+    region: ColorRegion
+    groups: int
+    avoided: int
+    cells: tuple[int, ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,6 +122,7 @@ class PlanSearch:
         conflicts: Sequence[Conflict],
         budget: int,
         deadline: Deadline = NEVER,
+        tangles: Sequence[Tangle] = (),
     ) -> None:
         """
         Args:
@@ -92,6 +130,7 @@ class PlanSearch:
             conflicts: between segments.
             budget: how many choices may be tried.
             deadline: when to give up.
+            tangles: of segments.
         """
         self.tried = 0
         self._regions = regions
@@ -107,6 +146,21 @@ class PlanSearch:
         self._ends: dict[tuple[ColorRegion, int], _Ends] = {
             key: (a, b, c, d) for key, (a, b, c, d) in ends.items()
         }
+        self._places: dict[tuple[ColorRegion, int], int] = defaultdict(int)
+        bits = 0
+        self._tangles: list[list[_Needed]] = []
+        for tangle in tangles:
+            needed = []
+            for segment in tangle.segments:
+                first = bits
+                for cells in (*segment.groups, segment.avoided):
+                    for cell in cells:
+                        self._places[segment.region, cell] |= 1 << bits
+                    bits += 1
+                groups = (1 << bits - 1) - (1 << first)
+                avoided = tuple(sorted(segment.avoided))
+                needed.append(_Needed(segment.region, groups, 1 << bits - 1, avoided))
+            self._tangles.append(needed)
 
     def is_possible(self, segments: int) -> bool:
         """Whether so many segments can touch all cells.
@@ -133,6 +187,9 @@ class PlanSearch:
                 together.join(first, other)
         for one, other in self._in_conflict:
             together.join(one, other)
+        for tangle in self._tangles:
+            for needed in tangle:
+                together.join(tangle[0].region, needed.region)
         groups: dict[ColorRegion, list[int]] = defaultdict(list)
         for cell in sorted(self._regions):
             groups[together.find(min(self._regions[cell]))].append(cell)
@@ -146,7 +203,7 @@ class PlanSearch:
             if state is None:
                 trail.pop()
                 continue
-            if not state.left:
+            if not state.left and self._tangled(state.found) is None:
                 return True
             trail.append(self._choices(state))
         return False
@@ -154,6 +211,9 @@ class PlanSearch:
     def _choices(self, state: _State) -> Iterator[_State]:
         """Each way to touch one more cell; a state without cells if nothing is left to choose."""
         found, more = state.found, state.more
+        tangled = self._tangled(found)
+        if tangled is not None:
+            return self._untangling(tangled, state)
         able = self._able_to_touch(state)
         # What a segment can touch without being any nearer to a conflict costs nothing.
         left = [c for c in state.left if not any(grown == found[n] for n, grown in able[c])]
@@ -165,6 +225,49 @@ class PlanSearch:
         cell = min(left, key=lambda c: (len(able[c]) + len(regions_of[c]), c))
         rest = tuple([c for c in left if c != cell])
         return self._touching(cell, able[cell], sorted(regions_of[cell]), _State(found, rest, more))
+
+    def _tangled(self, found: Sequence[_Segment]) -> list[tuple[int, _Needed]] | None:
+        """Segments that a tangle forbids, each by its number and with what the tangle says."""
+        if len(self._tangles) * len(found) > 50:
+            self._count(len(self._tangles) * len(found))
+        for tangle in self._tangles:
+            places = [
+                [
+                    number
+                    for number, segment in enumerate(found)
+                    if segment.region == needed.region
+                    and segment.places & needed.groups == needed.groups
+                    and not segment.places & needed.avoided
+                ]
+                for needed in tangle
+            ]
+            for numbers in product(*places):
+                if len(set(numbers)) == len(numbers):
+                    return list(zip(numbers, tangle, strict=True))
+                self._count(1)
+        return None
+
+    def _untangling(
+        self, tangled: Sequence[tuple[int, _Needed]], state: _State
+    ) -> Iterator[_State]:
+        """A state for each way in which a segment touches what it would have avoided."""
+        found = state.found
+        tried: set[tuple[int, _Segment]] = set()
+        for number, needed in tangled:
+            others = [s.connects for place, s in enumerate(found) if place != number]
+            first = reduce(or_, (bits for bits, _ in others), 0)
+            second = reduce(or_, (bits for _, bits in others), 0)
+            for cell in needed.cells:
+                own = needed.region, cell
+                more = self._ends.get(own, (0, 0, 0, 0))
+                grown = found[number].grown(more, self._places[own])
+                if (number, grown) in tried:
+                    continue
+                tried.add((number, grown))
+                self._count(len(state.left))
+                if not (grown.connects[0] & second or grown.connects[1] & first):
+                    segments = (*found[:number], grown, *found[number + 1 :])
+                    yield _State(segments, state.left, state.more)
 
     def _touching(
         self,
@@ -180,7 +283,8 @@ class PlanSearch:
             yield _State((*found[:number], grown, *found[number + 1 :]), rest, more)
         for region in regions:
             self._count(len(rest))
-            opening = _Segment(region, self._ends.get((region, cell), (0, 0, 0, 0)))
+            ends = self._ends.get((region, cell), (0, 0, 0, 0))
+            opening = _Segment(region, ends, self._places.get((region, cell), 0))
             yield _State((*found, opening), rest, more - 1)
 
     def _able_to_touch(self, state: _State) -> dict[int, list[tuple[int, _Segment]]]:
@@ -217,12 +321,13 @@ class PlanSearch:
         able = []
         for region in self._regions[cell]:
             more = self._ends.get((region, cell))
+            places = self._places.get((region, cell), 0)
             for number in numbers.get(region, ()):
                 segment = found[number]
-                if more is None:
+                if more is None and not places:
                     able.append((number, segment))
                     continue
-                grown = segment.grown(more)
+                grown = segment.grown(more or (0, 0, 0, 0), places)
                 # A segment is of one region, so that it never is both segments of a conflict.
                 first, second = grown.connects
                 if not (first & connected[1] or second & connected[0]):

@@ -1,7 +1,8 @@
 """Why fewer segments are not enough: what the certificate of a bound names, on the surface.
 
 Of a conflict between two segments these are its four areas, and a connection of either segment:
-the second would have to cross the first. Of a set cover or of hubs they are the cells.
+the second would have to cross the first. Of a set cover, of tangles alone or of hubs they are the
+cells.
 """
 
 from __future__ import annotations
@@ -50,13 +51,16 @@ class WhyNotFewerPicture:
         certificate = bound.certificate or {}
         parts: list[dict[str, Any]] = certificate.get("parts", [certificate])
         conflicts = [conflict for part in parts for conflict in part.get("conflicts", ())]
+        tangles = [tangle for part in parts for tangle in part.get("tangles", ())]
         title = f"{surface.name}: why {count(bound.value, 'segment')} at least"
         if conflicts:
-            view = _of_conflict(surface, decomposition, title, conflicts)
+            view = _of_conflict(surface, decomposition, title, conflicts, len(tangles))
         else:
             cells = sorted({cell for part in parts for cell in part["cells"]})
             hubs = sorted({cell for part in parts for cell in part.get("hubs", ())})
-            view = _of_cells(surface, decomposition, title, bound, cells, hubs)
+            view = _of_cells(
+                surface, decomposition, title, bound, cells, hubs, tangled=bool(tangles)
+            )
         return draw_surface(surface, view)
 
 
@@ -81,8 +85,10 @@ def _of_cells(
     bound: Bound,
     cells: Sequence[int],
     hubs: Sequence[int],
+    *,
+    tangled: bool,
 ) -> SurfaceView:
-    """Cells that fewer color regions do not touch, and hubs that save no more segments."""
+    """Cells that fewer color regions or segments do not touch, and hubs that save no more."""
     instance = decomposition.instance
     marked = [(cell, f"cell {cell}") for cell in cells] + [(cell, f"hub {cell}") for cell in hubs]
     classes = []
@@ -97,6 +103,9 @@ def _of_cells(
             "Without the hubs no two of the cells can share a segment,",
             "and the hubs join no more.",
         )
+    elif tangled:
+        fewer = count(bound.value - 1, "segment")
+        notes = (f"No {fewer} that touch all of these cells", "can be drawn side by side.")
     elif len(cells) == bound.value:
         notes = (
             "No two of these cells can share a segment:",
@@ -112,6 +121,7 @@ def _of_conflict(
     decomposition: Decomposition,
     title: str,
     conflicts: Sequence[dict[str, Any]],
+    tangles: int,
 ) -> SurfaceView:
     """One conflict: its areas, and two connections, of which the second crosses the first."""
     shown = conflicts[0]
@@ -144,6 +154,8 @@ def _of_conflict(
     ]
     if more:
         notes.append(f"The certificate names {count(more, 'conflict')} more.")
+    if tangles:
+        notes.append(f"It names {count(tangles, 'tangle')} of several segments, too.")
     return _view(surface, title, labels, classes, tuple(notes))
 
 

@@ -8,7 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from library import PAPER
+from meshes import drawn
 from petals import hub as hub_graph
+from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
@@ -64,6 +66,20 @@ def test_cells_that_cannot_share_a_segment_have_their_numbers() -> None:
     layers = painted(cellcolor.show(result, view="why"), LabelledSurface.read(path))
     marked = {int(m[1]) for name in layers if (m := re.match(r"cell (\d+): ", name))}
     assert marked == set(bound.certificate["cells"])
+
+
+def test_segments_that_fit_two_at_a_time_only_are_told() -> None:
+    """Red, from left to right, passes the island above, where blue comes from, or below."""
+    art = "RBBBBBR RMMMMMR RMMBMMR RMMGMMR RMMMMMR RGGGGGR"
+    surface = drawn(art, {"R": [0], "B": [1], "G": [2], "M": [0, 1, 2]})
+    result = cellcolor.solve(surface)
+    assert result.segments == vertex_minimum(surface) == 4
+    picture = cellcolor.show(result, view="why").picture
+    assert isinstance(picture, Picture3D)
+    assert picture.notes == (
+        "No 3 segments that touch all of these cells",
+        "can be drawn side by side.",
+    )
 
 
 def test_without_a_certificate_there_is_nothing_to_see() -> None:

@@ -16,8 +16,10 @@ from functools import cache
 from typing import Any
 
 import networkx as nx
+from forged_tangles import FORGERIES_OF_TANGLES
 from library import INSTANCES
 from meshes import drawn
+from rooms import ISLAND_BETWEEN, ROUND_A_PETAL
 
 import cellcolor
 from cellcolor.data.bound import Bound
@@ -88,7 +90,9 @@ def small(seed: int) -> Iterator[Original]:
 
 
 def large() -> Iterator[Original]:
-    """The bounds of stored instances, scenes, blobs and thin bands, one after the other."""
+    """The bounds of rooms, stored instances, scenes, blobs, tori and thin bands, one by one."""
+    yield from _originals("an island between", ISLAND_BETWEEN)
+    yield from _originals("round a petal", ROUND_A_PETAL)
     for name in LARGE_FILES:
         yield from _originals(name, Instance.read(INSTANCES / name))
     for file in sorted((INSTANCES / "scenes" / "feasibility").glob("*.surface.json")):
@@ -96,14 +100,19 @@ def large() -> Iterator[Original]:
     for seed in range(6):
         yield from _originals(f"blobs {seed}", cellcolor.decompose(blobs(seed)))
     yield from _originals("cells without loops", cells_without_loops())
-    for seed in range(3):
-        torus = LARGE["torus"](seed)
-        graph = torus if isinstance(torus, Instance) else cellcolor.decompose(torus)
-        yield from _originals(f"torus {seed}", graph)
+    for seed in (0, 1, 2, 10):
+        yield from _originals(f"torus {seed}", _graph(LARGE["torus"](seed)))
     for seed in (5, 22):
         thin = cellcolor.decompose(blobs(seed, size=20, thin=True))
         yield from _originals(f"thin bands {seed}", thin)
+    thin = MEDIUM["thin"](11)
+    yield from _originals("thin bands with tangles", _graph(thin))
     yield from _originals("rim 1", cellcolor.decompose(MEDIUM["rim"](1)))
+
+
+def _graph(made: Instance | LabelledSurface) -> Instance:
+    """The graph of what a family made."""
+    return made if isinstance(made, Instance) else cellcolor.decompose(made)
 
 
 def cells_without_loops() -> Instance:
@@ -171,6 +180,7 @@ def _not_minimal(_: random.Random, original: Original, forged: Certificate) -> i
             "value": original.bound.value + 1,
             "cells": [cell.id for cell in original.instance.cells],
             "conflicts": [c for part in forged["parts"] for c in part["conflicts"]],
+            "tangles": [t for part in forged["parts"] for t in part.get("tangles", ())],
         }
     ]
     return 1
@@ -197,6 +207,7 @@ def _wrong_hub(chance: random.Random, original: Original, forged: Certificate) -
     hub = chance.randrange(len(original.instance.cells))
     part["cells"] = [cell for cell in part["cells"] if cell != hub]
     part["conflicts"] = []
+    part.pop("tangles", None)
     part["hubs"] = [*part.get("hubs", ())[1:], hub]
     return 0
 
@@ -289,6 +300,7 @@ FORGERIES: dict[str, Callable[[random.Random, Original, Certificate], int]] = {
     "a wrong member": _wrong_member,
     "a cell that is not there": _wrong_id,
     "something twice": _duplicates,
+    **FORGERIES_OF_TANGLES,
 }
 """Each changes a certificate and says how many segments more the bound claims."""
 
@@ -360,10 +372,13 @@ def claims_truth(original: Original, forged: Bound) -> bool:
     if any(part.get("hubs") for part in certificate["parts"]):
         cells = {cell.id for cell in original.instance.cells}  # hubs count for what they save
     conflicts = [conflict for part in certificate["parts"] for conflict in part["conflicts"]]
+    tangles = [tangle for part in certificate["parts"] for tangle in part.get("tangles", ())]
     for segments in colorings:
         if sum(not cells.isdisjoint(s.cells) for s in segments) < forged.value:
             return False
         if any(_both_connected(segments, conflict) for conflict in conflicts):
+            return False
+        if any(_all_drawn(segments, tangle["segments"]) for tangle in tangles):
             return False
     return True
 
@@ -399,3 +414,20 @@ def _both_connected(segments: Sequence[_Segment], conflict: dict[str, Any]) -> b
         for color, areas in ends
     ]
     return any(one != other for one, other in itertools.product(*connecting))
+
+
+def _all_drawn(segments: Sequence[_Segment], tangle: Sequence[dict[str, Any]]) -> bool:
+    """Whether a coloring has all segments of a tangle, each a different one."""
+    fitting = [
+        [
+            number
+            for number, segment in enumerate(segments)
+            if segment.color == own["color"]
+            and segment.cells.isdisjoint(own["avoided"])
+            and all(
+                any(not segment.cells.isdisjoint(area) for area in group) for group in own["groups"]
+            )
+        ]
+        for own in tangle
+    ]
+    return any(len(set(chosen)) == len(chosen) for chosen in itertools.product(*fitting))

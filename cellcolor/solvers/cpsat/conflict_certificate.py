@@ -26,7 +26,8 @@ def conflict_certificate(
         parts: searched; their bounds add up.
     """
     found = [_part(part) for part in parts]
-    if sum(len(part["conflicts"]) for part in found) > MOST_CONFLICTS:
+    number = sum(len(part["conflicts"]) + len(part.get("tangles", ())) for part in found)
+    if number > MOST_CONFLICTS:
         return None
     steps = [[region.color, min(region.cells), region.stand_in] for region in left_out]
     return {"left_out": steps, "parts": found}
@@ -42,24 +43,42 @@ def _part(part: PartSearch) -> dict[str, Any]:
         hubs, hard = (cells(found) for found in (part.hubs.hubs, part.hubs.cells))
         return {"value": part.surface_bound, "cells": hard, "conflicts": [], "hubs": hubs}
     conflicts = []
-    planner = part.planning.planner
+    # A part that a smallest cover proves needs nothing of what was planned.
+    planner = part.planning.planner if part.surface_bound > part.cover_bound else None
     for one, other, parting in planner.partings if planner is not None else ():
         for group, further in combinations(parting.groups, 2):
             for pair in product(group, further):
                 ends, parted = ([cells(m) for m in two] for two in (parting.ends, pair))
                 conflicts.append({"colors": [one[0], other[0]], "one": ends, "other": parted})
-    return {
+    tangles = [
+        {
+            "segments": [
+                {
+                    "color": color,
+                    "groups": [[cells(area) for area in group] for group in groups],
+                    "avoided": cells(avoided),
+                }
+                for (color, _), groups, avoided in tangle
+            ]
+        }
+        for tangle in (planner.tangles if planner is not None else ())
+    ]
+    found = {
         "value": part.surface_bound,
-        "cells": _hardest(part, conflicts),
+        "cells": _hardest(part, conflicts, tangles),
         "conflicts": conflicts,
     }
+    return found | {"tangles": tangles} if tangles else found
 
 
-def _hardest(part: PartSearch, conflicts: Sequence[dict[str, Any]]) -> list[int]:
+def _hardest(
+    part: PartSearch, conflicts: Sequence[dict[str, Any]], tangles: Sequence[dict[str, Any]]
+) -> list[int]:
     """One cell of each kind, without those that are touched wherever another one is.
 
-    Two cells are of one kind if they lie in the same color regions and the same ends of conflicts.
-    A cell of no conflict can be touched by whatever touches a cell that has no other regions.
+    Two cells are of one kind if they lie in the same color regions, the same ends of conflicts and
+    the same places of tangles. A cell of none of these can be touched by whatever touches a cell
+    that has no other regions.
     """
     regions: dict[int, set[int]] = {cell: set() for cell in part.cells}
     for number, (_, own) in enumerate(color_regions(part.instance)):
@@ -70,6 +89,12 @@ def _hardest(part: PartSearch, conflicts: Sequence[dict[str, Any]]) -> list[int]
         for side, end in product(("one", "other"), (0, 1)):
             for cell in conflict[side][end]:
                 ends[cell].add((number, side, end))
+    for number, tangle in enumerate(tangles):
+        for place, segment in enumerate(tangle["segments"]):
+            groups = [*segment["groups"], [segment["avoided"]]]
+            for group, areas in enumerate(groups):
+                for cell in (cell for area in areas for cell in area):
+                    ends[cell].add((number, f"segment {place} of a tangle", group))
     first: dict[tuple[frozenset[int], frozenset[tuple[int, str, int]]], int] = {}
     for cell in sorted(part.cells):
         first.setdefault((frozenset(regions[cell]), frozenset(ends[cell])), cell)

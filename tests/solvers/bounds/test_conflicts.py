@@ -12,13 +12,13 @@ from hypothesis import strategies as st
 from library import PAPER
 from meshes import grid_faces, grid_points, surface
 from petals import hub
+from rooms import crossed_rings
 from vertex_minima import vertex_minimum
 
 from cellcolor.data.instance import Cell, Edge, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
-from cellcolor.lab.families.meshes import make_mesh
 from cellcolor.solvers.bounds.conflicts import MergedCell, conflicts
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
@@ -226,25 +226,6 @@ def test_a_handle_of_one_color_leads_nobody_past() -> None:
     (found,) = conflicts(instance, red, blue)
     assert (areas(found.one), areas(found.other)) == (([1], [3]), ([2], [4]))
     assert solve(instance, Options()).surface_lower_bound == 3
-
-
-@st.composite
-def crossed_rings(draw: st.DrawFn) -> LabelledSurface:
-    """Two narrow rings over a torus, one along it and one around it, in red, blue and both.
-
-    The rings cross each other, so what red and blue reach covers the handle. A ring falls into
-    cells of both colors with and without green, as no cell may lie around the handle.
-    """
-    size, width = 6, draw(st.integers(1, 2))
-    vertices, faces = make_mesh("torus", size)
-    kinds = st.sampled_from([(RED,), (BLUE,), None])
-    labels: list[Sequence[int]] = []
-    for row in range(size):
-        for column in range(size):
-            both = (RED, BLUE) if (row // 3 + column // 3) % 2 else (RED, BLUE, GREEN)
-            inside = row < width or column < width
-            labels.append((draw(kinds) or both) if inside else (GREEN,))
-    return LabelledSurface("rings", ("red", "blue", "green"), vertices, faces, tuple(labels))
 
 
 @examples(30)

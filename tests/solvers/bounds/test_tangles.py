@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from itertools import combinations, product
 
-import networkx as nx
 import pytest
 from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
-from meshes import grid_faces, grid_points, surface
+from rooms import ISLAND_BETWEEN, ROUND_A_PETAL, can_be_drawn, room, rooms
 from vertex_minima import vertex_minimum
 
 from cellcolor.data.instance import Cell, Edge, Instance
@@ -26,21 +24,6 @@ from cellcolor.solvers.interface import Options
 RED, BLUE, GREEN = 0, 1, 2
 
 
-def room(*loops: Sequence[int | tuple[int, ...]]) -> Instance:
-    """A cell of all colors with petals round its loops, numbered from 1 as they come."""
-    petals = [(own,) if isinstance(own, int) else own for loop in loops for own in loop]
-    numbers = iter(range(1, len(petals) + 1))
-    return Instance(
-        "room",
-        ("red", "blue", "green"),
-        (
-            Cell(0, (RED, BLUE, GREEN), tuple(tuple(next(numbers) for _ in lp) for lp in loops)),
-            *(Cell(n, own, ((-n,),)) for n, own in enumerate(petals, start=1)),
-        ),
-        tuple(Edge(n, 0, n) for n in range(1, len(petals) + 1)),
-    )
-
-
 def tangles_of(instance: Instance) -> Tangles:
     own = {cell.id: frozenset(cell.colors) for cell in instance.cells}
     return Tangles(merge_cells(instance, own), color_regions(instance))
@@ -52,10 +35,6 @@ def all_petals(instance: Instance) -> list[Touching]:
         Touching(number, tuple(sorted(cells - {0})))
         for number, (_, cells) in enumerate(color_regions(instance))
     ]
-
-
-ISLAND_BETWEEN = room((RED, BLUE, RED, GREEN), (BLUE, GREEN))
-"""Red, from left to right, passes the island above, where blue comes from, or below, as green."""
 
 
 def test_three_segments_that_fit_two_at_a_time() -> None:
@@ -104,10 +83,6 @@ def test_a_handle_leads_past() -> None:
     assert tangles_of(with_handle).find(all_petals(with_handle), NEVER) == []
 
 
-ROUND_A_PETAL = room((GREEN, RED, (BLUE, GREEN), RED, GREEN, (RED, BLUE)))
-"""Blue passes from petal 3 to petal 6 only if red, from petal 2 to 4, goes round petal 6."""
-
-
 def test_a_way_round_a_cell_that_a_segment_does_not_touch() -> None:
     tangles = tangles_of(ROUND_A_PETAL)
     blue, red = Touching(BLUE, (3, 6)), Touching(RED, (2, 4))
@@ -131,72 +106,6 @@ def test_a_segment_does_not_pass_what_it_avoids() -> None:
 def test_looking_for_tangles_ends_at_the_deadline() -> None:
     with pytest.raises(OutOfTime):
         tangles_of(ISLAND_BETWEEN).find(all_petals(ISLAND_BETWEEN), Deadline.after(0))
-
-
-@st.composite
-def rooms(draw: st.DrawFn, width: int, height: int) -> LabelledSurface:
-    """A frame in pieces of one color, and an island of two around which segments may pass."""
-    several = st.sampled_from([(RED, BLUE, GREEN)] * 8 + [(RED, BLUE), (RED, GREEN)])
-    rim = [(0, column) for column in range(width)]
-    rim += [(row, width - 1) for row in range(1, height)]
-    rim += [(height - 1, column) for column in reversed(range(width - 1))]
-    rim += [(row, 0) for row in reversed(range(1, height - 1))]
-    pieces: list[tuple[int, ...]] = draw(st.permutations([(RED,), (RED,), (BLUE,), (GREEN,)]))
-    further = st.sampled_from([(RED,), (BLUE,), (GREEN,), (RED, BLUE), (BLUE, GREEN)])
-    pieces += draw(st.lists(further, max_size=3))
-    labels: dict[tuple[int, int], Sequence[int]] = {
-        place: pieces[number * len(pieces) // len(rim)] for number, place in enumerate(rim)
-    }
-    halves = draw(several), draw(several)
-    for row in range(1, height - 1):
-        for column in range(1, width - 1):
-            labels[row, column] = halves[2 * row > height]
-    row, column = draw(st.integers(2, height - 4)), draw(st.integers(2, width - 3))
-    upper, lower = draw(st.sampled_from([(BLUE, GREEN), (GREEN, BLUE), (RED, BLUE)]))
-    labels[row, column], labels[row + 1, column] = (upper,), (lower,)
-    return surface(
-        grid_points(width, height),
-        grid_faces(width, height),
-        [labels[row, column] for row in range(height) for column in range(width)],
-    )
-
-
-def can_be_drawn(
-    mesh: LabelledSurface, segments: Sequence[tuple[int, list[set[int]], set[int]]]
-) -> bool:
-    """Whether disjoint sets of mesh vertices exist, each connected in its color from a first set of
-    vertices to a second without some others: every path without shortcuts is tried for all but the
-    last."""
-    mesh_graph: nx.Graph[int] = nx.Graph(mesh.left_of.keys())
-    graphs = [
-        mesh_graph.subgraph(
-            v for v, own in enumerate(mesh.vertex_colors) if color in own and v not in avoided
-        )
-        for color, _, avoided in segments
-    ]
-
-    def fits(number: int, used: set[int]) -> bool:
-        if any(
-            not any(
-                not part.isdisjoint(ends[0]) and not part.isdisjoint(ends[1])
-                for part in nx.connected_components(graph.subgraph(graph.nodes - used))
-            )
-            for graph, (_, ends, _) in list(zip(graphs, segments, strict=True))[number:]
-        ):
-            return False
-        if number == len(segments) - 1:
-            return True
-        graph, (start, end) = graphs[number], segments[number][1]
-
-        def extend(path: list[int]) -> bool:
-            if path[-1] in end:
-                return fits(number + 1, used | set(path))
-            near = set().union(*(graph[v] for v in path[:-1])) | set(path) | used
-            return any(extend([*path, v]) for v in sorted(graph[path[-1]]) if v not in near)
-
-        return any(extend([v]) for v in sorted(start - used))
-
-    return fits(0, set())
 
 
 @examples(6)

@@ -169,6 +169,20 @@ class Planner:
             for parting in partings:
                 yield self._regions[one], self._regions[other], parting
 
+    @property
+    def tangles(self) -> Iterator[list[tuple[Region, list[list[frozenset[int]]], frozenset[int]]]]:
+        """All tangles found so far: of each segment its region, groups of areas, avoided cells."""
+        cells = self._merged_cells
+        for tangle in self._tangles:
+            yield [
+                (
+                    self._regions[segment.region],
+                    [[frozenset(cells[m]) for m in sorted(group)] for group in segment.groups],
+                    frozenset(cell for m in segment.avoided for cell in cells[m]),
+                )
+                for segment in tangle.segments
+            ]
+
     def find_conflicts(self, plan: SegmentPlan, deadline: Deadline, *, avoiding: bool) -> bool:
         """Look for segments of a plan that cannot all be drawn; whether there are any.
 
