@@ -166,7 +166,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     if setup.constraints.collision:
         home = None if setup.motion is None else setup.motion.home_rad
         with in_file(setup.file):
-            wide = check_capsules(workplace.near_itself, home)
+            wide = check_capsules(arm.near_itself, home)
         notes += () if wide is None else (wide,)
         notes += _notes_on_contacts(workplace, float(lengths.max()))
     return PreparedScene(scene, workplace, part, surface, judge, notes)

@@ -7,7 +7,6 @@ import json
 from typing import Any
 
 import pytest
-from examples import examples
 from hypothesis import assume, given, reject
 from hypothesis import strategies as st
 from rooms import (
@@ -40,6 +39,7 @@ from cellcolor.solvers.bounds.merged_cells import merge_cells
 from cellcolor.solvers.bounds.tangles import Tangles, Touching
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 Segment = dict[str, Any]
 

@@ -6,20 +6,20 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import Followed, whole_turns
 from cellcolor.motion.order import ordered
-from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
 from cellcolor.motion.timing import Speeds, timed
 from cellcolor.motion.turns import Visit, chosen_turns
+from examples import examples
 
 ANGLES = st.floats(-3.0, 3.0)
 UP = np.array([0.0, 0.0, 1.0])

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from isomorphism import isomorphic
@@ -12,6 +11,7 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.painting.refined import interpolated, unrefined
+from examples import examples
 
 SHAPES = st.sampled_from(["disc", "annulus", "sphere", "torus"])
 

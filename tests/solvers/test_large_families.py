@@ -6,12 +6,10 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.instance import OUTSIDE, Instance
-from cellcolor.mesh.oriented import directed_edges
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab.families import (
@@ -24,6 +22,8 @@ from cellcolor.lab.families import (
     wide_hub,
 )
 from cellcolor.lab.families.meshes import make_mesh
+from cellcolor.mesh.oriented import directed_edges
+from examples import examples
 
 EULER = {"disc": 1, "annulus": 0, "sphere": 2, "torus": 0, "double torus": -2}
 BORDERS = {"disc": 1, "annulus": 2, "sphere": 0, "torus": 0, "double torus": 0}

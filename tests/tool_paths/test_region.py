@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from examples import examples
 from flat import one_segment, slit, square, whole
 from hypothesis import given
 from hypothesis import strategies as st
@@ -12,6 +11,7 @@ from painted_at_random import SHAPES, painted_at_random
 
 from cellcolor.mesh.small_triangles import small_areas
 from cellcolor.tool_paths.region import Region, regions_of
+from examples import examples
 
 
 def euler(region: Region) -> int:

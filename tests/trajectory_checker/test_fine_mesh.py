@@ -7,7 +7,6 @@ import pytest
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
@@ -18,6 +17,7 @@ from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
+from examples import examples
 
 
 def bumpy(seed: int, count: int = 5) -> Surface:

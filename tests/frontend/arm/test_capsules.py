@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import trimesh
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from meshed_arm import link_meshes
@@ -13,6 +12,7 @@ from meshed_arm import link_meshes
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.capsule_cover import capsules_around
 from cellcolor.frontend.arm.capsules import Capsule, capsule_around
+from examples import examples
 
 
 def distances(capsule: Capsule, points: Array) -> Array:

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -19,6 +18,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot, load_robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.contact.collision import body_ends, hits_itself
+from examples import examples
 
 ARM, TOOL = ROBOTS / "ur5.urdf", ROBOTS / "polishing_tool.urdf"
 LIMIT = '<limit lower="-9" upper="9" effort="1" velocity="1"/>'

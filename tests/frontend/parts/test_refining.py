@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -15,6 +14,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.lab.families.meshes import make_mesh
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
+from examples import examples
 
 
 def on_unit_sphere(seed: int) -> Surface:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 import networkx as nx
-from examples import examples
 from hypothesis import given, reject
 from hypothesis import strategies as st
 from library import PAPER
@@ -23,6 +22,7 @@ from cellcolor.solvers.bounds.conflicts import MergedCell, conflicts
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 RED, BLUE, GREEN = 0, 1, 2
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import combinations, product
 
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from rooms import ISLAND_BETWEEN, ROUND_A_PETAL, can_be_drawn, room, rooms
@@ -20,6 +19,7 @@ from cellcolor.solvers.bounds.merged_cells import merge_cells
 from cellcolor.solvers.bounds.tangles import TangledSegment, Tangles, Touching
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 RED, BLUE, GREEN = 0, 1, 2
 
