@@ -47,7 +47,7 @@ _ROOMS = {
     "cellcolor.oracle": ("PathVerdict", "ProvenRange", "Verdict"),
     "cellcolor.painting.paint": ("Painted",),
     "cellcolor.questions.front": ("Front", "FrontPoint"),
-    "cellcolor.questions.places": ("Box",),
+    "cellcolor.questions.places": ("WorldBox",),
     "cellcolor.tool_paths.cover": ("Covered",),
 }
 _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
@@ -55,7 +55,6 @@ _ROOM_OF = {name: room for room, names in _ROOMS.items() for name in names}
 __all__ = [
     "OUTSIDE",
     "Bound",
-    "Box",
     "Cell",
     "CellDivision",
     "CellcolorError",
@@ -92,6 +91,7 @@ __all__ = [
     "Trajectory",
     "TrajectoryVerdict",
     "Verdict",
+    "WorldBox",
     "__version__",
     "build",
     "check",

@@ -54,6 +54,6 @@ from cellcolor.oracle import Verdict as Verdict
 from cellcolor.painting.paint import Painted as Painted
 from cellcolor.questions.front import Front as Front
 from cellcolor.questions.front import FrontPoint as FrontPoint
-from cellcolor.questions.places import Box as Box
+from cellcolor.questions.places import WorldBox as WorldBox
 from cellcolor.tool_paths.cover import Covered as Covered
 from cellcolor.version import __version__ as __version__

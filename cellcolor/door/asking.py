@@ -39,7 +39,8 @@ def tradeoff(
     Args:
         source: a scene, a labelled surface or an instance: its file, its shipped name, the value.
         weights: of each vertex (n,), as a factor of its area: quality, urgency; None for 1.
-        required: vertices that have to be covered, a mask (n,) or a :class:`~cellcolor.Box`.
+        required: vertices that have to be covered: a mask (n,) or a
+            :class:`~cellcolor.questions.places.WorldBox`.
         left_alone: vertices that must not be covered, the same kinds; nothing is asked of them.
         time_limit: seconds for all of it, None for as long as it takes.
         workers: CP-SAT's search workers, None for its portfolio.

@@ -1,6 +1,6 @@
 """A scene prepared: all that it names read and put in place, arm, part, obstacles, tests.
 
-What is read is kept apart by what it belongs to: the arm (:class:`PreparedArm`), what stands around
+What is read is kept apart by what it belongs to: the arm (`PreparedArm`), what stands around
 it, and the part, which is kept in its own frame. So the same part can be asked about elsewhere
 (:meth:`PreparedScene.at`), and nothing is read or built again.
 """

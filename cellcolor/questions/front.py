@@ -116,7 +116,7 @@ class Front:
         Args:
             lift_off_price: of one lift-off.
             uncovered_price: of all that can be covered, if all of it were left out. Where it is
-                priced by the square metre, that price times :attr:`weight`.
+                priced by the square metre, that price times ``weight``.
 
         Raises:
             InputError: a price is negative or no number, or nothing is known.

@@ -13,11 +13,11 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
 
-__all__ = ["Box", "Place", "chosen", "left_alone", "read_place", "read_weights"]
+__all__ = ["Place", "WorldBox", "chosen", "left_alone", "read_place", "read_weights"]
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class WorldBox:
     """All between two corners, along the axes of the world, m.
 
     Raises:
@@ -35,7 +35,7 @@ class Box:
             raise InputError(None, None, "the box is empty: its first corner is the lowest one")
 
 
-Place = Box | Sequence[bool] | Mask
+Place = WorldBox | Sequence[bool] | Mask
 """A box, or one truth value for each vertex."""
 
 
@@ -48,7 +48,7 @@ def chosen(surface: LabelledSurface, place: Place, field: str) -> Mask:
     Raises:
         InputError: a mask has another number of vertices, or is none of truth values.
     """
-    if isinstance(place, Box):
+    if isinstance(place, WorldBox):
         inside = (surface.vertices >= place.lowest) & (surface.vertices <= place.highest)
         return np.asarray(inside.all(axis=1))
     mask = np.asarray(place)
@@ -91,7 +91,7 @@ def read_place(text: str, field: str) -> Place:
     if len(words) == 6:
         try:
             x, y, z, a, b, c = map(float, words)
-            return Box((x, y, z), (a, b, c))
+            return WorldBox((x, y, z), (a, b, c))
         except ValueError as error:
             raise InputError(None, field, "a box is six numbers: x,y,z,x,y,z") from error
         except InputError as error:

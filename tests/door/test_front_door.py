@@ -28,6 +28,8 @@ PUBLIC = [
     "Drawing",
     "Edge",
     "Fault",
+    "Front",
+    "FrontPoint",
     "InputError",
     "Instance",
     "JointPlan",
@@ -50,6 +52,7 @@ PUBLIC = [
     "Trajectory",
     "TrajectoryVerdict",
     "Verdict",
+    "WorldBox",
     "__version__",
     "build",
     "check",
@@ -67,6 +70,7 @@ PUBLIC = [
     "show",
     "show_versions",
     "solve",
+    "tradeoff",
 ]
 """Whoever changes this list changes what others rely on."""
 

@@ -104,7 +104,7 @@ def test_weights_and_places() -> None:
     urgent = np.array([9.0 if own == (2,) else 1.0 for own in STRIP.vertex_colors])
     first = cellcolor.tradeoff(STRIP, weights=urgent).points[0]
     assert STRIP.vertex_colors[0] != (2,) and first.left_out == (0, 1)  # only C is covered
-    right = cellcolor.Box((9.5, -9.0, -9.0), (99.0, 99.0, 9.0))
+    right = cellcolor.WorldBox((9.5, -9.0, -9.0), (99.0, 99.0, 9.0))
     needed = cellcolor.tradeoff(STRIP, required=right)
     # One segment covers what is required and nothing else; two take B as well.
     assert [point.left_out for point in needed] == [(0, 1), (0,), ()]
@@ -133,7 +133,7 @@ def test_what_cannot_be_asked_is_refused(given: dict[str, Any], field: str) -> N
 
 def test_an_empty_box_is_refused() -> None:
     with pytest.raises(cellcolor.InputError, match="empty"):
-        cellcolor.Box((0, 0, 1), (1, 1, 0))
+        cellcolor.WorldBox((0, 0, 1), (1, 1, 0))
 
 
 def test_the_command_prints_a_row_for_each_point(
