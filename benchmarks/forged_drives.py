@@ -82,7 +82,7 @@ def honest_accepted(plans: list[PlannedScene], drives: list[Honest]) -> bool:
 def judged(made: PlannedScene, trajectory: Trajectory) -> TrajectoryVerdict:
     """The verdict, with the proved minimum beside it."""
     least = made.solution.lift_offs
-    return check_trajectory(made.built.prepared, made.built, trajectory, minimum_lift_offs=least)
+    return check_trajectory(made.built, trajectory, minimum_lift_offs=least)
 
 
 if __name__ == "__main__":

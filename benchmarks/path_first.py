@@ -29,7 +29,6 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import FaultKind
 from cellcolor.frontend import BuildResult, Scene, build_surface
-from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.lab.path_first import Stroke, fewest_lift_offs, fewest_strokes
 from cellcolor.lab.raster import Raster, raster
 from cellcolor.trajectory_checker.check import check_trajectory
@@ -61,16 +60,16 @@ class Counted:
     judged: int
 
 
-def counted(prepared: PreparedScene, built: BuildResult, angle: float, spacing: float) -> Counted:
+def counted(built: BuildResult, angle: float, spacing: float) -> Counted:
     """The raster path in one direction, and what it costs.
 
     Args:
-        prepared: the scene, without the keys of motions, so that no area is judged.
-        built: what was built of it.
+        built: the scene, without the keys of motions, so that no area is judged.
         angle: of the raster, rad.
         spacing: between its passes, m.
     """
     # Points that a sliver policy gave up are left out on both sides of the comparison.
+    prepared = built.prepared
     covered = (built.node_color >= 0).any(axis=1)
     path = raster(built.surface, prepared.surface.normals, covered, angle, spacing)
     found = prepared.arm.inverse(path.points, -path.normals)
@@ -80,15 +79,15 @@ def counted(prepared: PreparedScene, built: BuildResult, angle: float, spacing: 
     robot = prepared.robot
     strokes = fewest_strokes(path, configurations, valid, robot.lower, robot.upper, JUMP)
     trajectory = as_trajectory(path, strokes, robot.joint_names)
-    contact = accepted(prepared, built, trajectory)
+    contact = accepted(built, trajectory)
     begins = np.count_nonzero(contact & ~np.concatenate([[False], contact[:-1]]))
     optimistic = fewest_lift_offs(valid[valid.any(axis=1)])
     return Counted(path, strokes, trajectory, contact, optimistic, begins - 1)
 
 
-def accepted(prepared: PreparedScene, built: BuildResult, trajectory: Trajectory) -> Mask:
+def accepted(built: BuildResult, trajectory: Trajectory) -> Mask:
     """The samples in contact that the judge lets pass."""
-    verdict = check_trajectory(prepared, built, trajectory, timed=False)
+    verdict = check_trajectory(built, trajectory, timed=False)
     contact = trajectory.contact.copy()
     for kind in SPLITTING:
         faults = verdict.of_kind(kind)
@@ -133,10 +132,9 @@ def row(file: Path) -> str:
     scene = Scene.read(file)
     motion = scene.setup.motion
     assert motion is not None
-    built = build_surface(scene)
-    prepared = prepare(scene.with_setup(scene.setup.varied(motion=None)))
+    built = build_surface(scene.with_setup(scene.setup.varied(motion=None)))
     angles = (np.arange(DIRECTIONS) * np.pi / DIRECTIONS).tolist()
-    each = [counted(prepared, built, angle, motion.spacing_m) for angle in angles]
+    each = [counted(built, angle, motion.spacing_m) for angle in angles]
     proved = cellcolor.solve(built)
     assert proved.solution.proved_for_surface
     optimistic, judged = (

@@ -26,8 +26,8 @@ def main(count: int) -> None:
     """Plant, judge and print."""
     begun = time.monotonic()
     untouched = [rasters.cap(), rasters.square()]
-    for prepared, built, trajectory in untouched:
-        verdict = check_trajectory(prepared, built, trajectory)
+    for _, built, trajectory in untouched:
+        verdict = check_trajectory(built, trajectory)
         faults = sum(verdict.fault_counts.values())
         print(f"untouched: {verdict}, {faults} faults", flush=True)
     planted_of, found_of = Counter[str](), Counter[str]()
@@ -38,7 +38,7 @@ def main(count: int) -> None:
         place = 0 if name == "1 mm inside an obstacle" else number // len(names) % 2
         prepared, built, trajectory = untouched[place]
         planted = PLANTERS[name](prepared, trajectory, np.random.default_rng(number))
-        verdict = check_trajectory(prepared, built, planted.trajectory)
+        verdict = check_trajectory(built, planted.trajectory)
         planted_of[name] += 1
         if found(planted, verdict):
             found_of[name] += 1

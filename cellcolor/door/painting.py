@@ -64,7 +64,6 @@ def paint(
     from cellcolor.motion.scene_painting import paint_scene
 
     return paint_scene(
-        subject.built.prepared,
         subject.built,
         decomposition,
         solution,

@@ -193,7 +193,6 @@ def plan(
                 raise OutOfTime("the time limit came before any division was known")
         with clock.timed("painting"):
             painting = paint_scene(
-                subject.build().prepared,
                 subject.build(),
                 subject.decomposition,
                 result.solution,
@@ -207,7 +206,6 @@ def plan(
         built = painting.built
         with clock.timed("motion"):
             planned = plan_motion(
-                built.prepared,
                 built,
                 painting.painted,
                 painting.normals,
@@ -219,7 +217,6 @@ def plan(
         solution = result.solution
         with clock.timed("judging"):
             verdict = check_trajectory(
-                built.prepared,
                 built,
                 planned.trajectory,
                 minimum_lift_offs=solution.lift_offs if solution.proved_for_surface else None,

@@ -57,7 +57,6 @@ def judge_trajectory(
     # Half of the time is for the judge, who has something to say whatever is proved.
     bounds = prove(built.surface, deadline.share(0.5)).bounds
     return check_trajectory(
-        built.prepared,
         built,
         given,
         timed=timed,

@@ -14,7 +14,6 @@ from cellcolor.data.trajectory import LeftOut, Trajectory
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.motion.assembly import assembled
 from cellcolor.motion.following import joint_limits
@@ -61,7 +60,6 @@ class MotionPlan:
 
 
 def plan_motion(
-    prepared: PreparedScene,
     built: BuildResult,
     painted: Painted,
     normals: Array,
@@ -75,8 +73,7 @@ def plan_motion(
     """Plan a motion that covers a painted surface (docs/motion.md).
 
     Args:
-        prepared: the scene.
-        built: what was built of it.
+        built: the scene and its labelled surface.
         painted: its surface in segments.
         normals: (n, 3) outward unit normals at the vertices of the painted surface.
         pattern: of the tool paths.
@@ -90,6 +87,7 @@ def plan_motion(
             follow no path at all.
         OutOfTime: the deadline came first.
     """
+    prepared = built.prepared
     motion = motion_of(prepared)
     speeds, home, limits = (
         speeds_of(motion, prepared.robot),

@@ -19,7 +19,6 @@ from cellcolor.decomposition import Decomposition, decomposition_of
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult, result_of
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.frontend.stages import Stages, run_stages
@@ -57,7 +56,6 @@ class ScenePainting:
 
 
 def paint_scene(
-    prepared: PreparedScene,
     built: BuildResult,
     decomposition: Decomposition,
     solution: Solution,
@@ -69,8 +67,7 @@ def paint_scene(
     """Paint a solution of a scene, and ask the scene about every vertex that is new.
 
     Args:
-        prepared: the scene.
-        built: what was made of it.
+        built: the scene and its labelled surface.
         decomposition: of the built surface.
         solution: of that, with a division.
         tool_radius_m: of the footprint; None for that of the setup, or for one mean mesh edge.
@@ -83,6 +80,7 @@ def paint_scene(
         OutOfTime: the deadline came first.
         TooLarge: a painting would need too many vertices.
     """
+    prepared = built.prepared
     prepared.arm.check_named()  # on a refined surface sheets would be others
     clock = StageClock(deadline, progress)
     motion = prepared.setup.motion

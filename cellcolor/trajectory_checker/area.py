@@ -11,7 +11,6 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import CoveredArea
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.claims import judge_left_out
 from cellcolor.trajectory_checker.covered import excused, patches, reach, reachable_areas
 from cellcolor.trajectory_checker.dense import Dense
@@ -42,7 +41,6 @@ def thinned(dense: Dense, rows: Index, spacing: float) -> Mask:
 
 
 def judge_area(
-    prepared: PreparedScene,
     built: BuildResult,
     trajectory: Trajectory,
     dense: Dense,
@@ -81,7 +79,7 @@ def judge_area(
         else set(trajectory.segment[trajectory.contact].tolist())
     )
     right = excused(
-        prepared,
+        built.prepared,
         trajectory,
         sorted(segments),
         dense,

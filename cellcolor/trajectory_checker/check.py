@@ -37,7 +37,6 @@ _WITHOUT_SPACING = 0.005  # m; the same where the setup has no spacing
 
 
 def check_trajectory(
-    prepared: PreparedScene,
     built: BuildResult,
     trajectory: Trajectory,
     *,
@@ -51,8 +50,7 @@ def check_trajectory(
     """Judge a trajectory by its scene alone, whatever made it.
 
     Args:
-        prepared: the scene.
-        built: the same scene's labelled surface: the area that has a color has to be covered.
+        built: the scene and its labelled surface: the area that has a color has to be covered.
         trajectory: what is judged.
         timed: whether its times mean anything; without them velocities are not judged.
         tells: whether it can say what it leaves out. A table cannot: of it whatever no branch can
@@ -69,11 +67,11 @@ def check_trajectory(
         OutOfTime: the deadline came first.
         TooLarge: surface or trajectory would not fit into memory.
     """
-    report = progress or (lambda _: None)
+    report, prepared = progress or (lambda _: None), built.prepared
     robot, motion = prepared.robot, prepared.setup.motion
     prepared.arm.check_named()
     _check_task(prepared)
-    _check_mesh(prepared, built)
+    _check_mesh(built)
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)
     notes: list[str] = []
@@ -107,7 +105,7 @@ def check_trajectory(
         report("area")
         deadline.check()
         covered = judge_area(
-            prepared, built, trajectory, dense, rows, located, branches, touching, fine,
+            built, trajectory, dense, rows, located, branches, touching, fine,
             motion.spacing_m, limits or Limits(), tells, faults, deadline,
         )  # fmt: skip
         notes += _given_up(built)
@@ -166,9 +164,9 @@ def _check_task(prepared: PreparedScene) -> None:
         raise InputError(None, "robot.kinematics", message)
 
 
-def _check_mesh(prepared: PreparedScene, built: BuildResult) -> None:
+def _check_mesh(built: BuildResult) -> None:
     """Refuse two meshes: a crack of one means nothing on the other."""
-    mesh, surface = prepared.surface, built.surface
+    mesh, surface = built.prepared.surface, built.surface
     same = np.array_equal(mesh.vertices, surface.vertices) and np.array_equal(
         mesh.faces, surface.faces
     )

@@ -19,7 +19,6 @@ from cellcolor.arrays import Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import Scene, build_surface
-from cellcolor.frontend.prepared import prepare
 from cellcolor.motion.scene_painting import paint_scene
 from cellcolor.painting.paint import paint
 from cellcolor.solvers.checked import solve
@@ -51,7 +50,7 @@ def main(folder: Path) -> None:
     decomposition = decomposition_of(built.surface)
     solution = solve(decomposition.instance, Options("surface"))
     drawn = paint(built.surface, decomposition, solution)
-    asked = paint_scene(prepare(scene), built, decomposition, solution)
+    asked = paint_scene(built, decomposition, solution)
     report = asked.painted.borders
     assert report is not None
     matplotlib.use("Agg")

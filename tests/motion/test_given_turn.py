@@ -28,9 +28,7 @@ def test_a_motion_with_two_turns_is_valid_and_lifts_off_to_change_them() -> None
     motion = planned_scene(scene.varied(object={"size_x_m": 0.12, "size_y_m": 0.4}))
     trajectory, surface = motion.plan.trajectory, motion.built.surface
     assert trajectory.lift_offs == motion.lift_offs >= 1
-    verdict = check_trajectory(
-        motion.prepared, motion.built, trajectory, minimum_lift_offs=motion.lift_offs
-    )
+    verdict = check_trajectory(motion.built, trajectory, minimum_lift_offs=motion.lift_offs)
     assert verdict.valid, verdict.faults
     numbers = []
     for first, after in trajectory.strokes:

@@ -15,28 +15,26 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.conditioning import task_determinants
 from cellcolor.frontend.build import BuildResult
-from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion import scene_painting
 from cellcolor.motion.scene_painting import ScenePainting, color_costs, paint_scene
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
-Scene = tuple[PreparedScene, BuildResult]
-
 
 @pytest.fixture(scope="module")
-def wok() -> Scene:
+def wok() -> BuildResult:
     """The wok before an obstacle, so small that what is divided has to be refined."""
     plain = shipped("wok_obstacle", 150)
     scene = plain.varied(setup=plain.setup.varied(slivers=None))
-    return prepare(scene), build_surface(scene)
+    return build_surface(scene)
 
 
-def by_chance(wok: Scene, seed: int) -> ScenePainting:
+def by_chance(wok: BuildResult, seed: int) -> ScenePainting:
     """A painting of a division that no solver made."""
-    decomposition = decomposition_of(wok[1].surface)
+    decomposition = decomposition_of(wok.surface)
     solution = random_solution(decomposition.instance, 2, random.Random(seed))
-    return paint_scene(*wok, decomposition, solution)
+    return paint_scene(wok, decomposition, solution)
 
 
 def reaches(prepared: PreparedScene, found: ScenePainting) -> bool:
@@ -52,16 +50,16 @@ def reaches(prepared: PreparedScene, found: ScenePainting) -> bool:
 @pytest.mark.parametrize("name", ["wok", "hemisphere_tilted"])
 def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
     scene = shipped(name, 400)
-    prepared, built = prepare(scene), build_surface(scene)
+    built = build_surface(scene)
     decomposition = decomposition_of(built.surface)
     solution = solve(decomposition.instance, Options("surface"))
     told: list[str] = []
-    found = paint_scene(prepared, built, decomposition, solution, progress=told.append)
+    found = paint_scene(built, decomposition, solution, progress=told.append)
     assert found.painted.segments == solution.segments == found.painted.minima[0]
     assert found.painted.minima == (solution.segments,) and found.painted.refused == ()
     assert_whole(built.surface, found.painted, solution)
     assert np.allclose(np.linalg.norm(found.normals, axis=1), 1)
-    assert reaches(prepared, found)
+    assert reaches(built.prepared, found)
     borders = found.painted.borders
     assert borders.tool_radius_m == scene.setup.motion.tool_radius_m
     assert borders.after.cost < borders.before.cost
@@ -69,31 +67,33 @@ def test_a_solved_scene_is_painted_as_proved(name: str) -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 1, 3])
-def test_what_the_scene_refuses_is_solved_again(wok: Scene, seed: int) -> None:
+def test_what_the_scene_refuses_is_solved_again(wok: BuildResult, seed: int) -> None:
     """Divisions drawn at random copy colors far beyond where they reach."""
     found = by_chance(wok, seed)
     assert len(found.painted.minima) > 1 and found.painted.refused == ()
     assert found.painted.minima[-1] == found.solution.segments == found.painted.segments
-    assert len(found.built.surface.vertices) > len(wok[1].surface.vertices)
+    assert len(found.built.surface.vertices) > len(wok.surface.vertices)
     assert_whole(found.built.surface, found.painted, found.solution)
-    assert reaches(wok[0], found)
+    assert reaches(wok.prepared, found)
     # What the second proof is of: every color of the finer surface is asked of the robot.
-    count = len(wok[1].surface.vertices)
-    assert found.built.surface.vertex_colors[:count] == wok[1].surface.vertex_colors
+    count = len(wok.surface.vertices)
+    assert found.built.surface.vertex_colors[:count] == wok.surface.vertex_colors
 
 
-def test_a_refined_painting_that_the_scene_takes_is_kept(wok: Scene) -> None:
+def test_a_refined_painting_that_the_scene_takes_is_kept(wok: BuildResult) -> None:
     found = by_chance(wok, 2)
-    assert len(found.painted.surface.vertices) > len(wok[1].surface.vertices)
-    assert len(found.painted.minima) == 1 and found.built is wok[1]
-    assert reaches(wok[0], found)
+    assert len(found.painted.surface.vertices) > len(wok.surface.vertices)
+    assert len(found.painted.minima) == 1 and found.built is wok
+    assert reaches(wok.prepared, found)
 
 
-def test_in_the_end_what_is_refused_is_told(wok: Scene, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_in_the_end_what_is_refused_is_told(
+    wok: BuildResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """With no second try: the vertices named are those that fail when asked once more."""
     monkeypatch.setattr(scene_painting, "_TIMES", 1)
     found = by_chance(wok, 0)
-    assert found.painted.refused and not reaches(wok[0], found)
+    assert found.painted.refused and not reaches(wok.prepared, found)
     kept = np.ones(len(found.normals), dtype=bool)
     kept[list(found.painted.refused)] = False
     colors = [
@@ -101,12 +101,12 @@ def test_in_the_end_what_is_refused_is_told(wok: Scene, monkeypatch: pytest.Monk
         for color, keep in zip(found.painted.plan.vertex_colors, kept, strict=True)
     ]
     plan = replace(found.painted.plan, vertex_colors=tuple(colors))
-    assert reaches(wok[0], replace(found, painted=replace(found.painted, plan=plan)))
+    assert reaches(wok.prepared, replace(found, painted=replace(found.painted, plan=plan)))
 
 
-def test_costs_by_hand(wok: Scene) -> None:
+def test_costs_by_hand(wok: BuildResult) -> None:
     """Each valid candidate by itself: every turn of every joint tried, and its determinant."""
-    prepared, built = wok
+    prepared, built = wok.prepared, wok
     candidates, robot = built.stages.candidates, prepared.robot
     cost = color_costs(robot, candidates)
     rows, branches = np.nonzero(candidates.valid)
@@ -125,9 +125,9 @@ def test_costs_by_hand(wok: Scene) -> None:
     assert (cost[~candidates.valid] == 1).all()
 
 
-def test_a_joint_without_limits_has_room_everywhere(wok: Scene) -> None:
+def test_a_joint_without_limits_has_room_everywhere(wok: BuildResult) -> None:
     """As one whose limits are so wide that no angle comes near them."""
-    prepared, built = wok
+    prepared, built = wok.prepared, wok
     far = np.full(6, 1e4)
     endless = replace(prepared.robot, lower=np.full(6, -np.inf), upper=np.full(6, np.inf))
     wide = replace(prepared.robot, lower=-far, upper=far)

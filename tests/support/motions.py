@@ -12,7 +12,7 @@ import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend.build import BuildResult, build_surface
-from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.scene import Scene
 from cellcolor.motion.plan import MotionPlan, plan_motion
 from cellcolor.painting.paint import Painted, paint
@@ -32,7 +32,8 @@ class Planned:
 
 def painted_scene(scene: Scene) -> tuple[PreparedScene, BuildResult, Painted, Array, int]:
     """A scene painted: with the normals of the painting, and the lift-offs that were proved."""
-    prepared, built = prepare(scene), build_surface(scene)
+    built = build_surface(scene)
+    prepared = built.prepared
     decomposition = decomposition_of(built.surface)
     solution = cellcolor.solve(decomposition.instance).solution
     assert solution is not None
@@ -47,7 +48,7 @@ def painted_scene(scene: Scene) -> tuple[PreparedScene, BuildResult, Painted, Ar
 def planned_scene(scene: Scene, pattern: str = "contour") -> Planned:
     """A motion over a scene's object."""
     prepared, built, painted, normals, lift_offs = painted_scene(scene)
-    plan = plan_motion(prepared, built, painted, normals, pattern=pattern)
+    plan = plan_motion(built, painted, normals, pattern=pattern)
     return Planned(prepared, built, painted, normals, lift_offs, plan)
 
 

@@ -16,7 +16,7 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.frontend.build import BuildResult, build_surface
-from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.scene import Scene
 
 STEP = 0.001  # m, between samples
@@ -44,7 +44,8 @@ def turned() -> tuple[PreparedScene, BuildResult, Trajectory]:
 
 def _made(scene: Scene) -> tuple[PreparedScene, BuildResult, Trajectory]:
     scene = scene.varied(object={"target_vertices": 300})
-    prepared, built = prepare(scene), build_surface(scene)
+    built = build_surface(scene)
+    prepared = built.prepared
     counts = [(built.node_color == color).sum() for color in range(len(built.surface.colors))]
     branch = built.stages.cleaned.coloring.branch[int(np.argmax(counts))]
     return prepared, built, raster(prepared, branch)

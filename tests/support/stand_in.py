@@ -48,7 +48,7 @@ class StandIn:
     @cached_property
     def verdict(self) -> TrajectoryVerdict:
         least = self.solution.lift_offs
-        return check_trajectory(self.prepared, self.built, self.trajectory, minimum_lift_offs=least)
+        return check_trajectory(self.built, self.trajectory, minimum_lift_offs=least)
 
     @property
     def measures(self) -> tuple[PathMeasures, ...]:

@@ -32,8 +32,8 @@ from cellcolor.trajectory_checker.tolerances import Limits
 
 
 def judged(trajectory: Trajectory, **options: Any) -> TrajectoryVerdict:
-    prepared, built, _ = rasters.cap()
-    return check_trajectory(prepared, built, trajectory, **options)
+    _, built, _ = rasters.cap()
+    return check_trajectory(built, trajectory, **options)
 
 
 def moved(points: Array, normals: Array, samples: slice) -> Trajectory:
@@ -175,7 +175,7 @@ def test_cracks_that_are_crossed() -> None:
         for first, after in trajectory.strokes:
             expected += crossings(trajectory.points[first:after, :2], walls)
     torn = replace(built, surface=replace(built.surface, cracks=tuple(cracks)))
-    verdict = check_trajectory(prepared, torn, trajectory)
+    verdict = check_trajectory(torn, trajectory)
     assert expected > 20
     assert verdict.fault_counts == {"crack": expected}
     colors = built.surface.vertex_colors
@@ -185,7 +185,7 @@ def test_cracks_that_are_crossed() -> None:
     )
     assert other
     torn = replace(built, surface=replace(built.surface, cracks=other))
-    assert check_trajectory(prepared, torn, trajectory).valid
+    assert check_trajectory(torn, trajectory).valid
 
 
 def on_the_way(trajectory: Trajectory) -> str:
@@ -221,7 +221,7 @@ def test_force_and_conditioning_are_not_asked_on_the_way() -> None:
     from cellcolor.frontend.prepared import prepare
 
     _, built, trajectory = rasters.cap()
-    verdict = check_trajectory(prepare(weak), built, trajectory)
+    verdict = check_trajectory(replace(built, prepared=prepare(weak)), trajectory)
     faults = verdict.of_kind("invalid")
     assert {fault.reason for fault in faults} == {"torque"}
     assert [(f.sample, f.last_sample) for f in faults] == [
@@ -298,11 +298,11 @@ def test_what_is_rightly_left_out_is_not_uncovered() -> None:
         contact=trajectory.contact & (trajectory.segment != 1),
         left_out=(LeftOut(0, 0.01, "torque", (0.0, 0.0, 0.0)),),
     )
-    verdict = check_trajectory(weak, built, missing)
+    verdict = check_trajectory(replace(built, prepared=weak), missing)
     assert verdict.covered is not None
     assert verdict.covered.left_out_share > 0.3
     assert not verdict.of_kind("uncovered")
-    unstated = check_trajectory(weak, built, replace(missing, left_out=()))
+    unstated = check_trajectory(replace(built, prepared=weak), replace(missing, left_out=()))
     assert unstated.of_kind("uncovered")
 
 
@@ -327,8 +327,8 @@ def test_a_repeated_stretch_may_be_stated() -> None:
 
 def test_the_area_of_a_flat_raster() -> None:
     """Lines 8.57 mm apart: as many visits as bands of 10 mm make of the area between them."""
-    prepared, built, trajectory = rasters.square()
-    covered = check_trajectory(prepared, built, trajectory).covered
+    _, built, trajectory = rasters.square()
+    covered = check_trajectory(built, trajectory).covered
     assert covered is not None
     assert covered.reachable_m2 == pytest.approx(0.16 * 0.12)
     assert (covered.covered_share, covered.closely_covered_share) == pytest.approx((1.0, 1.0))
@@ -346,7 +346,7 @@ def test_shares_as_by_hand_on_a_flat_square() -> None:
     prepared, built, trajectory = rasters.square()
     kept = trajectory.contact & (trajectory.points[:, 1] < np.median(trajectory.points[:, 1]))
     half = replace(trajectory, contact=kept)
-    covered = check_trajectory(prepared, built, half).covered
+    covered = check_trajectory(built, half).covered
     assert covered is not None
     # The rectangle is 0.12 m wide.
     last = trajectory.points[kept, 1].max()
@@ -379,7 +379,7 @@ def test_two_meshes_are_refused() -> None:
     marked[0] = True
     finer = replace(prepared, surface=bisected(prepared.surface, marked, "here"))
     with pytest.raises(InputError, match="a trajectory is judged on one"):
-        check_trajectory(finer, built, trajectory)
+        check_trajectory(replace(built, prepared=finer), trajectory)
 
 
 def test_a_scene_with_bisected_borders_is_judged_on_its_own_mesh() -> None:

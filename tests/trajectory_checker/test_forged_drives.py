@@ -44,8 +44,8 @@ def cap() -> Honest:
 
 
 def judged(trajectory: Trajectory) -> TrajectoryVerdict:
-    prepared, built, _ = rasters.cap()
-    return check_trajectory(prepared, built, trajectory, minimum_lift_offs=1)
+    _, built, _ = rasters.cap()
+    return check_trajectory(built, trajectory, minimum_lift_offs=1)
 
 
 @pytest.mark.parametrize("name", HONEST)
@@ -65,9 +65,7 @@ def test_forged_plans_are_refused(name: str) -> None:
     honest = Honest(made.prepared, made.plan.trajectory, made.lift_offs)
     for seed in range(3):
         forged = FORGERS[name](honest, np.random.default_rng(seed))
-        verdict = check_trajectory(
-            made.prepared, made.built, forged, minimum_lift_offs=made.lift_offs
-        )
+        verdict = check_trajectory(made.built, forged, minimum_lift_offs=made.lift_offs)
         assert not verdict.valid, seed
 
 
@@ -79,12 +77,10 @@ def test_every_stroke_of_a_plan_is_missed(scene: str) -> None:
     made = planned(scene, 1000)
     honest = Honest(made.prepared, made.plan.trajectory, made.lift_offs)
     strokes = len(honest.trajectory.strokes)
-    assert check_trajectory(
-        made.prepared, made.built, honest.trajectory, minimum_lift_offs=made.lift_offs
-    ).valid
+    assert check_trajectory(made.built, honest.trajectory, minimum_lift_offs=made.lift_offs).valid
     for number in range(strokes):
         # The number of lift-offs is not what tells it: without a known minimum it is refused, too.
-        verdict = check_trajectory(made.prepared, made.built, dropped_stroke(honest, number))
+        verdict = check_trajectory(made.built, dropped_stroke(honest, number))
         assert verdict.of_kind("uncovered"), number
 
 
@@ -130,9 +126,9 @@ def test_a_stroke_that_is_not_there_is_area_that_is_not_covered() -> None:
 
 def test_the_proved_minimum_is_held_against_the_drive() -> None:
     """One lift-off fewer contradicts the proof; one more is a fault unless it is stated."""
-    prepared, built, trajectory = rasters.cap()
+    _, built, trajectory = rasters.cap()
     for minimum, said in ((0, "proved to be enough"), (2, "contradicts the proved minimum of 2")):
-        verdict = check_trajectory(prepared, built, trajectory, minimum_lift_offs=minimum)
+        verdict = check_trajectory(built, trajectory, minimum_lift_offs=minimum)
         (fault,) = verdict.faults
         assert fault.kind == "lift-offs"
         assert said in fault.text
@@ -171,7 +167,7 @@ def test_the_tool_keeps_the_speed_of_the_setup() -> None:
     for share, valid in ((1.02, True), (0.97, False)):
         setup = prepared.setup.varied(motion={"speed_m_per_s": share * fastest})
         scene = replace(prepared, scene=prepared.scene.with_setup(setup))
-        verdict = check_trajectory(scene, built, trajectory)
+        verdict = check_trajectory(replace(built, prepared=scene), trajectory)
         assert verdict.valid == valid
         if not valid:
             assert "the tool moves at" in verdict.faults[0].text

@@ -18,14 +18,13 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.frontend.build import build_surface
-from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.at_vertices import at_vertices
 from cellcolor.trajectory_checker.check import check_trajectory
 
 
 def judged(trajectory: Trajectory) -> TrajectoryVerdict:
-    prepared, built, _ = rasters.turned()
-    return check_trajectory(prepared, built, trajectory, timed=False)
+    _, built, _ = rasters.turned()
+    return check_trajectory(built, trajectory, timed=False)
 
 
 def with_turn(first: int, after: int, degrees: float) -> Trajectory:
@@ -80,7 +79,7 @@ def test_where_the_rule_says_nothing_there_is_no_contact() -> None:
     normal = trajectory.normals[trajectory.contact]
     assert np.allclose(normal, normal[0], atol=1e-12)
     scene = prepared.scene.with_setup(setup({"along": tuple(normal[0].tolist())}))
-    verdict = check_trajectory(prepare(scene), build_surface(scene), trajectory, timed=False)
+    verdict = check_trajectory(build_surface(scene), trajectory, timed=False)
     found = [(fault.sample, fault.last_sample) for fault in verdict.of_kind("turned")]
     assert found == [(first, after - 1) for first, after in trajectory.strokes]
     assert all("says nothing" in fault.text for fault in verdict.of_kind("turned"))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -18,7 +20,8 @@ def test_the_tool_keeps_its_margin_to_the_object(margin: float, kept: bool) -> N
     """Its body ends 10 mm above the tip, which is on a flat square, and is flat itself."""
     prepared, built, trajectory = rasters.square()
     setup = prepared.setup.varied(margins={"to_object_m": margin})
-    verdict = check_trajectory(prepare(prepared.scene.with_setup(setup)), built, trajectory)
+    wide = prepare(prepared.scene.with_setup(setup))
+    verdict = check_trajectory(replace(built, prepared=wide), trajectory)
     faults = [f for f in verdict.of_kind("invalid") if f.reason == "object collision"]
     assert bool(faults) != kept
     if not kept:
@@ -35,5 +38,5 @@ def test_other_margins_are_asked_for_as_well(key: str, reason: str) -> None:
     prepared, built, trajectory = rasters.square()
     setup = prepared.setup.varied(margins={key: 0.4})
     scene = prepared.scene.with_setup(setup).varied(ground={"height_m": -0.2})
-    verdict = check_trajectory(prepare(scene), built, trajectory)
+    verdict = check_trajectory(replace(built, prepared=prepare(scene)), trajectory)
     assert {f.reason for f in verdict.of_kind("invalid")} == {reason}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -32,6 +33,6 @@ def test_an_obstacle_in_the_way_is_found(kind: str, tmp_path: Path) -> None:
         return any(world.to_solid(*shape) < 0 for shape in shapes)
 
     first = next(sample for sample, q in enumerate(trajectory.joints) if hits(q))
-    verdict = check_trajectory(blocked, built, trajectory)
+    verdict = check_trajectory(replace(built, prepared=blocked), trajectory)
     found = [f for f in verdict.of_kind("invalid") if f.reason == "obstacle collision"]
     assert found and abs(min(fault.sample for fault in found) - first) <= 1

@@ -26,5 +26,5 @@ def test_planted_faults_are_found(name: str) -> None:
         if name == "1 mm inside an obstacle":  # only one of them has one
             prepared, built, trajectory = rasters.cap()
         planted = PLANTERS[name](prepared, trajectory, np.random.default_rng(seed))
-        verdict = check_trajectory(prepared, built, planted.trajectory)
+        verdict = check_trajectory(built, planted.trajectory)
         assert found(planted, verdict), (seed, planted.joint, planted.samples, verdict.faults)

@@ -402,7 +402,7 @@ def test_motions_are_neither_planned_nor_judged(built: BuildResult) -> None:
         segment=np.zeros(1, dtype=np.int64),
     )
     with pytest.raises(InputError, match="prismatic joint that moves"):
-        check_trajectory(prepare(built.scene), built, trajectory)
+        check_trajectory(built, trajectory)
 
 
 def test_reach_is_what_no_configuration_exceeds() -> None:
