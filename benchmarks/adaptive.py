@@ -32,7 +32,7 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import Scene
 from cellcolor.frontend.build import result_of
 from cellcolor.frontend.finer_borders import with_finer_borders
-from cellcolor.frontend.parts.refining import bisected
+from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Stages, run_stages

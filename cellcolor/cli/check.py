@@ -20,10 +20,10 @@ from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.check_error import CheckError
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.door.claims import format_of_claim
+from cellcolor.door.claims import format_of_claim, read_trajectory
+from cellcolor.door.judging import judge_trajectory
 from cellcolor.door.shipped import find_claim, find_file
 from cellcolor.door.subject import Subject
-from cellcolor.door.trajectories import judge_trajectory, read_trajectory
 from cellcolor.errors import CellcolorError, InputError
 
 __all__ = ["Request", "check_files"]

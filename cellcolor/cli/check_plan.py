@@ -66,7 +66,7 @@ def check_plan_file(
     if demands.cache is not None:
         is_folder_or_nothing(demands.cache)
 
-    from cellcolor.door.keeping_oracle import KeepingOracle
+    from cellcolor.door.oracle import KeepingOracle
 
     oracle = KeepingOracle(subject, demands.seconds, demands.cache)
     verdict = oracle.judge(claim, deadline=deadline)

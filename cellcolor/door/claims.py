@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from os import PathLike
-from typing import Any
+from pathlib import Path
+from typing import Any, TypeAlias
 
 import numpy as np
 
@@ -13,16 +14,20 @@ from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.door.trajectories import ReadTrajectory, is_table, read_trajectory
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
 
-__all__ = ["color_numbers", "format_of_claim", "read_claim"]
+__all__ = ["ReadTrajectory", "color_numbers", "format_of_claim", "read_claim", "read_trajectory"]
+
+ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
+"""A trajectory, or a table that a scene's arm has to complete."""
 
 
 def format_of_claim(file: str | PathLike[str]) -> str | None:
     """The format of what is to be checked; tables are told by their suffix, None if unreadable."""
-    if is_table(file):
+    if _is_table(file):
         return trajectory_file.FORMAT
     try:
         form = read_document(file).get("format")
@@ -41,6 +46,20 @@ def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
     if form == trajectory_file.FORMAT:
         return read_trajectory(file)
     return Plan.read(file) if form == plan_file.FORMAT else Solution.read(file)
+
+
+def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:
+    """What is in a trajectory's file.
+
+    Raises:
+        InputError: it cannot be used; names file and member, or file, line and column.
+    """
+    return read_trajectory_csv(file) if _is_table(file) else Trajectory.read(file)
+
+
+def _is_table(file: str | PathLike[str]) -> bool:
+    """Whether a file is a table of a trajectory, which its suffix says."""
+    return Path(file).suffix == ".csv"
 
 
 def color_numbers(surface: LabelledSurface, plan: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from os import PathLike
 from pathlib import Path
@@ -13,17 +14,18 @@ from cellcolor.checker.known_results import contradictions
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import FORMAT as TRAJECTORY
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.claims import format_of_claim
+from cellcolor.door.claims import ReadTrajectory, format_of_claim, read_trajectory
+from cellcolor.door.extras import extras_for
 from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_claim
-from cellcolor.door.subject import Solvable, open_subject
-from cellcolor.door.trajectories import judge_trajectory, read_trajectory
-from cellcolor.oracle import ProvenRange, Verdict
+from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.oracle import ProvenRange, Verdict, prove
 
-__all__ = ["check", "judge", "proven_range"]
+__all__ = ["check", "judge", "judge_trajectory", "proven_range"]
 
 
 @overload
@@ -97,6 +99,42 @@ def check(
     if not report.valid:
         return report
     return replace(report, problems=tuple(contradictions(graph, solution)))
+
+
+def judge_trajectory(
+    subject: Subject,
+    given: ReadTrajectory,
+    deadline: Deadline,
+    progress: Callable[[str], None] | None = None,
+) -> TrajectoryVerdict:
+    """The verdict on a trajectory for a scene, the proven minimum beside it if it is found in time.
+
+    Raises:
+        InputError: the subject is no scene, or the trajectory is of another arm.
+        OutOfTime: the deadline came before there was a verdict.
+    """
+    built = subject.build()
+    with extras_for("the front end"):
+        from cellcolor.trajectory_checker.check import check_trajectory
+        from cellcolor.trajectory_checker.other_planners import completed
+
+    report = progress or (lambda _: None)
+    tells = isinstance(given, Trajectory)
+    timed = isinstance(given, Trajectory) or given.times is not None
+    if isinstance(given, TrajectoryTable):
+        given = completed(given, built.robot, deadline)
+    report("proven minimum")
+    # Half of the time is for the judge, who has something to say whatever is proved.
+    bounds = prove(built.surface, deadline.share(0.5)).bounds
+    return check_trajectory(
+        built,
+        given,
+        timed=timed,
+        tells=tells,
+        minimum_lift_offs=max(0, bounds.lower - 1) if bounds.exact else None,
+        deadline=deadline,
+        progress=progress,
+    )
 
 
 def proven_range(

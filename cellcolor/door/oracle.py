@@ -1,11 +1,16 @@
-"""What is proved of one surface, and what that says of plans: ``cellcolor.Oracle``."""
+"""What is proved of one surface, and what that says of plans: ``cellcolor.Oracle``.
+
+Test suites and ``cellcolor check`` use an oracle that keeps its proofs on disk.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cached_property
 from os import PathLike
+from pathlib import Path
 from typing import Any, TypeAlias, overload
 
 from numpy.typing import NDArray
@@ -27,9 +32,10 @@ from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of
+from cellcolor.oracle.proof_cache import ProofCache
 from cellcolor.painting.paint import paint
 
-__all__ = ["AnyPlan", "Oracle"]
+__all__ = ["AnyPlan", "KeepingOracle", "Oracle"]
 
 AnyPlan: TypeAlias = (
     Plan
@@ -282,3 +288,51 @@ def _in_file(file: str | None) -> Iterator[None]:
         if error.file or file is None:
             raise
         raise error.in_file(file) from error
+
+
+class KeepingOracle(Oracle):
+    """An oracle that keeps what it proves on disk, and proves nothing that is kept there."""
+
+    def __init__(self, source: Solvable, time_limit: float, folder: Path | None) -> None:
+        """Open the surface; nothing is proved yet.
+
+        Args:
+            source: a labelled surface, a scene, or an instance that names its surface.
+            time_limit: seconds for the proof, and for building a scene before.
+            folder: where proofs are kept; None keeps none.
+
+        Raises:
+            InputError: the source cannot be used, or has no surface.
+            OutOfTime: the time limit came before there was a surface.
+        """
+        super().__init__(source, time_limit=time_limit)
+        self._seconds = time_limit
+        self._cache = None if folder is None else ProofCache(folder)
+        self._kept: Proof | None = None
+
+    def prove(self, deadline: Deadline) -> Proof:
+        """What is kept, or else what is proved now.
+
+        Where a kept bound has no certificate the surface is proved anew. Without time for as much
+        as was kept, ``kept_lower`` says what nothing has verified.
+
+        Raises:
+            InputError: a cell of the surface is not planar, or the folder cannot be written to.
+        """
+        if self._kept is not None:
+            return self._kept
+        kept = (
+            None if self._cache is None else self._cache.get(self.surface, self._seconds, deadline)
+        )
+        if kept is None or kept.kept_lower is not None:
+            proved = super().prove(deadline)
+            if kept is None or proved.bounds.lower >= (kept.kept_lower or 0):
+                kept = proved
+                if self._cache is not None:
+                    self._cache.put(self.surface, self._seconds, kept)
+            elif proved.solution is not None and proved.bounds.upper <= kept.bounds.upper:
+                lower = max(kept.bounds.lower, proved.bounds.lower)
+                bounds = ProvenRange(lower, proved.bounds.upper)
+                kept = replace(proved, bounds=bounds, kept_lower=kept.kept_lower)
+        self._kept = kept
+        return kept

@@ -85,9 +85,9 @@ def repair(
     deadline, tell = Deadline.of(time_limit), progress or _nobody
     name, file = _name(part)
     with extras_for(name):
+        from cellcolor.frontend.parts.mesh_file import UNITS
         from cellcolor.frontend.parts.repaired import repair_mesh
         from cellcolor.frontend.parts.repairing import LEAST_SHARE
-        from cellcolor.frontend.parts.units import UNITS
 
         vertices, faces = _mesh(part, deadline, tell)
         try:
@@ -138,7 +138,7 @@ def _unit(vertices: Any, unit: str | None) -> str:
     Raises:
         InputError: no such unit, or none is likely.
     """
-    from cellcolor.frontend.parts.units import UNITS, likely_unit
+    from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
 
     if unit is not None:
         if unit not in UNITS:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from cellcolor.data import instance as instance_file
 from cellcolor.data import plan as plan_file
@@ -16,7 +15,11 @@ from cellcolor.data import tool_paths as tool_paths_file
 from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data import trajectory_verdict as verdict_file
 from cellcolor.data.instance import SurfaceReference
-from cellcolor.door.unfinished import UnfinishedPlan
+from cellcolor.data.solution import Solution
+from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
 from cellcolor.files.writing import (
@@ -29,11 +32,9 @@ from cellcolor.files.writing import (
     kind_of_format,
     write,
 )
+from cellcolor.painting.paint import Painted
 
-if TYPE_CHECKING:
-    from cellcolor.door.planning import PlannedScene
-
-__all__ = ["KINDS", "check_folder", "make_folder", "save"]
+__all__ = ["KINDS", "check_folder", "files_of_motion", "files_so_far", "make_folder", "save"]
 
 _SIDE, _SURFACE = "instance.reasons.npz", "instance.surface.json"
 
@@ -84,14 +85,13 @@ def make_folder(folder: Path) -> Iterator[None]:
         raise
 
 
-def save(plan: PlannedScene | UnfinishedPlan, folder: Path) -> tuple[str, ...]:
+def save(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
     """Write the files of a plan, all of them or none: their names.
 
     Raises:
         InputError: the folder has files of another plan that these would not replace; something
             else is there; or it cannot be written.
     """
-    files = _files(plan)
     for name in KINDS.keys() - files.keys():
         if (folder / name).exists():
             message = "is of a plan that came farther, and files of two plans are not mixed"
@@ -101,48 +101,48 @@ def save(plan: PlannedScene | UnfinishedPlan, folder: Path) -> tuple[str, ...]:
     return tuple(files)
 
 
-def _files(plan: PlannedScene | UnfinishedPlan) -> dict[str, bytes]:
-    """The files that there are, by name, in the order of :data:`KINDS`."""
-    surface, painted = plan.built.surface, plan.painted
+def files_so_far(
+    subject: Subject,
+    solution: Solution | None,
+    painted: Painted | None,
+    paths: ToolPaths | None,
+) -> dict[str, bytes]:
+    """The files of a plan before its motion, by name, as far as it came."""
+    surface = subject.surface
     surface = replace(surface, meta=surface.meta | {"side_file": _SIDE})
     content: dict[str, bytes] = {
-        _SIDE: plan.built.candidates.to_bytes(),
+        _SIDE: subject.build().candidates.to_bytes(),
         _SURFACE: surface.to_json().encode(),
-        "instance.json": _named(plan).encode(),
+        "instance.json": _named(subject).encode(),
     }
-    if plan.solution is not None:
-        content["solution.json"] = plan.solution.to_json().encode()
+    if solution is not None:
+        content["solution.json"] = solution.to_json().encode()
     if painted is not None:
         content["painted.plan.json"] = painted.plan.to_json().encode()
         content["painted.surface.json"] = painted.surface.to_json().encode()
-    if plan.paths is not None:
-        content["paths.json"] = plan.paths.to_json().encode()
-    if not isinstance(plan, UnfinishedPlan):
-        content |= _of_motion(plan)
-    return content | {"report.html": plan.page()}
+    if paths is not None:
+        content["paths.json"] = paths.to_json().encode()
+    return content
 
 
-def _of_motion(planned: PlannedScene) -> dict[str, bytes]:
+def files_of_motion(
+    painted: Painted, paths: ToolPaths, trajectory: Trajectory, verdict: TrajectoryVerdict
+) -> dict[str, bytes]:
+    """The files of a judged motion, by name."""
     from cellcolor.exports.interface import PlannedMotion
     from cellcolor.pictures.report_page.surface_modes import segment_fills
 
-    painted = planned.painted
-    motion = PlannedMotion(
-        painted.surface,
-        painted.segment_of,
-        segment_fills(painted),
-        planned.paths,
-        planned.trajectory,
-    )
+    fills = segment_fills(painted)
+    motion = PlannedMotion(painted.surface, painted.segment_of, fills, paths, trajectory)
     return {
-        "trajectory.json": planned.trajectory.to_json().encode(),
-        "verdict.json": planned.verdict.to_json().encode(),
+        "trajectory.json": trajectory.to_json().encode(),
+        "verdict.json": verdict.to_json().encode(),
         **{name: export.content(motion) for name, export in EXPORTS.items()},
     }
 
 
-def _named(plan: PlannedScene | UnfinishedPlan) -> str:
+def _named(subject: Subject) -> str:
     """The instance, which names the surface's file beside it."""
-    decomposition, sha256 = plan.subject.decomposition, plan.built.surface.sha256
+    decomposition, sha256 = subject.decomposition, subject.surface.sha256
     reference = SurfaceReference(_SURFACE, tuple(decomposition.vertex_cell), sha256)
     return replace(decomposition.instance, surface=reference).to_json()

@@ -99,9 +99,11 @@ class PlannedScene:
         Raises:
             InputError: something else is there, or it cannot be written.
         """
-        from cellcolor.door.plan_files import save
+        from cellcolor.door.plan_files import files_of_motion, files_so_far, save
 
-        save(self, path_of(folder))
+        files = files_so_far(self.subject, self.solution, self.painted, self.paths)
+        files |= files_of_motion(self.painted, self.paths, self.trajectory, self.verdict)
+        save(path_of(folder), files | {"report.html": self.page()})
 
     def __str__(self) -> str:
         extra = len(self.trajectory.extra_lift_offs)

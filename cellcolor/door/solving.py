@@ -10,7 +10,6 @@ from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.raw_minimum import with_raw_minimum
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import Solvable, build_scene, is_made_by, is_scene, open_subject
@@ -20,8 +19,17 @@ from cellcolor.solvers.interface import Options, Start
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
+from dataclasses import replace
+
+from cellcolor.deadline import OutOfTime
+from cellcolor.decomposition import decomposition_of
+from cellcolor.door.subject import Subject
+from cellcolor.solvers.registry import DEFAULT
 
 __all__ = ["build", "decompose", "solve", "start_from"]
+
+
+_RAW_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
 
 
 def build(
@@ -121,7 +129,7 @@ def solve(
         fewest_cuts=fewest_cuts,
     )
     solution = checked.solve(instance, options, solver, progress)
-    solution = with_raw_minimum(solution, subject, options)
+    solution = _with_raw_minimum(solution, subject, options)
     return Result(solution, subject)
 
 
@@ -152,3 +160,31 @@ def start_from(
     if strands is not None and solution.strands != strands:
         raise InputError(file, "strands", f"is {solution.strands}, wanted are {strands}")
     return Start(solution.cells, solution.seams)
+
+
+def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) -> Solution:
+    """The solution with a note on the whole surface, where a scene's slivers were given up.
+
+    Args:
+        solution: of the scene without its slivers.
+        subject: what was solved.
+        options: how; the raw surface gets ten seconds of the time that is left.
+    """
+    raw = None if subject.built is None else subject.built.raw_surface
+    coverage = subject.graph().coverage
+    if raw is None or coverage is None:
+        return solution
+    deadline = Deadline(min(options.deadline.moment, Deadline.after(_RAW_SECONDS).moment))
+    asked = replace(options, deadline=deadline, start=None, fewest_cuts=False)
+    try:
+        graph = decomposition_of(raw, deadline=deadline).instance
+        found = str(checked.solve(graph, asked, DEFAULT))
+    except OutOfTime:
+        found = "no division was found in time"
+    except InputError as error:
+        found = f"it cannot be solved, {error}"
+    note = (
+        f"{coverage.given_up:.1%} of the area was given up as slivers; with nothing given up: "
+        f"{found}"
+    )
+    return replace(solution, notes=(*solution.notes, note))

@@ -97,9 +97,10 @@ class UnfinishedPlan:
             InputError: a whole plan is there, which is better; or something else that is not
                 overwritten; or it cannot be written.
         """
-        from cellcolor.door.plan_files import save
+        from cellcolor.door.plan_files import files_so_far, save
 
-        return save(self, path_of(folder))
+        files = files_so_far(self.subject, self.solution, self.painted, self.paths)
+        return save(path_of(folder), files | {"report.html": self.page()})
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.missing}>"

@@ -13,7 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Mask
-from cellcolor.frontend.parts.refining import bisected
+from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.stage_clock import StageClock

@@ -11,12 +11,11 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from cellcolor.testing import PICTURES
+
 if TYPE_CHECKING:
     from cellcolor.door.subject import Solvable
     from cellcolor.testing.surface_under_test import SurfaceUnderTest
-
-PICTURES = "cellcolor_pictures"
-"""Attribute of a failed assertion: what draws its pictures, given the name of the test."""
 
 _OPTION = "--cellcolor-time-limit"
 

@@ -9,13 +9,12 @@ from pathlib import Path
 
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import OutOfTime
-from cellcolor.door.keeping_oracle import KeepingOracle
-from cellcolor.door.oracle import AnyPlan
+from cellcolor.door.oracle import AnyPlan, KeepingOracle
 from cellcolor.door.showing import show
 from cellcolor.door.subject import Solvable
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.oracle import ProvenRange, Verdict
-from cellcolor.testing.plugin import PICTURES
+from cellcolor.testing import PICTURES
 
 __all__ = ["SurfaceUnderTest", "surfaces_under_test"]
 

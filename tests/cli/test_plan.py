@@ -60,8 +60,8 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """Motion and verdict are taken from a stand-in; what was asked for is kept."""
     made, seen = stand_in(), {"verdict": None, "unplanned": ()}
 
-    def motion(prepared: Any, built: Any, *_: Any, **options: Any) -> Any:
-        seen.update(options, motion=prepared.setup.motion, built=built)
+    def motion(built: Any, *_: Any, **options: Any) -> Any:
+        seen.update(options, motion=built.prepared.setup.motion, built=built)
         trajectory = replace(made.trajectory, unplanned=seen["unplanned"], extra_lift_offs=())
         return SimpleNamespace(paths=made.paths, measures=made.measures, trajectory=trajectory)
 

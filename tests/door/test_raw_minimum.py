@@ -9,7 +9,7 @@ from shipped import TOP
 
 import cellcolor
 from cellcolor.data.solution import Solution
-from cellcolor.door import raw_minimum
+from cellcolor.door import solving
 from cellcolor.frontend import BuildResult, Scene
 
 SHEET = TOP / "instances" / "parts" / "perforated_sheet.toml"
@@ -48,7 +48,7 @@ def test_what_is_not_found_in_time_is_not_said(
     built: BuildResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The minimum itself stays; of the raw one only what is known."""
-    monkeypatch.setattr(raw_minimum, "_SECONDS", 0.0)
+    monkeypatch.setattr(solving, "_RAW_SECONDS", 0.0)
     solution = cellcolor.solve(built).solution
     assert solution.status == "optimal"
     (note,) = solution.notes

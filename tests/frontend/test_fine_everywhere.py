@@ -11,7 +11,7 @@ from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend.build import result_of
 from cellcolor.frontend.finer_borders import with_finer_borders
-from cellcolor.frontend.parts.refining import bisected
+from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import run_stages

@@ -18,7 +18,7 @@ from cellcolor import memory
 from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.lost import missing
+from cellcolor.frontend.arm.ideal import missing
 from cellcolor.frontend.arm.newton import polished
 from cellcolor.frontend.arm.polyhedron import Polyhedron
 from cellcolor.frontend.prepared import PreparedScene, prepare

@@ -19,7 +19,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface, sizes
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.refining import refine
+from cellcolor.frontend.parts.surface import refine
 from cellcolor.frontend.scene import Scene
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 

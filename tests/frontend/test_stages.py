@@ -13,8 +13,7 @@ from shipped import shipped
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.finer_borders import with_finer_borders
-from cellcolor.frontend.parts.refining import bisected
-from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.frontend.reach.validity import Judge, Verdicts

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from cellcolor.door.keeping_oracle import KeepingOracle
+from cellcolor.door.oracle import KeepingOracle
 from cellcolor.errors import InputError
 from cellcolor.lab.families import voronoi
 

@@ -9,10 +9,9 @@ import numpy as np
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.contact.box_grid import BoxGridObstacle
-from cellcolor.frontend.contact.capsule import CapsuleObstacle
-from cellcolor.frontend.contact.cone import ConeObstacle
 from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
 from cellcolor.frontend.contact.obstacle import Obstacle
+from cellcolor.frontend.contact.primitives import CapsuleObstacle, ConeObstacle
 from cellcolor.frontend.parts.placement import rotation_from_rpy
 
 __all__ = ["KINDS", "standing"]

@@ -22,7 +22,7 @@ import cellcolor.door.oracle as door
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
-from cellcolor.door.keeping_oracle import KeepingOracle
+from cellcolor.door.oracle import KeepingOracle
 from cellcolor.oracle import Proof, prove
 
 __all__ = ["TAMPERERS", "Kept", "is_honest", "what_is_wrong"]

@@ -25,7 +25,7 @@ from cellcolor.data.trajectory_csv import read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
 from cellcolor.exports.joint_table import joints_csv
-from cellcolor.frontend.parts.refining import bisected
+from cellcolor.frontend.parts.surface import bisected
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.other_planners import completed
 from cellcolor.trajectory_checker.tolerances import Limits

@@ -10,8 +10,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.capsule_cover import capsules_around
-from cellcolor.frontend.arm.capsules import capsule_around
+from cellcolor.frontend.arm.capsules import capsule_around, capsules_around
 from cellcolor.frontend.arm.polyhedron import Polyhedron, box, convex_hull
 from cellcolor.frontend.setup import MeshCollision
 

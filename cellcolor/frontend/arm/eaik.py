@@ -30,11 +30,10 @@ from cellcolor.frontend.arm.candidates import (
     exact_solutions,
     solutions_of_calibrated,
 )
-from cellcolor.frontend.arm.ideal import Axes, idealized
+from cellcolor.frontend.arm.ideal import Axes, idealized, remark_on_calibration
 from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.kinematics import farthest_reach
 from cellcolor.frontend.arm.last_joint import check_tool_on_last_axis, locked_angle, pose_at_zero
-from cellcolor.frontend.arm.lost import remark_on_calibration
-from cellcolor.frontend.arm.reach import farthest_reach
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, nearest_points, signs_of
 from cellcolor.frontend.setup import RobotFiles

@@ -1,20 +1,35 @@
-"""The ideal geometry that a calibrated arm's axes are next to.
+"""Calibrated arms: the ideal geometry that their axes are next to, and what is said of them.
 
 A calibration moves and tilts the axes of one arm by what was measured on it. Then axes that are
-meant to be parallel are not, nor do those meet that are meant to, and the closed form of the ideal
-arm is not that of this one.
+meant to be parallel or to meet do not, and the closed form of the ideal arm is not that of this
+one.
+
+A missing solution shows. Of any pose that is not singular as many solutions have a positive task
+determinant as a negative one: their difference is the degree of the map from joint angles, which
+close on themselves, to poses, and it is zero since some poses are out of reach (Milnor, Topology
+from the Differentiable Viewpoint, 1965, section 5). So a solution that is missing by itself is
+noticed; two that vanish together at a singularity are not missing.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
+from cellcolor.frontend.arm.kinematics import (
+    bytes_of_poses,
+    forward,
+    signed_task_determinant,
+    tip_jacobian,
+)
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import nearest_points
+from cellcolor.memory import chunks
 
-__all__ = ["Axes", "idealized"]
+__all__ = ["Axes", "idealized", "missing", "remark_on_calibration"]
 
 
 @dataclass(frozen=True)
@@ -85,3 +100,35 @@ def _near_each_other(axes: Axes, tolerance: float) -> Array:
             lines = points[k], directions[k], points[other], directions[other]
             points[k] = nearest_points(*lines)[0]
     return points
+
+
+def missing(robot: Robot, solutions: Array) -> Index:
+    """How many solutions of each pose are missing at least, (n,).
+
+    Args:
+        solutions: (n, s, joints) all that were found, in rad, NaN for none.
+    """
+    lost = np.zeros(len(solutions), dtype=np.int64)
+    for rows in chunks(len(solutions), solutions.shape[1] * bytes_of_poses(robot.joints)):
+        part = solutions[rows]
+        there = np.nonzero(~np.isnan(part[:, :, 0]))
+        poses = forward(robot, part[there])
+        determinants = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
+        lost[rows] = np.abs(np.bincount(there[0], np.sign(determinants), minlength=len(part)))
+    return lost
+
+
+def remark_on_calibration(robot: Robot, off: tuple[float, float], solutions: Array) -> str:
+    """A sentence for the report.
+
+    Args:
+        off: the largest angle in rad and the largest distance in m of an axis from the ideal one.
+        solutions: (n, s, joints) of all vertices, NaN for none.
+    """
+    lost = missing(robot, solutions)
+    angle, distance = math.degrees(off[0]), 1000 * off[1]
+    return (
+        f"calibrated arm, axes up to {angle:.2g} degrees and {distance:.2g} mm off the ideal one: "
+        "solved by Newton's method from the ideal one's solutions; missing, by the signs of the "
+        f"task determinants: {lost.sum()} at {np.count_nonzero(lost)} of {len(lost)} vertices"
+    )

@@ -103,7 +103,7 @@ KINEMATICS: Registry[InverseKinematics] = Registry(
         "eaik": "cellcolor.frontend.arm.eaik:EaikKinematics",
         "planar-2r": "cellcolor.frontend.arm.planar:PlanarTwo",
         "planar-3r": "cellcolor.frontend.arm.planar:PlanarThree",
-        "scara": "cellcolor.frontend.arm.scara:Scara",
-        "scara-rrp": "cellcolor.frontend.arm.scara:ScaraWithoutTurn",
+        "scara": "cellcolor.frontend.arm.planar:Scara",
+        "scara-rrp": "cellcolor.frontend.arm.planar:ScaraWithoutTurn",
     },
 )

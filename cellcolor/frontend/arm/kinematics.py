@@ -1,4 +1,4 @@
-"""Forward kinematics, Jacobians and static torques of many configurations at once (numpy).
+"""Forward kinematics, Jacobians, static torques and reach of many configurations at once (numpy).
 
 Everything is in the world frame; ``n`` is the number of configurations. Held against Pinocchio
 in the tests.
@@ -20,6 +20,7 @@ __all__ = [
     "TASK_JOINTS",
     "Poses",
     "bytes_of_poses",
+    "farthest_reach",
     "forward",
     "gravity_torques",
     "manipulability",
@@ -263,3 +264,39 @@ def static_torques(
     """
     push: Array = normal_force * np.einsum("naj,na->nj", linear, poses.tool_axis)
     return gravity_torques(robot, poses, gravity) + push
+
+
+_TRIES = 4096
+_CLIMBED = 16
+_ROUNDS = 500
+_GAIN = 1e-13  # m; a round that brings less is the last
+
+
+def farthest_reach(robot: Robot, shoulder: Array) -> float:
+    """The farthest that the tip gets from a point (3,) on the first joint's axis, m.
+
+    Prismatic joints stand at zero. From the best of many configurations, always the same ones, one
+    joint after the other is turned to where the tip is farthest: opposite to the point, as seen
+    along the joint's axis.
+    """
+    tries = np.random.default_rng(0).uniform(-np.pi, np.pi, (_TRIES, robot.joints))
+    tries[:, robot.slides] = 0.0
+    best = np.argsort(-_distances(robot, tries, shoulder), kind="stable")[:_CLIMBED]
+    q, farthest = tries[best], 0.0
+    for _ in range(_ROUNDS):
+        for joint in robot.turning[1:]:
+            poses = forward(robot, q)
+            axis, start = poses.axis[:, joint], poses.origin[:, joint + 1]
+            moved, away = poses.tip - start, start - shoulder
+            sine = np.einsum("ni,ni->n", axis, np.cross(moved, away))
+            along = np.einsum("ni,ni->n", axis, moved) * np.einsum("ni,ni->n", axis, away)
+            q[:, joint] += np.arctan2(sine, np.einsum("ni,ni->n", moved, away) - along)
+        reached = float(_distances(robot, q, shoulder).max())
+        if reached - farthest <= _GAIN:
+            break
+        farthest = reached
+    return farthest
+
+
+def _distances(robot: Robot, configurations: Array, shoulder: Array) -> Array:
+    return np.asarray(np.linalg.norm(forward(robot, configurations).tip - shoulder, axis=1))

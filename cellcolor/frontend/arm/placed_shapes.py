@@ -18,9 +18,8 @@ from cellcolor.frontend.arm.body import (
     mesh_bodies,
     round_bodies,
 )
-from cellcolor.frontend.arm.link_mesh import load_link_mesh
+from cellcolor.frontend.arm.link_mesh import find_mesh, load_link_mesh
 from cellcolor.frontend.arm.link_shapes import LinkShape
-from cellcolor.frontend.arm.mesh_paths import find_mesh
 from cellcolor.frontend.arm.urdf import Urdf
 from cellcolor.frontend.setup import MeshCollision
 

@@ -1,12 +1,18 @@
-"""Planar arms: two or three joints with parallel axes, and the tool along them.
+"""Planar arms and SCARAs: joints with parallel axes, and the tool along them.
 
-A SCARA is one if its prismatic joint is fixed: it works at one height then (one that moves has a
-family of its own, :mod:`cellcolor.frontend.arm.scara`). The tip moves in a plane across the tool,
-so the part is flat and lies in that plane.
+A planar arm has two or three joints that turn. Its tip moves in a plane across the tool, so the
+part is flat and lies in that plane. A SCARA whose prismatic joint is fixed is one.
 
 Tip and elbow make a triangle with the shoulder, which has two solutions: elbow left and elbow
 right of the straight line from shoulder to tip, seen from where the tool comes from. The task
 determinant is twice the triangle's area, so along a motion without singularity the elbow stays.
+
+A SCARA has a joint that slides along the axes as well. The height of the tool is that of the
+sliding joint, and the other joints do what a planar arm does. It does not matter which of the
+joints slides, since a shift along the axes changes nothing about them: the makers' two orders
+(turning joints 1, 2 and 4, or 1, 2 and 3) have the same two solutions, and so has a column under
+the arm. The task gives the tip's position and, with a third turning joint, the tool's turn. It does
+not give the tool's direction: the part may be curved, as long as the tool comes from outside.
 """
 
 from __future__ import annotations
@@ -21,10 +27,16 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.last_joint import pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.task_space import FREE_IN_PLANE, GIVEN_IN_PLANE, TaskSpace
+from cellcolor.frontend.arm.task_space import (
+    FREE_IN_PLANE,
+    GIVEN_IN_PLANE,
+    POSITION,
+    POSITION_AND_TURN,
+    TaskSpace,
+)
 from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["PlanarThree", "PlanarTwo"]
+__all__ = ["PlanarThree", "PlanarTwo", "Scara", "ScaraWithoutTurn"]
 
 _TOLERANCE = 1e-6  # m and rad; of the arm
 _OFF_PLANE = 1e-4  # m; a point farther from the tip's plane is out of reach
@@ -113,3 +125,49 @@ class PlanarThree(PlanarTwo):
 
     def _check_locked(self, files: RobotFiles) -> None:
         """The third joint is solved for by who asks for the turn."""
+
+
+class ScaraWithoutTurn(PlanarTwo):
+    """Two turning joints and a prismatic one; the tool's turn follows."""
+
+    joints = 3
+    prismatic: ClassVar[int] = 1
+    free_turn: ClassVar[TaskSpace | None] = POSITION
+    given_turn: ClassVar[TaskSpace] = POSITION_AND_TURN
+
+    def __init__(self, robot: Robot, files: RobotFiles) -> None:
+        """As of a planar arm, and which joint slides, which way."""
+        super().__init__(robot, files)
+        self._slide = int(np.flatnonzero(robot.slides)[0])
+        self._along = float(np.sign(pose_at_zero(robot).axis[0, self._slide] @ -self._tool))
+        self.lever = 0.0  # no joint gives way to a normal that turns
+
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """Positions of the prismatic joint are in m, whether it gets there or not.
+
+        See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`.
+        """
+        found = super().solve(points, directions, branches)
+        heights = points @ -self._tool
+        lift = self._along * (heights - self._height)[:, None]
+        found[:, :, self._slide] = np.where(np.isnan(found[:, :, 0]), np.nan, lift)
+        return found
+
+    def taken(self, directions: Array) -> Array:
+        """The only direction that the tool has."""
+        return np.where(self._never(np.zeros(0), directions)[:, None], np.nan, self._tool)
+
+    def _never(self, heights: Array, directions: Array) -> Mask:  # noqa: ARG002
+        return np.asarray(~(directions @ self._tool > 0))
+
+
+class Scara(ScaraWithoutTurn):
+    """Three turning joints and a prismatic one; the turn of the tool is given."""
+
+    joints = 4
+    free_turn: ClassVar[TaskSpace | None] = None
+
+    def _check_locked(self, files: RobotFiles) -> None:
+        """The third turning joint is solved for by who asks for the turn."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ import pinocchio as pin
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount
+from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount, pinocchio_text
 from cellcolor.frontend.arm.body import Body, StandIn
 from cellcolor.frontend.arm.followers import (
     FollowingFrame,
@@ -19,12 +19,11 @@ from cellcolor.frontend.arm.followers import (
     hung_on,
     within_limits,
 )
-from cellcolor.frontend.arm.pinocchio_text import pinocchio_text
 from cellcolor.frontend.arm.placed_shapes import Shapes, place_shapes
 from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
 from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Follower, Urdf, load_urdf
 
-__all__ = ["Body", "Robot", "Shapes", "load_robot"]
+__all__ = ["Body", "Robot", "Shapes", "load_robot", "wider", "wider_body"]
 
 _FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
 _NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
@@ -319,3 +318,23 @@ def _tested_pairs(
         and solid_above[first.link] != second.link
         and solid_above[second.link] != first.link
     )
+
+
+def wider(robot: Robot, by: float) -> Robot:
+    """The robot with all that is nearer than a distance (m) to its bodies.
+
+    A cylinder stays one, longer and wider, so that it has a little more than that at its rims.
+    """
+    if by == 0.0:
+        return robot
+    return replace(robot, bodies=tuple([wider_body(body, by) for body in robot.bodies]))
+
+
+def wider_body(body: Body, by: float) -> Body:
+    """One of its bodies; see :func:`wider`."""
+    if body.solid is not None:
+        return replace(body, radius=body.radius + by, skin=body.skin + by)
+    if not body.flat:
+        return replace(body, radius=body.radius + by)
+    along = by * (body.end - body.start) / body.length
+    return replace(body, start=body.start - along, end=body.end + along, radius=body.radius + by)

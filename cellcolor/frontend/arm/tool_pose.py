@@ -1,6 +1,8 @@
-"""Whole poses of the tool, reduced to those of a tool on the last joint's axis.
+"""Whole poses of the tool, its turn about its axis included.
 
-The last joint is the last one that turns: a prismatic one behind it only moves the tool along.
+A setup's rule gives the turn (docs/frontend.md). A whole pose is reduced to the pose of a tool on
+the last joint's axis. The last joint is the last one that turns: a prismatic one behind it only
+moves the tool along.
 """
 
 from __future__ import annotations
@@ -15,9 +17,59 @@ from cellcolor.frontend.arm.last_joint import pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import nearest_points
 from cellcolor.frontend.arm.task_space import FREE_TURN
-from cellcolor.frontend.arm.tool_turn import angle_about
+from cellcolor.frontend.setup import Turn
 
-__all__ = ["last_frames", "on_last_axis", "shoulder_of", "with_last_joint", "wrist_of"]
+__all__ = [
+    "angle_about",
+    "last_frames",
+    "on_last_axis",
+    "shoulder_of",
+    "turn_at",
+    "turned_about",
+    "with_last_joint",
+    "wrist_of",
+]
+
+_LEAST_SHARE = 1e-6  # of a vector's length that its projection has to have, for a direction
+_LEAST_LENGTH = 1e-6  # m; the same of the way to a point
+
+
+def turn_at(turn: Turn, points: Array, directions: Array) -> Array:
+    """Where the rule wants the tool's x axis, (n, 3) unit vectors across the tool.
+
+    Args:
+        turn: the rule; the first of its turns is not added.
+        points: (n, 3) the tip, in the world, m.
+        directions: (n, 3) unit vectors of the tool's z axis.
+
+    Returns:
+        NaN where the rule says nothing, since what it points along is along the tool.
+    """
+    if turn.along is not None:
+        wanted = np.broadcast_to(np.array(turn.along) / np.linalg.norm(turn.along), points.shape)
+        least = _LEAST_SHARE
+    else:
+        wanted, least = np.array(turn.towards_m) - points, _LEAST_LENGTH
+    across = wanted - np.einsum("ni,ni->n", wanted, directions)[:, None] * directions
+    lengths = np.linalg.norm(across, axis=1, keepdims=True)
+    return np.asarray(np.where(lengths > least, across / np.maximum(lengths, least), np.nan))
+
+
+def turned_about(directions: Array, across: Array, angles: Array) -> Array:
+    """Vectors (n, 3) across unit vectors (n, 3), turned about these by angles (n,) in rad."""
+    cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    return np.asarray(cosine * across + sine * np.cross(directions, across))
+
+
+def angle_about(directions: Array, first: Array, second: Array) -> Array:
+    """By which angle (n,) in rad, in (-pi, pi], second follows from first about unit vectors.
+
+    All (n, 3); the first and the second may have parts along the unit vectors, which do not count.
+    """
+    sine = np.einsum("ni,ni->n", directions, np.cross(first, second))
+    along = np.einsum("ni,ni->n", directions, first) * np.einsum("ni,ni->n", directions, second)
+    return np.asarray(np.arctan2(sine, np.einsum("ni,ni->n", first, second) - along))
+
 
 _PARALLEL = 1e-6  # rad
 _SAME_HEIGHT = 1e-6  # m

@@ -14,17 +14,18 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.kinematics import farthest_reach
 from cellcolor.frontend.arm.last_joint import pose_at_zero
-from cellcolor.frontend.arm.reach import farthest_reach
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.tool_pose import (
     last_frames,
     on_last_axis,
     shoulder_of,
+    turn_at,
+    turned_about,
     with_last_joint,
     wrist_of,
 )
-from cellcolor.frontend.arm.tool_turn import turn_at, turned_about
 from cellcolor.frontend.setup import RobotFiles, Turn
 
 __all__ = ["TurnedKinematics"]

@@ -2,9 +2,9 @@
 
 Shapes are capsules, flat-ended cylinders and solids with flat faces
 (:class:`~cellcolor.frontend.arm.body.Body`), given in the world by the ends of their axes.
-Capsules are settled in numpy. A cylinder lies between two capsules, one around and one inside it;
-only where these disagree, fcl decides. It decides of a solid where the capsule around that meets
-another body, and no plane is found between the box around that and the other body.
+Capsules are settled in numpy. A cylinder lies between two capsules, one around it and one inside
+it; fcl decides only where these two disagree. For a solid, fcl decides where the capsule around it
+meets another body and :func:`gap_between` finds no plane between that body and the solid's box.
 """
 
 from __future__ import annotations
@@ -13,14 +13,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, turned
-from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.fcl_bodies import bodies_touch, body_poses, lowest_points
-from cellcolor.frontend.contact.gaps import gap_between
 from cellcolor.frontend.contact.plane import HalfSpace
 
 __all__ = [
     "body_ends",
+    "gap_between",
     "hits_ground",
     "hits_itself",
     "longest_steps",
@@ -212,3 +213,52 @@ def tracked_steps(robot: Robot, margin: float, between: float) -> Array:
         else:
             steps += [2 * _DEPTH + min(2 * margin, between)] * 8
     return np.array(steps)
+
+
+def gap_between(
+    robot: Robot, pair: tuple[int, int], ends: Array, poses: Poses, rows: NDArray[np.intp]
+) -> Array:
+    """Lower bounds (rows,) of the distance between two bodies, m; at most 0 where they may touch.
+
+    A solid stands in a box around it. The bound is the widest gap that two bodies leave along a
+    line, of some lines: between the middles, and along the edges of the boxes (after Gottschalk,
+    Lin and Manocha, OBBTree, 1996, who take nine more).
+
+    Args:
+        ends: of all bodies' axes, see :func:`~cellcolor.frontend.contact.collision.body_ends`.
+        poses: of the joints.
+        rows: of the configurations that are asked about.
+    """
+    bodies = [robot.bodies[index] for index in pair]
+    sides = [
+        _middle_and_edges(robot.bodies[index], ends[index][:, rows], poses, rows) for index in pair
+    ]
+    between = sides[1][0] - sides[0][0]
+    solid = [edges for body, (_, edges) in zip(bodies, sides, strict=True) if body.solid]
+    lines = np.concatenate([between[:, None], *solid], axis=1)
+    lengths = np.sqrt(np.einsum("nlx,nlx->nl", lines, lines))
+    lines /= np.where(lengths > 0, lengths, 1.0)[:, :, None]
+    gaps = np.abs(np.einsum("nlx,nx->nl", lines, between))
+    for body, (_, edges) in zip(bodies, sides, strict=True):
+        along = np.abs(np.einsum("nlx,nkx->nlk", lines, edges))
+        gaps -= along.sum(axis=2)
+        if body.solid is not None:
+            gaps -= body.skin
+        elif body.flat:
+            upright = 2 * along[:, :, 0] / body.length
+            gaps -= body.radius * np.sqrt(np.maximum(1 - upright**2, 0.0))
+        else:
+            gaps -= body.radius
+    return np.asarray(gaps.max(axis=1))
+
+
+def _middle_and_edges(
+    body: Body, ends: Array, poses: Poses, rows: NDArray[np.intp]
+) -> tuple[Array, Array]:
+    """Middle (n, 3) and halved edges (n, 3 or 1, 3) of a solid's box or another body's axis."""
+    if body.solid is None:
+        return ends.mean(axis=0), (ends[1:] - ends[:1]).swapaxes(0, 1) / 2
+    corners, rotation = body.solid.corners, poses.body_rotation[rows, body.joint]
+    middle = turned(rotation, corners.mean(axis=0)) + poses.body_origin[rows, body.joint]
+    # The first corner's neighbors along the edges of the box.
+    return middle, turned(rotation, (corners[[1, 2, 4]] - corners[0]).T / 2).swapaxes(1, 2)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from pathlib import Path
+from typing import Literal
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.contact.solids import Solid, mesh_solid
+from cellcolor.frontend.parts.mesh_file import load_mesh
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.registry import Registry
+from cellcolor.frontend.tables import Positive
 
-__all__ = ["OBSTACLES", "Obstacle"]
+__all__ = ["OBSTACLES", "MeshObstacle", "Obstacle"]
 
 
 class Obstacle(Placement):
@@ -50,10 +53,23 @@ OBSTACLES: Registry[Obstacle] = Registry(
         "box": "cellcolor.frontend.contact.primitives:BoxObstacle",
         "cylinder": "cellcolor.frontend.contact.primitives:CylinderObstacle",
         "sphere": "cellcolor.frontend.contact.primitives:SphereObstacle",
-        "cone": "cellcolor.frontend.contact.cone:ConeObstacle",
-        "capsule": "cellcolor.frontend.contact.capsule:CapsuleObstacle",
+        "cone": "cellcolor.frontend.contact.primitives:ConeObstacle",
+        "capsule": "cellcolor.frontend.contact.primitives:CapsuleObstacle",
         "half-space": "cellcolor.frontend.contact.half_space:HalfSpaceObstacle",
         "box-grid": "cellcolor.frontend.contact.box_grid:BoxGridObstacle",
-        "mesh": "cellcolor.frontend.contact.mesh_obstacle:MeshObstacle",
+        "mesh": "cellcolor.frontend.contact.obstacle:MeshObstacle",
     },
 )
+
+
+class MeshObstacle(Obstacle):
+    """A mesh file as a shell, its origin on the position."""
+
+    kind: Literal["mesh"] = "mesh"
+    file: str
+    meters_per_unit: Positive
+
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> tuple[Array, Faces]:
+        """The file's mesh."""
+        mesh = load_mesh(folder / self.file, self.meters_per_unit, deadline=deadline)
+        return mesh.vertices, mesh.faces

@@ -1,4 +1,4 @@
-"""Boxes, cylinders and spheres as obstacles; unlike meshes they are filled."""
+"""Boxes, cylinders, cones, capsules and spheres as obstacles; unlike meshes they are filled."""
 
 from __future__ import annotations
 
@@ -17,7 +17,14 @@ from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length
 
-__all__ = ["BoxObstacle", "CylinderObstacle", "Primitive", "SphereObstacle"]
+__all__ = [
+    "BoxObstacle",
+    "CapsuleObstacle",
+    "ConeObstacle",
+    "CylinderObstacle",
+    "Primitive",
+    "SphereObstacle",
+]
 
 
 class Primitive(Obstacle):
@@ -117,3 +124,63 @@ class SphereObstacle(Primitive):
 
     def _mesh(self) -> trimesh.Trimesh:
         return trimesh.creation.icosphere(subdivisions=2, radius=self.radius_m)
+
+
+class CapsuleObstacle(Primitive):
+    """All within a radius of a piece of its own z axis, the middle of it on the position."""
+
+    kind: Literal["capsule"] = "capsule"
+    radius_m: Length
+    axis_m: Length
+
+    def _shape(self) -> fcl.CollisionGeometry:
+        return fcl.Capsule(self.radius_m, self.axis_m)
+
+    def _extents(self) -> tuple[float, float, float]:
+        return (2 * self.radius_m, 2 * self.radius_m, self.axis_m + 2 * self.radius_m)
+
+    def _outside(self, local: Array) -> Array:
+        off = local.copy()
+        off[:, 2] -= np.clip(local[:, 2], -self.axis_m / 2, self.axis_m / 2)
+        return np.asarray(np.linalg.norm(off, axis=1)[:, None] - self.radius_m)
+
+    def _mesh(self) -> trimesh.Trimesh:
+        whole = trimesh.creation.capsule(self.axis_m, self.radius_m, count=[20, 20])
+        whole.apply_translation(-whole.bounds.mean(axis=0))
+        # Pictures sort triangles by depth, which goes wrong with long ones.
+        return whole.subdivide_to_size(max(self.axis_m / 4, self.radius_m))
+
+
+class ConeObstacle(Primitive):
+    """A solid cone about its own z axis, its point up; the middle of its height on the position."""
+
+    kind: Literal["cone"] = "cone"
+    radius_m: Length
+    height_m: Length
+
+    def _shape(self) -> fcl.CollisionGeometry:
+        return fcl.Cone(self.radius_m, self.height_m)
+
+    def _extents(self) -> tuple[float, float, float]:
+        return (2 * self.radius_m, 2 * self.radius_m, self.height_m)
+
+    def _outside(self, local: Array) -> Array:
+        """Distances (k, 1) from the triangle that turns about the axis, 0 inside."""
+        place = np.column_stack([np.hypot(local[:, 0], local[:, 1]), local[:, 2]])
+        rim = np.array([self.radius_m, -self.height_m / 2])
+        top = np.array([0.0, self.height_m / 2])
+        slope = np.array([self.height_m, self.radius_m])  # out of the flank, not of length 1
+        inside = (place[:, 1] >= rim[1]) & ((place - top) @ slope <= 0)
+        to_base = place - np.column_stack(
+            [np.minimum(place[:, 0], rim[0]), np.full(len(place), rim[1])]
+        )
+        way = np.clip((place - rim) @ (top - rim) / ((top - rim) @ (top - rim)), 0.0, 1.0)
+        to_flank = place - (rim + way[:, None] * (top - rim))
+        nearest = np.minimum(np.linalg.norm(to_base, axis=1), np.linalg.norm(to_flank, axis=1))
+        return np.where(inside, 0.0, nearest)[:, None]
+
+    def _mesh(self) -> trimesh.Trimesh:
+        whole = trimesh.creation.cone(self.radius_m, self.height_m, sections=20)
+        whole.apply_translation([0.0, 0.0, -self.height_m / 2])  # trimesh's stands on the origin
+        # Pictures sort triangles by depth, which goes wrong with long ones.
+        return whole.subdivide_to_size(max(self.height_m / 4, self.radius_m))

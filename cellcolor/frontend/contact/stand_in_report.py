@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body, StandIn
 from cellcolor.frontend.contact.collision import segment_distance
-from cellcolor.frontend.contact.samples import sample_mesh
+from cellcolor.frontend.contact.solids import sample_mesh
 
 __all__ = ["StandInReport", "report_on"]
 

@@ -1,9 +1,17 @@
-"""Simple faults mended: vertices in one place, faces there twice or without area, the winding.
+"""Faults of a mesh mended: double vertices and faces, places not manifold, holes, the winding.
 
-Faces are made to wind alike, and outward where that can be known.
+- Vertices in one place are joined. Faces that are there twice or have no area are left out. Faces
+  are made to wind alike, and outward where that can be known.
+- Places that are not manifold are cut apart: edges of three faces and more, vertices of several
+  fans. Then every edge has one or two faces, and the faces around a vertex form one fan. The copies
+  of a vertex are moved apart a little, since two vertices in one place are no better than one.
+- A hole is filled with the triangulation of least area among its own vertices, as Barequet and
+  Sharir do ("Filling gaps in the boundary of a polyhedron", 1995).
 """
 
 from __future__ import annotations
+
+from itertools import combinations
 
 import numpy as np
 
@@ -12,12 +20,18 @@ from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
 __all__ = [
+    "MOST_EDGES",
     "against_the_others",
+    "border_groups",
+    "borders",
+    "fans",
+    "filling",
     "flat_faces",
     "inside_out",
     "merged",
     "repeated_corners",
     "repeated_faces",
+    "split",
     "turned",
     "used",
     "without_flat",
@@ -168,3 +182,150 @@ def turned(faces: Faces, which: Mask | Index) -> Faces:
     changed = faces.copy()
     changed[which] = changed[which][:, ::-1]
     return changed
+
+
+_APART = 0.01  # of the shortest side beside a copy
+
+
+def fans(faces: Faces, sides: Index) -> Index:
+    """The fan (m, 3) that each corner belongs to; a manifold vertex has one.
+
+    Args:
+        sides: (p, 2) the sides of faces that are glued, numbered 3 * face + corner.
+    """
+    links = []
+    first, second = sides.T
+    after = (first // 3) * 3 + (first + 1) % 3, (second // 3) * 3 + (second + 1) % 3
+    vertex = faces.ravel()
+    for a in (first, after[0]):
+        for b in (second, after[1]):
+            same = vertex[a] == vertex[b]
+            links.append(np.column_stack([a, b])[same])
+    return grouped(faces.size, np.concatenate(links)).reshape(-1, 3)
+
+
+def split(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
+    """A mesh cut apart where it is no manifold.
+
+    At an edge of three faces and more two stay together that wind alike: of these two that are
+    connected elsewhere, and of these the two that go on straightest; then two of the others. What
+    winds alike before has no one-sided part afterwards.
+
+    Returns:
+        vertices, faces, and how far a copy of a vertex was moved at most, in the vertices' unit.
+    """
+    mesh = TriangleMesh(vertices, faces)
+    glued = np.concatenate([mesh.pairs[1], _glued(mesh)])
+    fan = fans(faces, glued)
+    group, first, number, corners = np.unique(
+        fan.ravel(), return_index=True, return_inverse=True, return_counts=True
+    )
+    own = faces.ravel()[first]
+    parted = number.reshape(-1, 3).astype(np.int64)
+    # Of the copies of a vertex the one with most corners stays in its place.
+    order = np.lexsort((np.arange(len(group)), -corners, own))
+    moved = np.zeros(len(group), dtype=bool)
+    moved[order[1:]] = own[order[1:]] == own[order[:-1]]
+    places = vertices[own]
+    return (*_moved_apart(places, parted, moved),)
+
+
+def _glued(mesh: TriangleMesh) -> Index:
+    """Pairs of sides (p, 2) that stay together at edges of three faces and more."""
+    many = mesh.triangles_at > 2
+    part, ascending = mesh.parts(many), mesh.ascending.ravel()
+    normals = np.nan_to_num(mesh.triangle_normals)
+    chosen: list[tuple[int, int]] = []
+    for edge in np.flatnonzero(many).tolist():
+        around = mesh.sides_of(edge).tolist()
+
+        def rank(pair: tuple[int, int]) -> tuple[bool, float]:
+            """Connected ones first, then those that bend least."""
+            f, g = pair[0] // 3, pair[1] // 3
+            return bool(part[f] != part[g]), -float(normals[f] @ normals[g])
+
+        free = set(around)
+        for pair in sorted(combinations(around, 2), key=rank):
+            alike = ascending[pair[0]] != ascending[pair[1]]
+            if alike and pair[0] in free and pair[1] in free:
+                free -= set(pair)
+                chosen.append(pair)
+    return np.array(chosen, dtype=np.int64).reshape(-1, 2)
+
+
+def _moved_apart(vertices: Array, faces: Faces, moved: Array) -> tuple[Array, Faces, float]:
+    """Some vertices go a hundredth of their shortest side towards the middle of their faces."""
+    if not moved.any():
+        return vertices, faces, 0.0
+    rows = np.flatnonzero(moved[faces].any(axis=1))
+    corners = vertices[faces[rows]]
+    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    shortest = np.full(len(vertices), np.inf)
+    np.minimum.at(shortest, faces[rows], np.minimum(sides, np.roll(sides, 1, axis=1)))
+    towards, count = np.zeros_like(vertices), np.zeros(len(vertices))
+    np.add.at(towards, faces[rows], np.repeat(corners.mean(axis=1)[:, None], 3, axis=1))
+    np.add.at(count, faces[rows], 1.0)
+    which = np.flatnonzero(moved)
+    way = towards[which] / count[which, None] - vertices[which]
+    length = np.linalg.norm(way, axis=1, keepdims=True)
+    step = _APART * shortest[which, None] * way / np.maximum(length, 1e-300)
+    changed = vertices.copy()
+    changed[which] += step
+    return changed, faces, float(np.linalg.norm(step, axis=1).max())
+
+
+MOST_EDGES = 250  # of a hole that is filled; the work grows with the third power
+
+
+def border_groups(mesh: TriangleMesh) -> tuple[Index, Index]:
+    """The edges (b,) of one face only, and the group (b,) of each: those that hang together."""
+    border = np.flatnonzero(mesh.triangles_at == 1)
+    ends = mesh.edges[border]
+    group = grouped(len(mesh.points), ends)[ends[:, 0]]
+    return border, np.unique(group, return_inverse=True)[1]
+
+
+def borders(mesh: TriangleMesh) -> int:
+    """How many borders there are: groups of edges of one face that hang together."""
+    return int(border_groups(mesh)[1].max(initial=-1)) + 1
+
+
+def filling(vertices: Array, loop: list[int], edges: set[tuple[int, int]]) -> Faces | None:
+    """Faces (n - 2, 3) between the vertices of a loop, of least area; None if there are none.
+
+    Args:
+        loop: n vertices, in the order in which a face there winds.
+        edges: (smaller, greater) of the mesh; none of them may get a third face.
+    """
+    count = len(loop)
+    points, number = vertices[loop], np.array(loop)
+    closed = np.zeros((count, count), dtype=bool)
+    for i in range(count):
+        for j in range(i + 2, count):
+            if (i, j) != (0, count - 1):
+                pair = (loop[i], loop[j])
+                closed[i, j] = (min(pair), max(pair)) in edges
+    cost = np.zeros((count, count))
+    best = np.zeros((count, count), dtype=np.int64)
+    for width in range(2, count):
+        for i in range(count - width):
+            j = i + width
+            k = np.arange(i + 1, j)
+            across = np.cross(points[k] - points[i], points[j] - points[i])
+            area = np.linalg.norm(across, axis=1) / 2
+            sides = np.linalg.norm(points[k] - points[i], axis=1) ** 2
+            flat = area <= 1e-6 * np.maximum(sides, np.linalg.norm(points[j] - points[i]) ** 2)
+            total = cost[i, k] + cost[k, j] + np.where(flat, np.inf, area)
+            at = int(np.argmin(total))
+            cost[i, j] = np.inf if closed[i, j] else total[at]
+            best[i, j] = k[at]
+    if not np.isfinite(cost[0, -1]):
+        return None
+    found, open_ = [], [(0, count - 1)]
+    while open_:
+        low, high = open_.pop()
+        if high - low >= 2:
+            middle = int(best[low, high])
+            found.append((number[low], number[middle], number[high]))
+            open_ += [(low, middle), (middle, high)]
+    return np.array(found, dtype=np.int64)

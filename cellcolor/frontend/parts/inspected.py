@@ -14,10 +14,10 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.inspection import FaultyPlaces, MeshFacts, facts_of
 from cellcolor.frontend.parts.mesh import mesh_surface
+from cellcolor.frontend.parts.mesh_file import UNITS, likely_unit
 from cellcolor.frontend.parts.repaired import check_known_size, in_words
 from cellcolor.frontend.parts.repairing import Mending, Telling, mended
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.parts.units import UNITS, likely_unit
 
 __all__ = ["Inspection", "inspect_mesh"]
 

@@ -20,8 +20,7 @@ from cellcolor.frontend.parts.cleaning import (
     used,
     without_flat,
 )
-from cellcolor.frontend.parts.refining import refine
-from cellcolor.frontend.parts.surface import Faces, Surface
+from cellcolor.frontend.parts.surface import Faces, Surface, refine
 from cellcolor.frontend.sizes import check_vertices
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 

@@ -1,11 +1,19 @@
-"""Surfaces from mesh files."""
+"""Surfaces from mesh files, and the unit of a file, which is guessed from its size.
+
+A Wavefront OBJ is read as one mesh, positions and faces: its groups, objects and materials part a
+file into meshes, and texture coordinates double vertices along seams, but to a robot all of it is
+one surface. trimesh reads the other formats.
+"""
 
 from __future__ import annotations
 
 import io
+import itertools
 import re
+from array import array
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TextIO
 
 import numpy as np
 import trimesh
@@ -14,13 +22,12 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.obj_file import read_obj
 from cellcolor.frontend.parts.part import Part
 from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import check_faces
 from cellcolor.frontend.tables import Positive
 
-__all__ = ["MeshObject", "load_mesh", "read_mesh"]
+__all__ = ["UNITS", "MeshObject", "likely_unit", "load_mesh", "read_mesh", "read_obj"]
 
 _MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory
 _HEADER = 4096  # bytes; where a PLY file names its elements
@@ -136,3 +143,72 @@ def _check_container(file: Path) -> None:
         file.read_text(encoding="utf-8")
     except UnicodeDecodeError as error:
         raise InputError(str(file), None, "neither binary STL nor UTF-8 text") from error
+
+
+def read_obj(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
+    """Vertices (n, 3) in the order of the file, and triangles (m, 3).
+
+    A face of more corners is cut into a fan about its first one.
+
+    Raises:
+        InputError: unreadable, a face of fewer than three corners, an index of no vertex, what is
+            not a number; names the line.
+        OutOfTime: the deadline came first.
+    """
+    points, corners = array("d"), array("q")
+    try:
+        with file.open(encoding="utf-8", errors="replace") as stream:
+            for number, line in deadline.watch(_lines(stream)):
+                kind, *words = line.split() or [""]
+                try:
+                    if kind == "v":
+                        points.extend(map(float, words[:3]))
+                        if len(points) % 3:
+                            raise ValueError("a vertex has three coordinates")
+                    elif kind == "f":
+                        face = [_index(word, len(points) // 3) for word in words]
+                        if len(face) < 3:
+                            raise ValueError("a face has three corners or more")
+                        for second, third in itertools.pairwise(face[1:]):
+                            corners.extend((face[0], second, third))
+                except (ValueError, OverflowError) as error:
+                    raise InputError(str(file), f"line {number}", str(error)) from error
+    except OSError as error:
+        raise InputError(str(file), None, error.strerror or "cannot be read") from error
+    vertices = np.array(points, dtype=np.float64).reshape(-1, 3)
+    return vertices, np.array(corners, dtype=np.int64).reshape(-1, 3)
+
+
+def _lines(stream: TextIO) -> Iterator[tuple[int, str]]:
+    """Lines with their numbers; one that ends in a backslash goes on in the next."""
+    begun = ""
+    for number, line in enumerate(stream, start=1):
+        text = line.partition("#")[0].rstrip()
+        if text.endswith("\\"):
+            begun += text[:-1] + " "
+            continue
+        yield number, begun + text
+        begun = ""
+
+
+def _index(word: str, known: int) -> int:
+    """The vertex of a corner ``v``, ``v/vt`` or ``v/vt/vn``; below zero counted from the end."""
+    given = int(word.partition("/")[0])
+    index = given - 1 if given > 0 else known + given
+    if not given or not 0 <= index < known:
+        raise ValueError(f"there is no vertex {given} so far")
+    return index
+
+
+UNITS = {"m": 1.0, "mm": 0.001}
+_METERS, _MILLIMETERS = 3.0, 10.0  # greatest extent; up to it meters, from it on millimeters
+
+
+def likely_unit(extent: float) -> tuple[str | None, str]:
+    """``m`` or ``mm`` or None, and why, for the greatest extent of a mesh in its own unit."""
+    size = f"its greatest extent is {extent:.4g}"
+    if extent <= _METERS:
+        return "m", f"{size}: in millimeters it would be smaller than the tip of a tool"
+    if extent >= _MILLIMETERS:
+        return "mm", f"{size}: in meters it would be larger than what an arm covers"
+    return None, f"{size}, which could be meters as well as millimeters: say which, --unit"

@@ -11,7 +11,7 @@ from cellcolor.arrays import Array
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.holes import borders
+from cellcolor.frontend.parts.cleaning import borders
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.remeshing import Deviation, length_for, remeshed
 from cellcolor.frontend.parts.repairing import (

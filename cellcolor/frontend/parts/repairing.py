@@ -12,19 +12,20 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
+    MOST_EDGES,
     against_the_others,
+    filling,
     flat_faces,
     inside_out,
     merged,
     repeated_corners,
     repeated_faces,
+    split,
     turned,
     used,
     without_flat,
 )
-from cellcolor.frontend.parts.holes import MOST_EDGES, filling
 from cellcolor.frontend.parts.mesh import summed_normals
-from cellcolor.frontend.parts.splitting import split
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 

@@ -15,12 +15,11 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.conditioning import Conditioning, conditioning, task_determinants
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
-from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot
+from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot, wider
 from cellcolor.frontend.arm.task_space import TaskSpace
-from cellcolor.frontend.arm.tool_turn import turn_at
+from cellcolor.frontend.arm.tool_pose import turn_at
 from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
-from cellcolor.frontend.contact.wider import wider
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Tracker
 from cellcolor.frontend.setup import Setup

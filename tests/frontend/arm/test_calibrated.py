@@ -14,10 +14,9 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.candidates import put_all
 from cellcolor.frontend.arm.eaik import EaikKinematics
-from cellcolor.frontend.arm.ideal import Axes, idealized
+from cellcolor.frontend.arm.ideal import Axes, idealized, missing
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
-from cellcolor.frontend.arm.lost import missing
 from cellcolor.frontend.arm.newton import both_sides_of_folds, merged, nearest, polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES

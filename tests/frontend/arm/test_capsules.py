@@ -10,8 +10,7 @@ from hypothesis import strategies as st
 from meshed_arm import link_meshes
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.capsule_cover import capsules_around
-from cellcolor.frontend.arm.capsules import Capsule, capsule_around
+from cellcolor.frontend.arm.capsules import Capsule, capsule_around, capsules_around
 from examples import examples
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.mesh_paths import find_mesh
+from cellcolor.frontend.arm.link_mesh import find_mesh
 
 URDF = Path("arm.urdf")
 

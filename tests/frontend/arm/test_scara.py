@@ -38,8 +38,8 @@ from cellcolor.frontend.arm.kinematics import (
     task_determinant,
     tip_jacobian,
 )
+from cellcolor.frontend.arm.planar import Scara, ScaraWithoutTurn
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.scara import Scara, ScaraWithoutTurn
 from cellcolor.frontend.arm.task_space import FREE_TURN
 from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.prepared import prepare

@@ -18,18 +18,22 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.capsule import CapsuleObstacle
 from cellcolor.frontend.contact.collision import (
     body_ends,
     hits_ground,
     hits_itself,
     segment_distance,
 )
-from cellcolor.frontend.contact.cone import ConeObstacle
 from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.plane import HalfSpace
-from cellcolor.frontend.contact.primitives import BoxObstacle, CylinderObstacle, SphereObstacle
+from cellcolor.frontend.contact.primitives import (
+    BoxObstacle,
+    CapsuleObstacle,
+    ConeObstacle,
+    CylinderObstacle,
+    SphereObstacle,
+)
 from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap

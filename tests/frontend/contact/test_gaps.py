@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import trimesh
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from meshed_arm import link_meshes, write_package
@@ -17,11 +16,10 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import forward, turned
 from cellcolor.frontend.arm.polyhedron import Polyhedron, box
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.robot import Robot, load_robot, wider
 from cellcolor.frontend.contact import collision, fcl_bodies
-from cellcolor.frontend.contact.collision import body_ends, hits_itself
-from cellcolor.frontend.contact.gaps import gap_between
-from cellcolor.frontend.contact.wider import wider
+from cellcolor.frontend.contact.collision import body_ends, gap_between, hits_itself
+from examples import examples
 
 
 @pytest.fixture(scope="module")

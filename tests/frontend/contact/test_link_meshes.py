@@ -17,12 +17,11 @@ from world import NEIGHBORS
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot
+from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot, wider
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.primitives import BoxObstacle, CylinderObstacle, SphereObstacle
 from cellcolor.frontend.contact.solids import mesh_solid
-from cellcolor.frontend.contact.wider import wider
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 
 Standing = list[tuple[coal.ShapeBase, coal.Transform3s]]

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.frontend.parts.folds import fold_angle, unfolded
+from cellcolor.frontend.parts.remeshing import fold_angle, unfolded
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SIDE = 9  # vertices of a plane square, one unit apart

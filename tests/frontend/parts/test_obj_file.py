@@ -10,8 +10,7 @@ from box import BOX, OUTWARD, obj
 
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.obj_file import read_obj
+from cellcolor.frontend.parts.mesh_file import load_mesh, read_obj
 
 SQUARE = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 

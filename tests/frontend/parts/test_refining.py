@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import sizes
-from cellcolor.frontend.parts.refining import bisected
-from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.lab.families.meshes import make_mesh
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh

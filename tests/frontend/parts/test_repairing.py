@@ -12,19 +12,18 @@ from hypothesis import strategies as st
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
     against_the_others,
+    filling,
     flat_faces,
     inside_out,
     merged,
     repeated_faces,
+    split,
     turned,
     without_flat,
 )
-from cellcolor.frontend.parts.crossings import MOST_FACES, crossing_pairs
-from cellcolor.frontend.parts.holes import filling
-from cellcolor.frontend.parts.inspection import facts_of
+from cellcolor.frontend.parts.inspection import MOST_FACES, crossing_pairs, facts_of
 from cellcolor.frontend.parts.repairing import Mending, mended
 from cellcolor.frontend.parts.shapes import disc_mesh
-from cellcolor.frontend.parts.splitting import split
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 

@@ -16,9 +16,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import sizes
 from cellcolor.frontend.parts import rounding
 from cellcolor.frontend.parts.mesh import mesh_surface
-from cellcolor.frontend.parts.refining import bisected
 from cellcolor.frontend.parts.rounding import longest_beside_sharp, rounded
-from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 

@@ -13,11 +13,11 @@ from reasons import Reason
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.contact.mesh_obstacle import MeshObstacle
+from cellcolor.frontend.contact.obstacle import MeshObstacle
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.refining import refine
 from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh, spherical_cap
+from cellcolor.frontend.parts.surface import refine
 from cellcolor.frontend.scene import Scene
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 

@@ -11,8 +11,8 @@ from cellcolor.arrays import Array
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.parts.refining import refine
 from cellcolor.frontend.parts.shapes import CapObject
+from cellcolor.frontend.parts.surface import refine
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.mesh.triangle_mesh import TriangleMesh
