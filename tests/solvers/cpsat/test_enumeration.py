@@ -66,6 +66,19 @@ def test_enumeration_stops_when_its_time_is_over() -> None:
             pass
 
 
+def test_no_search_is_begun_whose_time_ends_before_the_model_is_read(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """CP-SAT looks at the clock once it has read the model: of 240,000 constraints after 1.2 s."""
+    cells = tuple(Cell(i, (RED, BLUE), ()) for i in range(40))
+    instance = Instance("many", ("red", "blue"), cells, ())
+    options = Options(deadline=Deadline.after(60))
+    assert next(CpSatSolver().optimal_schemes(instance, options, 40))
+    monkeypatch.setattr(enumeration, "_READING", 60.0)
+    with pytest.raises(OutOfTime, match="reads the model"):
+        next(CpSatSolver().optimal_schemes(instance, options, 40))
+
+
 def test_enumeration_waits_for_who_takes_the_schemes(monkeypatch: pytest.MonkeyPatch) -> None:
     """No more than a few schemes wait in memory, however slowly they are taken."""
     monkeypatch.setattr(enumeration, "_AHEAD", 3)

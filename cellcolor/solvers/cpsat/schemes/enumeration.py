@@ -30,6 +30,8 @@ __all__ = ["optimal_schemes"]
 
 _AHEAD = 100
 """Schemes that are found ahead of whoever takes them. With so many waiting the search pauses."""
+_READING = 5e-6
+"""Seconds a constraint that CP-SAT takes to read a model, before it first looks at the clock."""
 
 
 def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iterator[Division]:
@@ -89,6 +91,8 @@ def _paintings(model: SchemeModel, options: Options) -> Generator[Painting, None
     solver.parameters.catch_sigint_signal = False
     if isfinite(options.deadline.moment):
         solver.parameters.max_time_in_seconds = options.deadline.left
+        if options.deadline.left < _READING * len(model.model.proto.constraints):
+            raise OutOfTime("the time would end while CP-SAT reads the model of all schemes")
     collector = _Collector(model)
     found = collector.found
 
