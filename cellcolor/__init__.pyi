@@ -21,6 +21,7 @@ from cellcolor.data.trajectory_verdict import Fault as Fault
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict as TrajectoryVerdict
 from cellcolor.deadline import Deadline as Deadline
 from cellcolor.deadline import OutOfTime as OutOfTime
+from cellcolor.door.asking import explain as explain
 from cellcolor.door.asking import tradeoff as tradeoff
 from cellcolor.door.covering import cover as cover
 from cellcolor.door.drawing import Drawing as Drawing
@@ -52,6 +53,9 @@ from cellcolor.oracle import PathVerdict as PathVerdict
 from cellcolor.oracle import ProvenRange as ProvenRange
 from cellcolor.oracle import Verdict as Verdict
 from cellcolor.painting.paint import Painted as Painted
+from cellcolor.questions.explanation import BranchHere as BranchHere
+from cellcolor.questions.explanation import Explanation as Explanation
+from cellcolor.questions.explanation import RelaxedMinimum as RelaxedMinimum
 from cellcolor.questions.front import Front as Front
 from cellcolor.questions.front import FrontPoint as FrontPoint
 from cellcolor.questions.places import WorldBox as WorldBox

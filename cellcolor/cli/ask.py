@@ -1,4 +1,4 @@
-"""``cellcolor tradeoff``: what fewer lift-offs cover, for a terminal or another program."""
+"""``cellcolor tradeoff`` and ``explain``, for a terminal or another program."""
 
 from __future__ import annotations
 
@@ -70,3 +70,55 @@ def ask_tradeoff(request: TradeoffRequest) -> Exit:
         else:
             say(point)
     return Exit.DONE if all(point.proved for point in points) else Exit.STOPPED
+
+
+@dataclass(frozen=True, slots=True)
+class ExplainRequest:
+    """What the command line asked for.
+
+    Attributes:
+        scene: its file.
+        at: a point in the world, m.
+        as_json: a JSON object for each row instead of lines.
+        workers, seed, deadline: of the search.
+    """
+
+    scene: Path
+    at: str | None
+    as_json: bool
+    workers: int | None
+    seed: int
+    deadline: Deadline
+
+
+def ask_explain(request: ExplainRequest) -> Exit:
+    """Print what each limit, obstacle and test of a scene costs."""
+    from cellcolor.door.asking import explain
+
+    try:
+        at = None if request.at is None else [float(word) for word in request.at.split(",")]
+    except ValueError as error:
+        raise InputError(None, "--at", "a point is three numbers: x,y,z") from error
+    try:
+        with stages_of(request.scene, "explaining") as report:
+            found = explain(
+                request.scene,
+                at=at,
+                time_limit=request.deadline,
+                workers=request.workers,
+                seed=request.seed,
+                progress=report,
+            )
+    except OutOfTime:
+        complain(f"{request.scene}: the time limit came before the scene itself was solved")
+        return Exit.STOPPED
+    except InputError as error:
+        raise error if error.file else error.in_file(str(request.scene)) from error
+    if request.as_json:
+        for row in (*found, *found.here):
+            print_json({"file": str(request.scene)} | row.to_document())
+    else:
+        for line in str(found).split("\n"):
+            say(line)
+    proved = all(row.proved_for_surface for row in found)
+    return Exit.DONE if found.complete and proved else Exit.STOPPED

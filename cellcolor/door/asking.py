@@ -1,15 +1,18 @@
-"""``cellcolor.tradeoff``: what fewer lift-offs cover."""
+"""``cellcolor.tradeoff`` and ``explain``: what fewer lift-offs cover, and what costs one."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from os import PathLike
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.subject import Solvable, Subject, open_subject
+from cellcolor.door.extras import extras_for
+from cellcolor.door.shipped import find_file
+from cellcolor.door.subject import Solvable, Subject, is_made_by, is_scene, open_subject
 from cellcolor.errors import InputError
 from cellcolor.questions.front import Front
 from cellcolor.questions.places import Place, chosen
@@ -19,8 +22,10 @@ from cellcolor.solvers.interface import Options
 
 if TYPE_CHECKING:
     from cellcolor.arrays import Array
+    from cellcolor.frontend import Scene
+    from cellcolor.questions.explanation import Explanation
 
-__all__ = ["tradeoff"]
+__all__ = ["explain", "tradeoff"]
 
 
 def tradeoff(
@@ -68,6 +73,54 @@ def tradeoff(
         cells = frozenset(_cells(subject)[mask].tolist()) - {OUTSIDE}
     per_cell = None if weights is None else _weights(subject, instance, weights)
     return front_of(instance, options, weights=per_cell, required=cells, progress=progress)
+
+
+def explain(
+    scene: str | PathLike[str] | Scene,
+    *,
+    at: Sequence[float] | None = None,
+    time_limit: TimeLimit = None,
+    workers: int | None = None,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> Explanation:
+    """What costs a lift-off: the minimum with each limit, obstacle and test relaxed, with proof.
+
+    Needs the extra ``frontend``.
+
+    Args:
+        scene: its file, its shipped name, or the value.
+        at: (3,) a point in the world, m; what each branch does at the vertex nearest to it is told
+            as well.
+        time_limit: seconds for all of it, None for as long as it takes.
+        workers: CP-SAT's search workers, None for its portfolio.
+        seed: of everything random.
+        progress: told what is being tried.
+
+    Returns:
+        Rows, ranked. Shares are of the whole surface, since what can be reached changes.
+
+    Raises:
+        InputError: the scene cannot be used, nothing of it is reached, or the point is none.
+        OutOfTime: the time limit came before the scene itself was solved.
+    """
+    deadline = Deadline.of(time_limit)
+    if not is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
+        file = find_file(scene)  # type: ignore[arg-type]
+        if not is_scene(file):
+            raise InputError(str(file), None, "is no scene: a scene is a file .toml")
+        scene = file
+    point = None
+    if at is not None:
+        point = np.asarray(at, dtype=float)
+        if point.shape != (3,) or not np.isfinite(point).all():
+            raise InputError(None, "at", "must be three numbers x, y, z in m")
+    with extras_for("the front end"):
+        from cellcolor.frontend.prepared import prepare
+        from cellcolor.questions.explaining import explained
+
+    options = Options(deadline=deadline, workers=workers, seed=seed)
+    return explained(prepare(scene, deadline), options, point, progress)
 
 
 def _cells(subject: Subject) -> np.ndarray:

@@ -34,7 +34,7 @@ from cellcolor.version import __version__
 if TYPE_CHECKING:
     import cellcolor
 
-__all__ = ["BuildResult", "build_surface", "result_of"]
+__all__ = ["BuildResult", "build_surface", "labelled", "result_of"]
 
 _INJECTIVE = (
     "solutions have no names and are told apart by continuity; a color with two configurations on "
@@ -190,16 +190,15 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
         OutOfTime: the deadline came first.
     """
     clock.begin("report")
-    labelled = _labelled(prepared, stages, clock.seconds)
+    surface = labelled(prepared, stages, clock.seconds)
     clock.deadline.check()
     report = _report(prepared, stages, clock.seconds)
     clock.deadline.check()
-    return BuildResult(labelled, report, stages, prepared)
+    return BuildResult(surface, report, stages, prepared)
 
 
-def _labelled(
-    prepared: PreparedScene, stages: Stages, seconds: dict[str, float]
-) -> LabelledSurface:
+def labelled(prepared: PreparedScene, stages: Stages, seconds: dict[str, float]) -> LabelledSurface:
+    """The labelled surface of a scene whose stages took so many seconds each."""
     coloring = stages.cleaned.coloring
     return LabelledSurface(
         name=prepared.scene.name,

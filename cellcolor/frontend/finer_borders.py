@@ -17,15 +17,22 @@ from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Links, Stages, judged
+from cellcolor.frontend.stages import Judged, Links, Stages, judged
 
 __all__ = ["with_finer_borders"]
 
 _WITH_SLIVERS = 4  # times as long are mesh edges at borders that the sliver policy takes away
 
 
-def with_finer_borders(prepared: PreparedScene, clock: StageClock) -> tuple[PreparedScene, Stages]:
+def with_finer_borders(
+    prepared: PreparedScene, clock: StageClock, found: Judged | None = None
+) -> tuple[PreparedScene, Stages]:
     """The stages of a build, on a surface refined at borders as far as the setup asks for.
+
+    Args:
+        prepared: the scene.
+        clock: of the build.
+        found: its stages on this surface, where they are known.
 
     Returns:
         The scene with the surface that was used last, and what the stages have made of that.
@@ -35,7 +42,7 @@ def with_finer_borders(prepared: PreparedScene, clock: StageClock) -> tuple[Prep
         OutOfTime: the deadline came first.
     """
     longest = prepared.setup.continuity.border_length_m
-    found = judged(prepared, clock)
+    found = found or judged(prepared, clock)
     while longest is not None:
         marked = _too_long(found.stages, longest)
         if not marked.any():

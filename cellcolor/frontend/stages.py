@@ -9,7 +9,7 @@ and then one with all its vertices and some more, what is known is taken over.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -37,7 +37,16 @@ from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.tables import in_file
 from cellcolor.memory import chunks
 
-__all__ = ["TURN_NOT_DEFINED", "Cleaned", "Judged", "Links", "Stages", "judged", "run_stages"]
+__all__ = [
+    "TURN_NOT_DEFINED",
+    "Cleaned",
+    "Judged",
+    "Links",
+    "Stages",
+    "judged",
+    "judged_again",
+    "run_stages",
+]
 
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""
@@ -161,11 +170,79 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
             links = _valid_links(
                 prepared, candidates, continuous, tracked, test_on, known, deadline
             )
+    return Judged(_colored_stages(prepared, names, candidates, continuous, links, clock), verdicts)
+
+
+def judged_again(
+    prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
+) -> Judged:
+    """All stages of a scene that asks for less, on the same surface; raises like `run_stages`.
+
+    Only what the stricter scene has refused is asked about again. The result is the same as that of
+    :func:`judged`, but for full circles of joints without limits.
+
+    Args:
+        prepared: the scene that asks for less: whatever was valid before is valid.
+        before: of the stricter scene. Its arm's solutions have names.
+        reasons: the tests that ask for less. A candidate becomes valid only if one of them was the
+            first that it failed.
+    """
+    deadline, known = clock.deadline, before.stages
+    clock.begin("validity at the vertices")
+    verdicts = _judged_again(prepared, before.verdicts, reasons, deadline)
+    candidates = _with_turn(prepared, _candidates(prepared, verdicts))
+    with clock.timed("continuity"):
+        edges, linked = known.continuous.edges, known.continuous.linked.copy()
+        both = candidates.valid[edges].all(axis=1)
+        rows = np.flatnonzero((both & ~linked).any(axis=1))
+        linked[rows] |= _linked(prepared, edges[rows], candidates, deadline)
+        continuous = links = Links(edges, linked)
+    if prepared.setup.continuity.validity_spacing_m is not None:
+        with clock.timed("validity between vertices"):
+            links = _valid_links(
+                prepared,
+                candidates,
+                continuous,
+                verdicts.tracked,
+                _test_of_branches(prepared, deadline),
+                known,
+                deadline,
+                anew=continuous.linked & ~known.links.linked,
+            )
+    stages = _colored_stages(prepared, known.branches, candidates, continuous, links, clock)
+    return Judged(stages, verdicts)
+
+
+def _judged_again(
+    prepared: PreparedScene, before: Verdicts, reasons: Collection[str], deadline: Deadline
+) -> Verdicts:
+    """The verdicts, those with some reasons given anew."""
+    codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
+    rows = np.flatnonzero(np.isin(before.reasons, codes))
+    new = prepared.judge(before.configurations[rows], deadline)
+    members = {}
+    for name in ("configurations", "reasons", "determinants"):
+        members[name] = getattr(before, name).copy()
+        members[name][rows] = getattr(new, name)
+    tracked = before.tracked.copy()
+    tracked[:, rows] = new.tracked
+    return Verdicts(**members, tracked=tracked, seconds=new.seconds)
+
+
+def _colored_stages(
+    prepared: PreparedScene,
+    names: tuple[str, ...],
+    candidates: Candidates,
+    continuous: Links,
+    links: Links,
+    clock: StageClock,
+) -> Stages:
+    """The stages, the last ones made."""
     with clock.timed("colors and cracks"):
         coloring = _colored(names, candidates, candidates.valid, links)
-        deadline.check()
-        cleaned = _cleaned(prepared, names, candidates, links, coloring, deadline)
-    stages = Stages(
+        clock.deadline.check()
+        cleaned = _cleaned(prepared, names, candidates, links, coloring, clock.deadline)
+    return Stages(
         prepared.surface,
         candidates,
         continuous,
@@ -175,7 +252,6 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
         names,
         bool(prepared.kinematics.branches),
     )
-    return Judged(stages, verdicts)
 
 
 TestOn = Callable[[Index, Index], Test]
@@ -217,24 +293,34 @@ def _continuous_links(
     prepared: PreparedScene, candidates: Candidates, known: Stages | None, deadline: Deadline
 ) -> Links:
     """The links along which a branch moves without a jump and within the joint limits."""
-    robot, setup, edges = prepared.robot, prepared.setup, prepared.surface.edges()
-    limits = (robot.lower, robot.upper) if setup.constraints.collision else None
+    edges = prepared.surface.edges()
     linked = shared((len(edges), candidates.valid.shape[1]), np.bool_)
     new = np.ones(len(edges), dtype=bool)
     if known is not None:
         here, there = _in_both(edges, known.continuous.edges)
         linked[here], new[here] = known.continuous.linked[there], False
-    all_rows, probe = np.flatnonzero(new), partial(prepared.arm.probe, deadline=deadline)
+    rows = np.flatnonzero(new)
+    linked[rows] = _linked(prepared, edges[rows], candidates, deadline)
+    return Links(edges, linked)
+
+
+def _linked(
+    prepared: PreparedScene, edges: Index, candidates: Candidates, deadline: Deadline
+) -> Mask:
+    """Whether each branch moves along mesh edges (k, 2) without a jump, (k, branches)."""
+    robot = prepared.robot
+    limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
+    linked = shared((len(edges), candidates.valid.shape[1]), np.bool_)
+    probe = partial(prepared.arm.probe, deadline=deadline)
 
     def link_part(part: slice) -> None:
-        rows = all_rows[part]
-        linked[rows] = link(
-            prepared.surface, edges[rows], candidates, prepared.arm.measure, limits, probe
+        linked[part] = link(
+            prepared.surface, edges[part], candidates, prepared.arm.measure, limits, probe
         )
 
     each = linked.shape[1] * bytes_of_following(robot.joints)
-    _in_parts(link_part, chunks(len(all_rows), each), deadline)
-    return Links(edges, linked)
+    _in_parts(link_part, chunks(len(edges), each), deadline)
+    return linked
 
 
 def _valid_links(
@@ -245,6 +331,7 @@ def _valid_links(
     test_on: TestOn,
     known: Stages | None,
     deadline: Deadline,
+    anew: Mask | bool = False,
 ) -> Links:
     """The links that are valid between the vertices as well.
 
@@ -252,6 +339,7 @@ def _valid_links(
         tracked: (points, n * branches, 3) of the bodies at the vertices, m.
         test_on: makes tests of points on mesh edges.
         known: of a surface whose vertices are the first ones of this one.
+        anew: (edges, branches) of those that are known, which are asked about again.
     """
     surface, edges = prepared.surface, continuous.edges
     linked = shared(continuous.linked.shape, np.bool_)
@@ -263,6 +351,7 @@ def _valid_links(
         here, there = _in_both(edges, known.links.edges)
         border_before = at_domain_border(known.links.edges, known.candidates.valid)
         new[here] = near_border[here] != border_before[there]
+        new |= anew
         linked[here] = np.where(new[here], linked[here], known.links.linked[there])
     each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
     asked = np.flatnonzero((linked & new).any(axis=1))

@@ -1,6 +1,6 @@
 """The commands and their options. What they do is imported only when one of them runs."""
 
-from cellcolor.cli.commands.ask import tradeoff
+from cellcolor.cli.commands.ask import explain, tradeoff
 from cellcolor.cli.commands.bench import bench
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.library import import_, library
@@ -16,6 +16,7 @@ __all__ = [
     "cellcolor",
     "check",
     "cover",
+    "explain",
     "export",
     "import_",
     "inspect",

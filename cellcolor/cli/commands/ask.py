@@ -10,7 +10,7 @@ import click
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.options import INPUT, SEED, TIME_LIMIT
 
-__all__ = ["tradeoff"]
+__all__ = ["explain", "tradeoff"]
 
 _PLACE = "a box x,y,z,x,y,z (lowest and highest corner, m), or a JSON file with a mask."
 
@@ -59,3 +59,37 @@ def tradeoff(
         source, weights, required, left_alone, share, as_json, workers, seed, deadline
     )
     return ask_tradeoff(request)
+
+
+@cellcolor.command()
+@click.argument("scene", metavar="SCENE", type=INPUT)
+@click.option(
+    "--at",
+    metavar="X,Y,Z",
+    help="Tell as well what each branch does at the vertex nearest to this point (m), and by which "
+    "tests its color ends.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object for each row.")
+@click.option("--workers", metavar="N", type=click.IntRange(1, 1000), help="CP-SAT's workers.")
+@SEED
+@TIME_LIMIT
+def explain(
+    scene: Path,
+    at: str | None,
+    as_json: bool,
+    workers: int | None,
+    seed: int,
+    time_limit: float | None,
+) -> int:
+    """Print what costs a lift-off: the minimum without each limit, obstacle and test.
+
+    Of what saves a lift-off the least amount that does is printed too. Where nothing does alone,
+    sets of two and three are tried. Everything is proved like the minimum itself.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.ask import ExplainRequest, ask_explain
+    from cellcolor.deadline import Deadline
+
+    deadline = Deadline.after(time_limit, begun)
+    return ask_explain(ExplainRequest(scene, at, as_json, workers, seed, deadline))

@@ -57,6 +57,7 @@ class Robot:
         model, geometry: Pinocchio's own, for those who want to compute independently; meshes and
             capsules are small spheres there, and followers stand at zero.
         stand_ins: what collides in the place of meshes.
+        tool_links: the links of the tool that have a body.
         followers: frames beside the chain that move with its joints; bodies hang on them too.
         task: what it is asked to do with the tool; :func:`load_robot` leaves the turn free.
     """
@@ -81,6 +82,7 @@ class Robot:
     stand_ins: tuple[StandIn, ...] = ()
     task: TaskSpace = FREE_TURN
     followers: tuple[FollowingFrame, ...] = ()
+    tool_links: frozenset[str] = frozenset()
 
     @property
     def joints(self) -> int:
@@ -192,6 +194,7 @@ def load_robot(
         geometry=geometry,
         stand_ins=stand_ins,
         followers=frames,
+        tool_links=frozenset(tool.shapes),
     )
 
 

@@ -103,6 +103,7 @@ class Judge:
     Attributes:
         reason_names: of the codes of verdicts: valid, no solution, and the tests in the order of
             testing, whether the setup leaves them out or not.
+        left_out: names of tests that are not made.
         tracked_steps: (points,) how far those of :attr:`Verdicts.tracked` may move between two
             tests, m.
     """
@@ -111,13 +112,18 @@ class Judge:
         self,
         workplace: Workplace,
         added: tuple[ValidityTest, ...] = (),
+        left_out: frozenset[str] = frozenset(),
     ) -> None:
         """The tests of a workplace.
+
+        Args:
+            added: tests that the scene has besides.
+            left_out: names of tests that are not made.
 
         Raises:
             InputError: an added test has the name of a standard one.
         """
-        self._workplace = workplace
+        self._workplace, self.left_out = workplace, left_out
         standard_names = (*_NAMES, *(test.name for test in STANDARD_TESTS))
         for number, test in enumerate(added):
             if test.name in standard_names:
@@ -127,7 +133,7 @@ class Judge:
         self.reason_names = tuple(dict.fromkeys([*standard_names, *(t.name for t in added)]))
         on = workplace.setup.constraints
         standard = (test for test in STANDARD_TESTS if getattr(on, test.constraint))
-        self._tests: tuple[ValidityTest, ...] = (*standard, *added)
+        self._tests = tuple(test for test in (*standard, *added) if test.name not in self.left_out)
         margins = workplace.setup.margins
         least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
         self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)
@@ -171,6 +177,17 @@ class Judge:
         processes = share_out(judge, len(parts), at_least=_PAYS)
         whole.seconds.update(zip(timed, (seconds.sum(axis=0) / processes).tolist(), strict=True))
         return whole
+
+    def all_failures(self, configurations: Array) -> dict[str, Mask]:
+        """Which configurations (k, joints) fail each test, also where they fail another one."""
+        postures = Postures.of(
+            self._workplace, turned_into_limits(self._workplace.robot, configurations)
+        )
+        failed: dict[str, Mask] = {}
+        for test in self._tests:
+            before = failed.get(test.name, np.zeros(len(configurations), dtype=bool))
+            failed[test.name] = before | test.failed(postures)
+        return failed
 
     def bytes_kept(self, joints: int) -> int:
         """What the verdict on one configuration takes."""

@@ -1,0 +1,425 @@
+"""What holds an arm back in a scene, and the scene without it: one limit, obstacle or test less.
+
+Each kind of :class:`Relaxation` takes one thing out of a prepared scene. Whatever was valid before
+is valid after it, so only what the scene has refused for a reason of its own is asked again
+(:func:`~cellcolor.frontend.stages.judged_again`). :func:`relaxations_of` lists all of a scene.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from math import degrees
+from typing import ClassVar
+
+import numpy as np
+
+from cellcolor.frontend.contact.solids import Solid
+from cellcolor.frontend.contact.tip import Tip
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.reach.postures import Workplace
+from cellcolor.frontend.reach.validity import Judge
+
+__all__ = [
+    "AddedTest",
+    "GroundPlane",
+    "JointRange",
+    "LinkContact",
+    "ObstacleBody",
+    "PartBody",
+    "Relaxation",
+    "Threshold",
+    "ToolBody",
+    "Torques",
+    "relaxations_of",
+    "without",
+]
+
+
+class Relaxation(ABC):
+    """One thing that a scene asks for, which can be left out or asked for less.
+
+    Attributes:
+        reasons: the tests that it can make a candidate fail. None where bodies are other ones
+            afterwards, so that everything has to be asked anew.
+        unit: of amounts, ``None`` where the thing is there or not.
+    """
+
+    reasons: ClassVar[frozenset[str] | None]
+    unit: ClassVar[str | None] = None
+
+    @property
+    @abstractmethod
+    def name(self) -> str:
+        """For people, as in "without the ground"."""
+
+    @property
+    @abstractmethod
+    def key(self) -> str:
+        """Where scene, setup or URDF have it."""
+
+    @abstractmethod
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """The scene without it."""
+
+    @property
+    def most(self) -> float:
+        """The greatest amount worth asking about, in units."""
+        return 0.0
+
+    def by(self, amount: float) -> Relaxation:  # noqa: ARG002
+        """The same, relaxed by an amount only."""
+        return self
+
+    def said_of(self, amount: float) -> str:
+        """For people, what an amount is, as in "limits of joint_4 wider by 12°"."""
+        return f"{self.name}: {amount:.3g} {self.unit}"
+
+    def parts(self, prepared: PreparedScene) -> tuple[Relaxation, ...]:  # noqa: ARG002
+        """The things that it is made up of, where it can be told apart."""
+        return ()
+
+
+@dataclass(frozen=True)
+class JointRange(Relaxation):
+    """The limits of one joint, which then turns or slides as far as it has to."""
+
+    joint: str
+    wider: float = np.inf
+    reasons = frozenset({"joint limits"})
+    unit = "rad"
+
+    @property
+    def name(self) -> str:
+        """Of the joint."""
+        return f"limits of {self.joint}"
+
+    @property
+    def key(self) -> str:
+        """In the arm's URDF."""
+        return f"joint[{self.joint}].limit"
+
+    @property
+    def most(self) -> float:
+        """A full circle on both sides."""
+        return 2 * np.pi
+
+    def by(self, amount: float) -> JointRange:
+        """Both limits farther out."""
+        return replace(self, wider=amount)
+
+    def said_of(self, amount: float) -> str:
+        """In degrees."""
+        return f"{self.name} wider by {degrees(amount):.3g}° on both sides"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """Its limits moved."""
+        robot = prepared.robot
+        here = np.array([name == self.joint for name in robot.joint_names])
+        lower = np.where(here, robot.lower - self.wider, robot.lower)
+        upper = np.where(here, robot.upper + self.wider, robot.upper)
+        arm = replace(prepared.arm, robot=replace(robot, lower=lower, upper=upper))
+        return _remade(prepared, replace(prepared.workplace, arm=arm))
+
+
+@dataclass(frozen=True)
+class LinkContact(Relaxation):
+    """Two links that may not touch each other, or all that may not."""
+
+    pair: tuple[str, str] | None
+    reasons = frozenset({"self collision"})
+    key = "robot.may_touch"
+
+    @property
+    def name(self) -> str:
+        """Of both links."""
+        return "contact between " + (" and ".join(self.pair) if self.pair else "links")
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """They may touch."""
+        robot = prepared.robot
+        pairs = tuple(
+            (i, j)
+            for i, j in robot.tested_pairs
+            if self.pair and {robot.bodies[i].link, robot.bodies[j].link} != set(self.pair)
+        )
+        arm = replace(prepared.arm, robot=replace(robot, tested_pairs=pairs))
+        return _remade(prepared, replace(prepared.workplace, arm=arm))
+
+    def parts(self, prepared: PreparedScene) -> tuple[LinkContact, ...]:
+        """Each pair of links of a scene."""
+        robot = prepared.robot
+        links = [(robot.bodies[i].link, robot.bodies[j].link) for i, j in robot.tested_pairs]
+        return tuple(LinkContact(pair) for pair in dict.fromkeys(links))
+
+
+@dataclass(frozen=True)
+class Torques(Relaxation):
+    """What the joints can bear: the constraint ``force``."""
+
+    reasons = frozenset({"torque"})
+    name = "joint torques"
+    key = "constraints.force"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """The test of torques left out."""
+        return _remade(prepared, prepared.workplace, self.reasons)
+
+
+_OF_THRESHOLD = {
+    "min_manipulability": "manipulability",
+    "min_task_determinant": "task determinant",
+}
+
+
+@dataclass(frozen=True)
+class Threshold(Relaxation):
+    """A threshold of conditioning, as a share or in m^3 (``given``); ``share`` of it is kept."""
+
+    threshold: str
+    given: str
+    share: float = 0.0
+    unit = "%"
+
+    @property
+    def reasons(self) -> frozenset[str]:  # type: ignore[override]
+        """The test that it belongs to."""
+        return frozenset({_OF_THRESHOLD[self.threshold]})
+
+    @property
+    def name(self) -> str:
+        """Of the threshold."""
+        return f"threshold of the {_OF_THRESHOLD[self.threshold]}"
+
+    @property
+    def key(self) -> str:
+        """Of the setup."""
+        return f"thresholds.{self.given}"
+
+    @property
+    def most(self) -> float:
+        """All of it."""
+        return 100.0
+
+    def by(self, amount: float) -> Threshold:
+        """So many percent lower."""
+        return replace(self, share=1 - amount / 100)
+
+    def said_of(self, amount: float) -> str:
+        """In percent."""
+        return f"{self.name} lower by {amount:.3g} %"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """With what is left of the threshold."""
+        least = prepared.arm.conditioning
+        lowered = {self.threshold: self.share * getattr(least, self.threshold)}
+        arm = replace(prepared.arm, conditioning=replace(least, **lowered))
+        return _remade(prepared, replace(prepared.workplace, arm=arm))
+
+
+@dataclass(frozen=True)
+class GroundPlane(Relaxation):
+    """The ground."""
+
+    lower: float = np.inf
+    reasons = frozenset({"ground", "tip blocked"})
+    unit = "m"
+    name = "ground"
+    key = "ground"
+
+    @property
+    def most(self) -> float:
+        """Farther down most arms do not get."""
+        return 1.0
+
+    def by(self, amount: float) -> GroundPlane:
+        """So much lower."""
+        return replace(self, lower=amount)
+
+    def said_of(self, amount: float) -> str:
+        """In millimeters."""
+        return f"ground lower by {1e3 * amount:.3g} mm"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """Without ground, or with a lower one."""
+        place, ground = prepared.workplace, None
+        if np.isfinite(self.lower) and place.ground is not None:
+            ground = replace(place.ground, offset_m=place.ground.offset_m - self.lower)
+        return _remade(prepared, _around(replace(place, ground=ground)))
+
+
+@dataclass(frozen=True)
+class ObstacleBody(Relaxation):
+    """One of the obstacles, numbered from 1; gone, or farther from the part."""
+
+    number: int
+    kind: str
+    farther: float = np.inf
+    unit = "m"
+
+    @property
+    def reasons(self) -> frozenset[str] | None:  # type: ignore[override]
+        """An obstacle that stands elsewhere may be in the way of what was valid before."""
+        return frozenset({"obstacle collision", "tip blocked"}) if self.farther == np.inf else None
+
+    @property
+    def name(self) -> str:
+        """With the kind that the scene's file gives it."""
+        return f"obstacle {self.number} ({self.kind})"
+
+    @property
+    def key(self) -> str:
+        """Of the scene."""
+        return f"obstacle[{self.number - 1}]"
+
+    @property
+    def most(self) -> float:
+        """Farther away it might as well be gone."""
+        return 0.5
+
+    def by(self, amount: float) -> ObstacleBody:
+        """So much farther from the part."""
+        return replace(self, farther=amount)
+
+    def said_of(self, amount: float) -> str:
+        """In millimeters."""
+        return f"{self.name} {1e3 * amount:.3g} mm farther from the part"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """Without it, or with it moved straight away from the middle of the part's surface."""
+        place, scene, here = prepared.workplace, prepared.scene, self.number - 1
+        moved: tuple[Solid, ...] = ()
+        if self.farther < np.inf:
+            obstacle = scene.obstacle[here]
+            vertices, _ = obstacle.shell(scene.folder)
+            middle = obstacle.placed(vertices).mean(axis=0)
+            away = middle - np.average(
+                prepared.surface.vertices, axis=0, weights=prepared.surface.vertex_areas()
+            )
+            step = self.farther * away / max(float(np.linalg.norm(away)), 1e-9)
+            position = tuple((np.array(obstacle.position_m) + step).tolist())
+            there = obstacle.model_copy(update={"position_m": position})
+            moved = (there.solid(scene.folder),)
+        left = (*place.obstacles[:here], *moved, *place.obstacles[here + 1 :])
+        return _remade(prepared, _around(replace(place, obstacles=left)))
+
+
+@dataclass(frozen=True)
+class PartBody(Relaxation):
+    """The part itself, as what links and the tool's body must not hit."""
+
+    reasons = frozenset({"object collision"})
+    name = "contact of arm and tool with the part"
+    key = "object"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """The test left out."""
+        return _remade(prepared, prepared.workplace, self.reasons)
+
+
+@dataclass(frozen=True)
+class ToolBody(Relaxation):
+    """The tool's body; where the tool works is kept free as before."""
+
+    links: frozenset[str]
+    reasons = None
+    name = "tool's body"
+    key = "robot.tool_urdf"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """Without the collision shapes of the tool."""
+        robot = prepared.robot
+        kept = [i for i, body in enumerate(robot.bodies) if body.link not in self.links]
+        number = {old: new for new, old in enumerate(kept)}
+        slim = replace(
+            robot,
+            bodies=tuple(robot.bodies[i] for i in kept),
+            tested_pairs=tuple(
+                (number[i], number[j]) for i, j in robot.tested_pairs if {i, j} <= number.keys()
+            ),
+        )
+        arm = replace(prepared.arm, robot=slim)
+        return _remade(prepared, replace(prepared.workplace, arm=arm))
+
+
+@dataclass(frozen=True)
+class AddedTest(Relaxation):
+    """A test of validity that the scene has besides."""
+
+    test: str
+
+    @property
+    def reasons(self) -> frozenset[str]:  # type: ignore[override]
+        """Its own."""
+        return frozenset({self.test})
+
+    @property
+    def name(self) -> str:
+        """Of the test."""
+        return f"test of {self.test}"
+
+    @property
+    def key(self) -> str:
+        """Of the scene."""
+        return "validity_test"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """Without it."""
+        return _remade(prepared, prepared.workplace, self.reasons)
+
+
+def _remade(
+    prepared: PreparedScene, place: Workplace, left_out: frozenset[str] = frozenset()
+) -> PreparedScene:
+    """The scene with another workplace, and with fewer tests."""
+    left_out |= prepared.judge.left_out
+    judge = Judge(place, prepared.scene.validity_test, left_out)
+    return replace(prepared, workplace=place, judge=judge)
+
+
+def _around(place: Workplace) -> Workplace:
+    """The workplace, the room at the tool's tip told what stands around."""
+    tip = Tip(place.robot, place.tip.body.radius, list(place.obstacles), place.ground)
+    return replace(place, tip=tip)
+
+
+def relaxations_of(prepared: PreparedScene) -> tuple[Relaxation, ...]:
+    """All that can be taken out of a scene, one by one; all contacts between links are one."""
+    place, robot, on = prepared.workplace, prepared.robot, prepared.setup.constraints
+    found: list[Relaxation] = []
+    if on.collision:
+        found += [
+            ObstacleBody(number, str(getattr(one, "kind", type(one).__name__)))
+            for number, one in enumerate(prepared.scene.obstacle, 1)
+        ]
+        found += [] if place.ground is None else [GroundPlane()]
+        found.append(PartBody())
+        found += [ToolBody(robot.tool_links)] if robot.tool_links else []
+        limited = np.isfinite(robot.lower) | np.isfinite(robot.upper)
+        found += [
+            JointRange(name)
+            for name, limit in zip(robot.joint_names, limited, strict=True)
+            if limit
+        ]
+        found += [LinkContact(None)] if robot.tested_pairs else []
+    if on.force:
+        found.append(Torques())
+    if on.conditioning:
+        least = prepared.setup.thresholds
+        found += [
+            Threshold(name, name if getattr(least, name) is not None else f"{name}_m3")
+            for name in _OF_THRESHOLD
+            if getattr(prepared.arm.conditioning, name)
+        ]
+    names = dict.fromkeys(test.name for test in prepared.scene.validity_test)
+    return (*found, *(AddedTest(name) for name in names))
+
+
+def without(prepared: PreparedScene, what: Iterable[Relaxation]) -> PreparedScene:
+    """The scene without several things; obstacles are numbered as the scene has them."""
+    # From the last obstacle to the first, so that the numbers of those left stay. The tool comes
+    # last: what stands around is told to the tip by the bodies that the tool has.
+    for one in sorted(what, key=lambda each: (each.reasons is None, -getattr(each, "number", 0))):
+        prepared = one.applied(prepared)
+    return prepared

@@ -1,0 +1,172 @@
+"""What costs a lift-off, as a value: a scene's minimum, and its minimum with less asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from cellcolor.data.wording import count
+
+__all__ = ["BranchHere", "Explanation", "RelaxedMinimum"]
+
+
+@dataclass(frozen=True)
+class RelaxedMinimum:
+    """The fewest lift-offs of a scene without some of what it asks for.
+
+    Attributes:
+        relaxed: what is left out or asked for less, in words; empty for the scene as it is.
+        keys: where scene, setup or URDF have it.
+        segments: the fewest that were found; None if none were found in time.
+        at_least: no division has fewer segments.
+        covered_share: the area with a color, as a share of the whole surface, 0 to 1.
+        proved_for_surface: whether ``segments`` is the fewest of any division.
+        note: what else has to be said of it, or "".
+    """
+
+    relaxed: tuple[str, ...]
+    keys: tuple[str, ...]
+    segments: int | None
+    at_least: int
+    covered_share: float
+    proved_for_surface: bool
+    note: str = ""
+
+    @property
+    def lift_offs(self) -> int | None:
+        """One between each two segments."""
+        return None if self.segments is None else max(0, self.segments - 1)
+
+    def same_as(self, other: RelaxedMinimum) -> bool:
+        """Whether number and area are the same."""
+        return (self.segments, self.covered_share) == (other.segments, other.covered_share)
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "relaxed": list(self.relaxed),
+            "keys": list(self.keys),
+            "lift_offs": self.lift_offs,
+            "segments": self.segments,
+            "at_least_segments": self.at_least,
+            "covered_share": self.covered_share,
+            "proved_for_surface": self.proved_for_surface,
+            "note": self.note,
+        }
+
+    def __str__(self) -> str:
+        known = "not found in time" if self.lift_offs is None else count(self.lift_offs, "lift-off")
+        proof = "" if self.proved_for_surface or self.lift_offs is None else " (not proved)"
+        area = f"{100 * self.covered_share:.1f} % of the area"
+        what = f"; {' and '.join(self.relaxed)}" if self.relaxed else ""
+        return f"{known}{proof}, {area}{what}{f' ({self.note})' if self.note else ''}"
+
+
+@dataclass(frozen=True)
+class BranchHere:
+    """What a branch does at one vertex.
+
+    Attributes:
+        branch: its name.
+        color: its color there; None where it has none.
+        fails: the tests that it fails there; "no solution" alone where it does not reach.
+        ends_m: how far the nearest vertex is where it has another color or none, m; None if there
+            is none, or if it has no color here.
+        ends_by: the tests that it fails at that vertex.
+    """
+
+    branch: str
+    color: str | None
+    fails: tuple[str, ...]
+    ends_m: float | None = None
+    ends_by: tuple[str, ...] = ()
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "branch": self.branch,
+            "color": self.color,
+            "fails": list(self.fails),
+            "ends_m": self.ends_m,
+            "ends_by": list(self.ends_by),
+        }
+
+    def __str__(self) -> str:
+        if self.color is None:
+            return f"{self.branch}: {', '.join(self.fails) or 'given up as a sliver'}"
+        if self.ends_m is None:
+            return f"{self.branch}: has a color here and everywhere"
+        why = ", ".join(self.ends_by) or "the way there is not continuous"
+        return f"{self.branch}: has a color here, which ends {1e3 * self.ends_m:.0f} mm away: {why}"
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """What holds an arm back in a scene.
+
+    Attributes:
+        name: of the scene.
+        base: the scene as it is.
+        alone: each thing relaxed alone, the fewest lift-offs first, then the largest area.
+        amounts: of each thing that saves a lift-off, the least amount that was found to do so.
+        sets: the smallest sets that save a lift-off where no single thing does (minimal correction
+            sets).
+        here: what each branch does at the vertex that was asked about; empty if none was.
+        complete: whether the time limit left nothing out.
+    """
+
+    name: str
+    base: RelaxedMinimum
+    alone: tuple[RelaxedMinimum, ...]
+    amounts: tuple[RelaxedMinimum, ...] = ()
+    sets: tuple[RelaxedMinimum, ...] = ()
+    here: tuple[BranchHere, ...] = ()
+    complete: bool = True
+
+    def __iter__(self) -> Iterator[RelaxedMinimum]:
+        yield self.base
+        yield from self.alone
+        yield from self.amounts
+        yield from self.sets
+
+    def __str__(self) -> str:
+        lines = [f"{self.name}: {self.base}"]
+        changing = [row for row in self.alone if not row.same_as(self.base)]
+        lines += [f"  without {row.relaxed[0]}: {self._change(row)}" for row in changing]
+        lines += [f"  {row.relaxed[0]}: {self._change(row)}" for row in self.amounts]
+        lines += [
+            f"  without {' and '.join(row.relaxed)}: {self._change(row)}" for row in self.sets
+        ]
+        same = [row for row in self.alone if row.same_as(self.base)]
+        if same:
+            lines.append(f"  no change without: {', '.join(_in_short(same))}")
+        lines += [f"  at the point, {branch}" for branch in self.here]
+        if not self.complete:
+            lines.append("  the time limit came before everything was tried")
+        return "\n".join(lines)
+
+    def _change(self, row: RelaxedMinimum) -> str:
+        if row.lift_offs is None:
+            return "not solved in time"
+        before, after = self.base.lift_offs, row.lift_offs
+        number = f"still {count(after, 'lift-off')}"
+        if before != after:
+            number = f"{before} → {count(after, 'lift-off')}"
+        proof = "" if row.proved_for_surface else " (not proved)"
+        shares = f"{100 * self.base.covered_share:.1f} → {100 * row.covered_share:.1f} %"
+        if row.covered_share == self.base.covered_share:
+            shares = f"{100 * row.covered_share:.1f} %"
+        return f"{number}{proof}, {shares} of the area{f'; {row.note}' if row.note else ''}"
+
+
+def _in_short(rows: Sequence[RelaxedMinimum]) -> Iterator[str]:
+    """What is relaxed in each of the rows; joints and pairs of links are only counted."""
+    joints = [row for row in rows if row.keys[0].startswith("joint[")]
+    pairs = [row for row in rows if row.keys[0] == "robot.may_touch"]
+    yield from (row.relaxed[0] for row in rows if row not in joints and row not in pairs)
+    if joints:
+        yield f"limits of {count(len(joints), 'joint')}"
+    if len(pairs) > 1:
+        yield f"contact of {count(len(pairs), 'pair')} of links"
+    yield from (row.relaxed[0] for row in pairs if len(pairs) == 1)

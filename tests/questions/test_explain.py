@@ -1,0 +1,296 @@
+"""What costs a lift-off: each claim against the changed scene, built from scratch."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+from commands import json_lines, run
+from hypothesis import given
+from hypothesis import strategies as st
+from shipped import SCENES, shipped
+
+import cellcolor
+from cellcolor.deadline import NEVER
+from cellcolor.frontend import BuildResult, Scene, build_surface
+from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.reach import validity
+from cellcolor.frontend.relaxing import (
+    GroundPlane,
+    JointRange,
+    LinkContact,
+    ObstacleBody,
+    PartBody,
+    Relaxation,
+    Threshold,
+    ToolBody,
+    Torques,
+    relaxations_of,
+    without,
+)
+from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.stages import Stages, judged, judged_again
+from cellcolor.questions.explanation import Explanation
+from examples import examples
+
+
+def scene_of(name: str, vertices: int = 80) -> Scene:
+    """A shipped scene, coarse, and narrow in joint 4 so that every kind of thing holds it back."""
+    scene = shipped(name, vertices)
+    return scene.with_setup(
+        scene.setup.varied(
+            robot={"arm_urdf": with_range(urdf_of(scene, "arm_urdf"), "wrist_1_joint", 2.0)}
+        )
+    )
+
+
+def urdf_of(scene: Scene, key: str) -> str:
+    """The text of a URDF that a scene's setup names, or is given."""
+    named = getattr(scene.setup.robot, key)
+    return named if named.startswith("<") else (scene.setup.folder / named).read_text()
+
+
+def with_range(text: str, joint: str, limit: float) -> str:
+    """A URDF whose joint turns that far to both sides."""
+    there = text.index(f'<joint name="{joint}"')
+    limits = re.compile(r'lower="[^"]*" upper="[^"]*"')
+    assert limits.search(text, there)
+    new = limits.sub(f'lower="{-limit}" upper="{limit}"', text[there:], count=1)
+    return text[:there] + new
+
+
+def changed(scene: Scene, what: Relaxation) -> Scene:
+    """The scene as somebody would write it who changes that one thing in the files."""
+    setup = scene.setup
+    match what:
+        case ObstacleBody(number=number):
+            kept = [one for at, one in enumerate(scene.obstacle, 1) if at != number]
+            return scene.varied(obstacle=tuple(kept))
+        case GroundPlane(lower=lower):
+            lowered = None
+            if lower < np.inf:
+                assert scene.ground is not None
+                lowered = {"height_m": scene.ground.height_m - lower}
+            return scene.varied(ground=lowered)
+        case LinkContact(pair=pair):
+            robot = prepare(scene).robot
+            links = [(robot.bodies[i].link, robot.bodies[j].link) for i, j in robot.tested_pairs]
+            may_touch = (*setup.robot.may_touch, *([pair] if pair else links))
+            return scene.with_setup(setup.varied(robot={"may_touch": may_touch}))
+        case Torques():
+            return scene.with_setup(setup.varied(constraints={"force": False}))
+        case Threshold(given=name, share=share):
+            kept_share = share * getattr(setup.thresholds, name)
+            return scene.with_setup(setup.varied(thresholds={name: kept_share}))
+        case JointRange(joint=joint, wider=wider):
+            limit = 1e3 if wider == np.inf else 2.0 + wider
+            assert joint == "wrist_1_joint" or limit == 1e3
+            text = with_range(urdf_of(scene, "arm_urdf"), joint, limit)
+            return scene.with_setup(setup.varied(robot={"arm_urdf": text}))
+        case ToolBody():
+            text = re.sub(
+                r"<collision.*?</collision>", "", urdf_of(scene, "tool_urdf"), flags=re.DOTALL
+            )
+            return scene.with_setup(setup.varied(robot={"tool_urdf": text}))
+    raise AssertionError(what)
+
+
+def from_scratch(scene: Scene, what: Relaxation, monkeypatch: pytest.MonkeyPatch) -> BuildResult:
+    if not isinstance(what, PartBody):
+        return build_surface(changed(scene, what))
+    with monkeypatch.context() as patch:  # no file says that the part may be hit
+        tests = [one for one in validity.STANDARD_TESTS if one.name != "object collision"]
+        patch.setattr(validity, "STANDARD_TESTS", tuple(tests))
+        return build_surface(scene)
+
+
+def same_answers(found: Stages, other: Stages) -> bool:
+    """Whether two builds of one surface have the same colors, cracks and reasons."""
+    return (
+        np.array_equal(found.candidates.valid, other.candidates.valid)
+        and np.array_equal(found.links.linked, other.links.linked)
+        and np.array_equal(found.cleaned.coloring.node_color, other.cleaned.coloring.node_color)
+        and found.cleaned.cracks == other.cleaned.cracks
+    )
+
+
+@pytest.mark.parametrize("name", ["wok_obstacle", "hemisphere_tilted"])
+def test_each_row_is_that_of_the_scene_with_the_thing_changed(
+    name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = scene_of(name)
+    if name == "hemisphere_tilted":  # where nothing stands around, the tool's tip needs no room
+        scene = scene.varied(ground=None)
+    prepared = prepare(scene)
+    clock = StageClock(NEVER, None)
+    before = judged(prepared, clock)
+    changing = 0
+    for one in relaxations_of(prepared):
+        if isinstance(one, ToolBody):
+            if scene.ground is not None or scene.obstacle:
+                continue
+            found = judged(without(prepared, [one]), clock).stages
+        else:
+            assert one.reasons is not None
+            found = judged_again(without(prepared, [one]), before, one.reasons, clock).stages
+        assert same_answers(found, from_scratch(scene, one, monkeypatch).stages), one
+        changing += not np.array_equal(found.candidates.valid, before.stages.candidates.valid)
+    assert changing >= 3
+
+
+@examples(8)
+@given(
+    name=st.sampled_from(["wok_obstacle", "hemisphere_tilted"]),
+    chosen=st.sets(st.integers(0, 30), min_size=2),
+    wider=st.floats(0.01, 1.0),
+)
+def test_what_is_known_changes_nothing_of_what_is_found(
+    name: str, chosen: set[int], wider: float
+) -> None:
+    """Several things at a time, some of them a little: as if everything were asked anew."""
+    prepared = prepare(scene_of(name))
+    clock = StageClock(NEVER, None)
+    things = [one for one in relaxations_of(prepared) if one.reasons is not None]
+    things += [JointRange("wrist_1_joint").by(wider), GroundPlane().by(wider)]
+    what = list({type(things[i % len(things)]): things[i % len(things)] for i in chosen}.values())
+    reasons = frozenset[str]().union(*(one.reasons or () for one in what))
+    relaxed = without(prepared, what)
+    found = judged_again(relaxed, judged(prepared, clock), reasons, clock)
+    anew = judged(relaxed, clock)
+    assert same_answers(found.stages, anew.stages)
+    assert np.array_equal(found.verdicts.reasons, anew.verdicts.reasons)
+
+
+@pytest.fixture(scope="module")
+def tilted() -> Explanation:
+    return cellcolor.explain(shipped("hemisphere_tilted", 200), at=(0.4, 0.0, 0.2))
+
+
+def test_numbers_and_areas_are_those_of_the_changed_scene(tilted: Explanation) -> None:
+    scene = shipped("hemisphere_tilted", 200)
+    for row, other in (
+        (tilted.base, scene),
+        (
+            next(row for row in tilted.alone if row.relaxed == ("ground",)),
+            scene.varied(ground=None),
+        ),
+    ):
+        built = cellcolor.build(other)
+        solution = cellcolor.solve(built).solution
+        areas = built.surface.vertex_areas
+        colored = [bool(colors) for colors in built.surface.vertex_colors]
+        assert (row.segments, row.proved_for_surface) == (solution.segments, True)
+        assert row.covered_share == pytest.approx(areas[colored].sum() / areas.sum())
+    assert tilted.complete and all(row.proved_for_surface for row in tilted)
+    numbers = [row.segments or 0 for row in tilted.alone]
+    assert numbers == sorted(numbers)
+
+
+def test_an_amount_saves_what_it_says_and_less_of_it_does_not(tilted: Explanation) -> None:
+    """The ground lower by as much as is said, and by as much as is said not to be enough."""
+    scene = shipped("hemisphere_tilted", 200)
+    (row,) = [row for row in tilted.amounts if row.keys == ("ground",)]
+    enough, too_little = (
+        float(re.search(r"lower by ([\d.]+) mm", text)[1]) / 1e3  # type: ignore[index]
+        for text in (row.relaxed[0], row.note)
+    )
+    assert 0 < too_little < enough < 1.1 * too_little
+    numbers = {}
+    for lower in (enough * 1.001, too_little * 0.999):
+        built = cellcolor.build(changed(scene, GroundPlane(lower)))
+        numbers[lower] = cellcolor.solve(built).solution.segments
+    assert list(numbers.values()) == [row.segments, tilted.base.segments]
+    assert row.segments is not None and row.segments < (tilted.base.segments or 0)
+
+
+def test_where_one_is_not_enough_the_smallest_set_is_found() -> None:
+    """An obstacle that stands there twice: neither of the two costs anything alone."""
+    scene = shipped("wok_obstacle", 200)
+    alone = cellcolor.explain(scene)
+    (lone,) = [row for row in alone.alone if row.keys == ("obstacle[0]",)]
+    assert lone.segments is not None and lone.segments < (alone.base.segments or 0)
+    assert alone.sets == ()
+    twice = cellcolor.explain(scene.with_obstacle(*scene.obstacle))
+    assert all(row.segments == twice.base.segments for row in twice.alone)
+    both = [row for row in twice.sets if row.keys == ("obstacle[0]", "obstacle[1]")]
+    assert [row.segments for row in both] == [lone.segments]
+    assert all(len(row.relaxed) == 2 for row in twice.sets)
+
+
+def test_an_obstacle_farther_away() -> None:
+    scene = shipped("wok_obstacle", 200)
+    row = next(row for row in cellcolor.explain(scene).amounts if row.keys == ("obstacle[0]",))
+    (amount,) = re.findall(r"([\d.]+) mm farther", row.relaxed[0])
+    prepared = prepare(scene)
+    middle = np.average(prepared.surface.vertices, axis=0, weights=prepared.surface.vertex_areas())
+    place = np.array(scene.obstacle[0].position_m)  # its own middle, as it is a cylinder
+    there = place + float(amount) / 1e3 * (place - middle) / np.linalg.norm(place - middle)
+    moved = scene.obstacle[0].model_copy(update={"position_m": tuple(there.tolist())})
+    found = cellcolor.solve(cellcolor.build(scene.varied(obstacle=(moved,)))).solution
+    assert found.segments == row.segments
+
+
+def test_a_vertex_is_told_what_each_branch_fails(tilted: Explanation) -> None:
+    built = cellcolor.build(shipped("hemisphere_tilted", 200))
+    vertices = built.surface.vertices
+    vertex = int(np.argmin(np.linalg.norm(vertices - [0.4, 0.0, 0.2], axis=1)))
+    assert [row.branch for row in tilted.here] == list(built.branches)
+    for row, code, color in zip(
+        tilted.here, built.reasons[vertex], built.node_color[vertex], strict=True
+    ):
+        first = built.reason_names[code]
+        assert row.color == (None if color < 0 else built.surface.colors[color])
+        if first not in ("valid", "no solution"):
+            assert first == row.fails[0]  # tests are told in their order
+        if color >= 0 and row.ends_m is not None:
+            without_it = [own for own in range(len(vertices)) if built.node_color[own].max() >= -1]
+            others = [v for v in without_it if color not in built.surface.vertex_colors[v]]
+            away = np.linalg.norm(vertices[others] - vertices[vertex], axis=1)
+            assert row.ends_m == pytest.approx(away.min())
+
+
+def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "wok.toml"
+    text = (SCENES / "wok_obstacle.toml").read_text()
+    setup = (SCENES.parents[1] / "models" / "robots" / "ur5_polishing.toml").as_posix()
+    text = text.replace("../../models/robots/ur5_polishing.toml", setup)
+    file.write_text(text.replace("target_vertices = 1000", "target_vertices = 200"))
+    assert run("explain", file, "--json", "--at", "0.4,0,0") == 0
+    rows = json_lines(capsys.readouterr().out)
+    assert rows[0]["relaxed"] == [] and rows[1]["relaxed"] == ["obstacle 1 (cylinder)"]
+    assert rows[1]["lift_offs"] < rows[0]["lift_offs"]
+    assert all({"branch", "fails"} <= row.keys() for row in rows if "relaxed" not in row)
+    assert sum("branch" in row for row in rows) == 8
+    for wrong, said in (
+        ((file, "--at", "1,2"), "at: must be three numbers"),
+        ((file, "--at", "1,2,x"), "--at: a point is three numbers"),
+        ((file, "--at", "1,2,nan"), "at: must be three numbers"),
+        ((tmp_path / "none.toml",), "No such file"),
+        ((SCENES.parent / "index.json",), "is no scene"),
+    ):
+        assert run("explain", *wrong) == 2
+        assert said in capsys.readouterr().err
+    assert run("explain", file, "--time-limit", "0.01") == 3
+    assert "before the scene itself was solved" in capsys.readouterr().err
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("file", sorted(SCENES.glob("*.toml")), ids=lambda file: file.stem)
+def test_every_row_of_the_shipped_scenes_from_scratch(
+    file: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    scene = Scene.read(file)
+    found = cellcolor.explain(scene)
+    rows: dict[Any, Any] = {row.relaxed: row for row in found.alone}
+    for one in relaxations_of(prepare(scene)):
+        if isinstance(one, ToolBody):  # its tip needs other room from obstacles and the ground
+            continue
+        built = from_scratch(scene, one, monkeypatch)
+        solution = cellcolor.solve(built).solution
+        assert rows[(one.name,)].segments == solution.segments, one
