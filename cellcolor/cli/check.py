@@ -21,7 +21,6 @@ from cellcolor.data.check_error import CheckError
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.claims import format_of_claim, read_trajectory
-from cellcolor.door.judging import judge_trajectory
 from cellcolor.door.shipped import find_claim, find_file
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError
@@ -120,6 +119,8 @@ def _check_plan(request: Request, subject: Subject, claim: Path) -> Exit:
 
 
 def _check_trajectory(request: Request, claim: Path) -> Exit:
+    from cellcolor.door.judging import judge_trajectory
+
     given = read_trajectory(claim)
     try:
         subject = _open(request, request.deadline)

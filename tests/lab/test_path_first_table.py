@@ -12,7 +12,6 @@ from shipped import TOP, shipped
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.prepared import prepare
 
 sys.path.append(str(TOP / "benchmarks"))
 from path_first import accepted, counted
@@ -21,14 +20,13 @@ from path_first import accepted, counted
 def test_strokes_of_the_square_and_a_jump_planted_in_them() -> None:
     """One stroke covers the square; a full circle in the middle of it makes two."""
     scene = shipped("square", 200)
-    built = build_surface(scene)
-    prepared = prepare(scene.with_setup(scene.setup.varied(motion=None)))
-    one = counted(prepared, built, 0.5, 0.06)
+    built = build_surface(scene.with_setup(scene.setup.varied(motion=None)))
+    one = counted(built, 0.5, 0.06)
     assert (one.optimistic, one.judged, len(one.strokes)) == (0, 0, 1)
     joints = one.trajectory.joints.copy()
     middle = len(joints) // 2
     joints[middle:, 5] += 2 * np.pi
-    contact = accepted(prepared, built, replace(one.trajectory, joints=joints))
+    contact = accepted(built, replace(one.trajectory, joints=joints))
     assert one.trajectory.contact[middle - 1 : middle + 2].all()
     begins = np.flatnonzero(contact[1:] & ~contact[:-1])
     assert begins.tolist() == [middle] and contact[0]

@@ -16,7 +16,7 @@ from cellcolor.trajectory_checker.check import check_trajectory
 
 @pytest.mark.parametrize("make", [rasters.cap, rasters.square])
 def test_the_untouched_ones_have_none(make: rasters.Maker) -> None:
-    assert check_trajectory(*make()).faults == ()
+    assert check_trajectory(*make()[1:]).faults == ()
 
 
 @pytest.mark.parametrize("name", PLANTERS)
