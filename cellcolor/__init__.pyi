@@ -32,6 +32,7 @@ from cellcolor.door.oracle import Oracle as Oracle
 from cellcolor.door.painting import paint as paint
 from cellcolor.door.parts import inspect as inspect
 from cellcolor.door.parts import repair as repair
+from cellcolor.door.placing import place as place
 from cellcolor.door.planning import PlannedScene as PlannedScene
 from cellcolor.door.planning import plan as plan
 from cellcolor.door.reading import read as read
@@ -58,6 +59,8 @@ from cellcolor.questions.explanation import Explanation as Explanation
 from cellcolor.questions.explanation import RelaxedMinimum as RelaxedMinimum
 from cellcolor.questions.front import Front as Front
 from cellcolor.questions.front import FrontPoint as FrontPoint
+from cellcolor.questions.placements import PlacedMinimum as PlacedMinimum
+from cellcolor.questions.placements import Placements as Placements
 from cellcolor.questions.places import WorldBox as WorldBox
 from cellcolor.tool_paths.cover import Covered as Covered
 from cellcolor.version import __version__ as __version__

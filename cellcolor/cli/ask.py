@@ -1,9 +1,11 @@
-"""``cellcolor tradeoff`` and ``explain``, for a terminal or another program."""
+"""``cellcolor tradeoff``, ``explain`` and ``place``, for a terminal or another program."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_subject
@@ -122,3 +124,73 @@ def ask_explain(request: ExplainRequest) -> Exit:
             say(line)
     proved = all(row.proved_for_surface for row in found)
     return Exit.DONE if found.complete and proved else Exit.STOPPED
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceRequest:
+    """What the command line asked for.
+
+    Attributes:
+        scene: its file.
+        ranges: of each variable that was given, ``LOW,HIGH``.
+        cover: the share that has to be covered; None for as much as where the part stands.
+        points, best, vertices: see :func:`~cellcolor.door.placing.place`.
+        as_json: a JSON object for each row instead of lines.
+        jobs, cluster: who does the work.
+        seed, deadline: of the search.
+    """
+
+    scene: Path
+    ranges: Mapping[str, str]
+    cover: float | None
+    points: int
+    best: int
+    vertices: int
+    as_json: bool
+    jobs: int
+    cluster: str | None
+    seed: int
+    deadline: Deadline
+
+
+def ask_place(request: PlaceRequest) -> Exit:
+    """Print where the part should stand."""
+    from cellcolor.cli.workers import workers_for
+    from cellcolor.door.placing import place
+
+    ranges: dict[str, Any] = {name: _range(name, text) for name, text in request.ranges.items()}
+    try:
+        with stages_of(request.scene, "placing") as report:
+            found = place(
+                request.scene,
+                **ranges,
+                cover=request.cover,
+                points=request.points,
+                best=request.best,
+                vertices=request.vertices,
+                jobs=workers_for(request.jobs, request.cluster),
+                time_limit=request.deadline,
+                seed=request.seed,
+                progress=report,
+            )
+    except OutOfTime:
+        complain(f"{request.scene}: the time limit came before the scene itself was solved")
+        return Exit.STOPPED
+    except InputError as error:
+        raise error if error.file else error.in_file(str(request.scene)) from error
+    if request.as_json:
+        for row in found:
+            print_json({"file": str(request.scene)} | row.to_document())
+    else:
+        for line in str(found).split("\n"):
+            say(line)
+    proved = found.best and all(row.proved_for_surface for row in found.best)
+    return Exit.DONE if found.complete and proved else Exit.STOPPED
+
+
+def _range(name: str, text: str) -> tuple[float, float]:
+    try:
+        low, high = map(float, text.split(","))
+    except ValueError as error:
+        raise InputError(None, f"--{name}", "a range is two numbers: LOW,HIGH") from error
+    return low, high

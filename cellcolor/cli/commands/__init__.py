@@ -1,6 +1,6 @@
 """The commands and their options. What they do is imported only when one of them runs."""
 
-from cellcolor.cli.commands.ask import explain, tradeoff
+from cellcolor.cli.commands.ask import explain, place, tradeoff
 from cellcolor.cli.commands.bench import bench
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.library import import_, library
@@ -23,6 +23,7 @@ __all__ = [
     "library",
     "new",
     "paint",
+    "place",
     "plan",
     "repair",
     "show",

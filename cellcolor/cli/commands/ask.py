@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import click
 
 from cellcolor.cli.commands.group import cellcolor
-from cellcolor.cli.commands.options import INPUT, SEED, TIME_LIMIT
+from cellcolor.cli.commands.options import CLUSTER, INPUT, JOBS, SEED, TIME_LIMIT
 
-__all__ = ["explain", "tradeoff"]
+__all__ = ["explain", "place", "tradeoff"]
 
 _PLACE = "a box x,y,z,x,y,z (lowest and highest corner, m), or a JSON file with a mask."
 
@@ -93,3 +94,87 @@ def explain(
 
     deadline = Deadline.after(time_limit, begun)
     return ask_explain(ExplainRequest(scene, at, as_json, workers, seed, deadline))
+
+
+def _ranges(command: Callable[..., int]) -> Callable[..., int]:
+    """An option for each variable of a placement."""
+    for name, unit in (
+        ("yaw", "rad"),
+        ("pitch", "rad"),
+        ("roll", "rad"),
+        ("z", "m"),
+        ("y", "m"),
+        ("x", "m"),
+    ):
+        said = f"Where the part may be put, {name} in {unit}. What is not given stays."
+        command = click.option(f"--{name}", metavar="LOW,HIGH", help=said)(command)
+    return command
+
+
+@cellcolor.command()
+@click.argument("scene", metavar="SCENE", type=INPUT)
+@_ranges
+@click.option(
+    "--cover",
+    metavar="S",
+    type=click.FloatRange(0, 1),
+    help="The share of the surface that has to be covered, 0 to 1.  [default: as much as where the "
+    "part stands]",
+)
+@click.option(
+    "--points",
+    metavar="N",
+    type=click.IntRange(1, 10**6),
+    default=128,
+    show_default=True,
+    help="Placements tried all over the ranges; three quarters as many follow around the best.",
+)
+@click.option(
+    "--best",
+    metavar="N",
+    type=click.IntRange(1, 100),
+    default=3,
+    show_default=True,
+    help="Placements that are proved on the scene's own mesh and printed.",
+)
+@click.option(
+    "--vertices",
+    metavar="N",
+    type=click.IntRange(20, 10**6),
+    default=300,
+    show_default=True,
+    help="Of the coarse mesh that placements are tried on.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print a JSON object for each placement.")
+@click.option("--jobs", default=1, **JOBS)
+@CLUSTER
+@SEED
+@TIME_LIMIT
+def place(
+    scene: Path,
+    cover: float | None,
+    points: int,
+    best: int,
+    vertices: int,
+    as_json: bool,
+    jobs: int,
+    cluster: str | None,
+    seed: int,
+    time_limit: float | None,
+    **ranges: str | None,
+) -> int:
+    """Print where the part should stand: the placements with the fewest lift-offs, proved.
+
+    Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
+    """
+    begun = time.monotonic()
+
+    from cellcolor.cli.ask import PlaceRequest, ask_place
+    from cellcolor.deadline import Deadline
+
+    deadline = Deadline.after(time_limit, begun)
+    given = {name: text for name, text in ranges.items() if text is not None}
+    request = PlaceRequest(
+        scene, given, cover, points, best, vertices, as_json, jobs, cluster, seed, deadline
+    )
+    return ask_place(request)

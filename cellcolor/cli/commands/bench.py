@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from cellcolor.cli.commands.group import Commands, cellcolor
-from cellcolor.cli.commands.options import PATH, SECONDS, SEED
+from cellcolor.cli.commands.options import CLUSTER, JOBS, PATH, SECONDS, SEED
 from cellcolor.solvers.registry import DEFAULT, REFERENCE
 
 if TYPE_CHECKING:
@@ -31,18 +31,6 @@ def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> t
 
 
 _TABLES = click.argument("tables", metavar="TABLE.csv…", nargs=-1, required=True, type=PATH)
-_JOBS: dict[str, Any] = {
-    "metavar": "N",
-    "type": click.IntRange(min=1),
-    "show_default": True,
-    "help": "Processes at a time.",
-}
-_CLUSTER = click.option(
-    "--cluster",
-    metavar="ADDRESS",
-    help="The scheduler of a Dask cluster that does the work, such as tcp://10.0.0.1:8786, "
-    "instead of processes here.",
-)
 
 
 @cellcolor.group(cls=Commands)
@@ -103,8 +91,8 @@ def bench() -> None:
     show_default=True,
     help="For each run; beyond it the run is killed.",
 )
-@click.option("--jobs", default=1, **_JOBS)
-@_CLUSTER
+@click.option("--jobs", default=1, **JOBS)
+@CLUSTER
 @click.option(
     "-o",
     "--output",
@@ -199,8 +187,8 @@ def start_up(repetitions: int, output: Path | None) -> int:
     show_default=True,
     help="Seconds for each solve.",
 )
-@click.option("--jobs", default=2, **_JOBS)
-@_CLUSTER
+@click.option("--jobs", default=2, **JOBS)
+@CLUSTER
 @click.option(
     "-o",
     "--output",

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-__all__ = ["INPUT", "METRES", "PATH", "SECONDS", "SEED", "TIME_LIMIT"]
+__all__ = ["CLUSTER", "INPUT", "JOBS", "METRES", "PATH", "SECONDS", "SEED", "TIME_LIMIT"]
 
 
 class _Positive(click.FloatRange):
@@ -53,4 +53,16 @@ TIME_LIMIT = click.option(
     metavar="S",
     type=SECONDS,
     help="Seconds, reading included.  [default: as long as it takes]",
+)
+JOBS: dict[str, Any] = {
+    "metavar": "N",
+    "type": click.IntRange(min=1),
+    "show_default": True,
+    "help": "Processes at a time.",
+}
+CLUSTER = click.option(
+    "--cluster",
+    metavar="ADDRESS",
+    help="The scheduler of a Dask cluster that does the work, such as tcp://10.0.0.1:8786, "
+    "instead of processes here.",
 )

@@ -1,0 +1,186 @@
+"""``cellcolor.place``: where a part should stand."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from os import PathLike
+from typing import TYPE_CHECKING
+
+from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
+from cellcolor.door.extras import extras_for
+from cellcolor.door.shipped import find_file
+from cellcolor.door.subject import is_made_by, is_scene
+from cellcolor.errors import CellcolorError, InputError
+from cellcolor.lab.executors.alone import Limits
+from cellcolor.lab.executors.local import LocalWorkers
+from cellcolor.lab.executors.work import Task, Workers, as_they_end
+from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
+
+if TYPE_CHECKING:
+    from cellcolor.frontend import Scene
+
+__all__ = ["place"]
+
+Range = tuple[float, float]
+
+_BATCH = 32  # placements a process; reading the scene takes as long as one or two of them
+_CLOSER = (0.25, 0.0625)  # shares of the ranges, of the boxes around the best placements
+_AROUND = 3  # placements that get boxes
+_NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
+_ENDING = 10.0  # s that a process may take beyond its time
+_ALL_DAY = 86_400.0  # s, where there is no limit
+
+
+def place(
+    scene: str | PathLike[str] | Scene,
+    *,
+    x: Range | None = None,
+    y: Range | None = None,
+    z: Range | None = None,
+    roll: Range | None = None,
+    pitch: Range | None = None,
+    yaw: Range | None = None,
+    cover: float | None = None,
+    points: int = 128,
+    best: int = 3,
+    vertices: int = 300,
+    jobs: int | Workers = 1,
+    time_limit: TimeLimit = None,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> Placements:
+    """Look for placements of a scene's part that need fewer lift-offs, and prove the best ones.
+
+    Needs the extra ``frontend``. The result is the same with any number of jobs.
+
+    Args:
+        scene: its file, its shipped name, or the value.
+        x, y, z: from where to where the part may be moved, m; what is not given stays.
+        roll, pitch, yaw: the same of its angles (extrinsic x, y, z), rad.
+        cover: the share of the whole surface that has to be covered, 0 to 1; None for as much as
+            where the part stands.
+        points: placements that are tried all over the ranges; three quarters as many are tried
+            around the best of them.
+        best: how many are proved on the scene's own mesh and listed.
+        vertices: about so many has the coarse mesh that placements are tried on.
+        jobs: processes at a time, or who does the work.
+        time_limit: seconds for all of it, None for as long as it takes.
+        seed: of everything random.
+        progress: told what is being done.
+
+    Raises:
+        InputError: the scene cannot be used, or a range, a share or a number is none.
+        OutOfTime: the time limit came before the scene itself was solved.
+    """
+    deadline = Deadline.of(time_limit)
+    if not is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
+        file = find_file(scene)  # type: ignore[arg-type]
+        if not is_scene(file):
+            raise InputError(str(file), None, "is no scene: a scene is a file .toml")
+    for name, number in (("points", points), ("best", best), ("vertices", vertices)):
+        if number < 1:
+            raise InputError(None, name, f"must be 1 or more, is {number}")
+    if cover is not None and not 0 <= cover <= 1:
+        raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
+    with extras_for("the front end"):
+        from cellcolor.frontend.scene import Scene as SceneValue
+        from cellcolor.questions.placing import (
+            around,
+            check_ranges,
+            coarse_scene,
+            distance,
+            minima_at,
+            pose_of,
+            spread,
+        )
+
+    given = {"x": x, "y": y, "z": z, "roll": roll, "pitch": pitch, "yaw": yaw}
+    ranges = {name: pair for name, pair in given.items() if pair is not None}
+    check_ranges(ranges)
+    own: Scene = scene if isinstance(scene, SceneValue) else SceneValue.read(file)
+    report = progress or (lambda _: None)
+    report("where it stands")
+    start = pose_of(own.placement)
+    rows = minima_at(own, [start], deadline.left, None, seed)
+    if not rows:
+        raise OutOfTime
+    here = rows[0]
+    asked = here.covered_share if cover is None else cover
+    tried: list[PlacedMinimum] = []
+    proved: list[PlacedMinimum] = []
+    complete = True
+
+    def best_of(found: Sequence[PlacedMinimum], count: int) -> list[PlacedMinimum]:
+        """The best ones, none of them next to a better one."""
+        chosen: list[PlacedMinimum] = []
+        for row in sorted(found, key=lambda row: row.rank(asked)):
+            apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
+            if row.segments is not None and apart and len(chosen) < count:
+                chosen.append(row)
+        return chosen
+
+    with LocalWorkers(jobs) if isinstance(jobs, int) else jobs as workers:
+        many = _Asked(workers, deadline, seed, report)
+        try:
+            report("a coarse mesh")
+            coarse = coarse_scene(own, vertices, deadline)
+            tried += many.minima(coarse, spread(ranges, start, points, seed))
+            for number, share in enumerate(_CLOSER, 1):
+                each = max(points // 8, 1)
+                near = [
+                    pose
+                    for turn, row in enumerate(best_of(tried, _AROUND))
+                    for pose in around(ranges, row.pose, share, each, seed + 10 * number + turn)
+                ]
+                tried += many.minima(coarse, near)
+            report("proving the best ones")
+            chosen = [row.pose for row in best_of(tried, 2 * best)]
+            proved = many.minima(own, chosen, -(-len(chosen) // workers.slots))
+        except OutOfTime:
+            complete = False
+    listed = best_of(proved, best)
+    others = [row for row in proved if row not in listed]
+    return Placements(
+        own.name, asked, here, tuple(listed), (*tried, *others), complete and many.complete
+    )
+
+
+class _Asked:
+    """Processes that are asked for the minima of many placements."""
+
+    def __init__(
+        self, workers: Workers, deadline: Deadline, seed: int, report: Callable[[str], None]
+    ) -> None:
+        self._workers, self._deadline, self._seed, self._report = workers, deadline, seed, report
+        self._done = 0
+        self.complete = True
+
+    def minima(
+        self, scene: Scene, poses: Sequence[Pose], batch: int = _BATCH
+    ) -> list[PlacedMinimum]:
+        """A row for each placement, in their order; fewer if the time ends.
+
+        Raises:
+            OutOfTime: the deadline came before the first.
+            CellcolorError: a process could not do its work.
+        """
+        from cellcolor.questions.placing import minima_at
+
+        self._deadline.check()
+        left = self._deadline.left
+        limits = Limits(min(left, _ALL_DAY) + _ENDING)
+        parts = [poses[at : at + batch] for at in range(0, len(poses), batch)]
+        tasks = (
+            (number, Task(minima_at, (scene, part, left, 1, self._seed), limits))
+            for number, part in enumerate(parts)
+        )
+        found: dict[int, list[PlacedMinimum]] = {}
+        for number, ended in as_they_end(self._workers, tasks):
+            if ended.end == "failed":
+                raise CellcolorError(f"placements could not be tried: {ended.error}")
+            found[number] = ended.value or []
+            self._done += len(found[number])
+            self._report(f"{self._done} placements")
+        rows = [row for number in sorted(found) for row in found[number]]
+        self.complete &= len(rows) == len(poses)
+        return rows

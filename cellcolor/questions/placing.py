@@ -1,0 +1,180 @@
+"""``cellcolor.place``: the fewest lift-offs of a part in many places.
+
+A part is read once and moved (:meth:`~cellcolor.frontend.prepared.PreparedScene.at`). Many
+placements are asked about on a coarse mesh, in batches that any process can do; the best ones are
+then built and proved on the scene's own mesh. Points are Sobol's, which fill the ranges evenly:
+some in the whole of them, then some in smaller and smaller boxes around the best ones.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.stats import qmc
+
+from cellcolor.arrays import Array
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.decomposition import decomposition_of
+from cellcolor.errors import InputError
+from cellcolor.frontend.build import labelled
+from cellcolor.frontend.finer_borders import with_finer_borders
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.remeshing import length_for, remeshed
+from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose
+from cellcolor.solvers import checked
+from cellcolor.solvers.interface import Options
+
+__all__ = [
+    "Ranges",
+    "around",
+    "check_ranges",
+    "coarse_scene",
+    "distance",
+    "minima_at",
+    "pose_of",
+    "spread",
+]
+
+Ranges = Mapping[str, tuple[float, float]]
+"""From where to where each variable goes; those that are missing stay."""
+
+_FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
+
+
+def check_ranges(ranges: Ranges) -> None:
+    """Refuse ranges that are none.
+
+    Raises:
+        InputError: a variable is unknown, a range is empty or has no numbers, or there is none.
+    """
+    for name, (low, high) in ranges.items():
+        if name not in VARIABLES:
+            raise InputError(None, name, f"is none of {', '.join(VARIABLES)}")
+        if not (np.isfinite(low) and np.isfinite(high)):
+            raise InputError(None, name, "its range must be two numbers")
+        if low >= high:
+            raise InputError(None, name, f"the range from {low:g} to {high:g} is empty")
+    if not ranges:
+        raise InputError(None, None, f"nothing may move: give a range of {', '.join(VARIABLES)}")
+
+
+def pose_of(placement: Placement) -> Pose:
+    """Where a scene has its part."""
+    return (*placement.position_m, *placement.rpy_rad)
+
+
+def spread(ranges: Ranges, start: Pose, count: int, seed: int) -> list[Pose]:
+    """So many placements all over the ranges; a scrambled Sobol sequence."""
+    return _scaled(ranges, start, _sobol(len(ranges), count, seed))
+
+
+def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> list[Pose]:
+    """So many placements in a box around one, whose sides are a share of the ranges."""
+    near = {}
+    for name, (low, high) in ranges.items():
+        middle, half = best[VARIABLES.index(name)], share * (high - low) / 2
+        near[name] = (max(low, middle - half), min(high, middle + half))
+    return _scaled(near, best, _sobol(len(ranges), count, seed))
+
+
+def distance(ranges: Ranges, first: Pose, second: Pose) -> float:
+    """How far two placements are apart, as a share of the ranges: that of the variable most so."""
+    return max(
+        abs(first[at] - second[at]) / (high - low)
+        for name, (low, high) in ranges.items()
+        for at in [VARIABLES.index(name)]
+    )
+
+
+def _sobol(dimensions: int, count: int, seed: int) -> Array:
+    # Sobol's balance is one of powers of two: the points after the last one are left out.
+    whole = int(np.ceil(np.log2(max(count, 1))))
+    points: Array = qmc.Sobol(dimensions, seed=seed).random_base2(whole)
+    return points[:count]
+
+
+def _scaled(ranges: Ranges, start: Pose, points: Array) -> list[Pose]:
+    poses = np.tile(np.array(start), (len(points), 1))
+    for column, (name, (low, high)) in enumerate(ranges.items()):
+        poses[:, VARIABLES.index(name)] = low + (high - low) * points[:, column]
+    return [tuple(pose) for pose in poses.tolist()]
+
+
+def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
+    """The scene with a mesh of about so many vertices to be covered; what collides stays.
+
+    A shape that says how many vertices it has gets fewer. Any other surface is remeshed. Borders
+    are not refined.
+
+    Raises:
+        InputError: the scene cannot be used.
+        OutOfTime: the deadline came first.
+    """
+    scene = scene.with_setup(scene.setup.varied(continuity={"border_length_m": None}))
+    surface = scene.covered(deadline)
+    if len(surface.vertices) <= _FINE_ENOUGH * vertices:
+        return scene
+    if hasattr(scene.object, "target_vertices") and scene.cover is None:
+        solid = scene.solid_object or scene.object
+        return scene.varied(object={"target_vertices": vertices}, collision_object=solid)
+    area = float(surface.vertex_areas().sum())
+    points, faces, _, _ = remeshed(
+        surface.vertices, surface.faces, length_for(area, vertices), deadline
+    )
+    solid = scene.solid_object or scene.object
+    return scene.varied(cover=None).with_object((points, faces), solid)
+
+
+def minima_at(
+    scene: Scene, poses: Sequence[Pose], seconds: float, workers: int | None, seed: int
+) -> list[PlacedMinimum]:
+    """The fewest lift-offs of a scene with its part in several places, a row for each.
+
+    Where the part cannot stand the row says why.
+
+    Args:
+        scene: wherever it has its part.
+        poses: where the part is put.
+        seconds: after so many the rows that are left are missing; infinite for no limit.
+        workers: of CP-SAT, None for its portfolio.
+        seed: of everything random.
+
+    Raises:
+        InputError: the scene cannot be used, wherever the part stands.
+    """
+    deadline = Deadline.after(seconds)
+    options = Options(deadline=deadline, workers=workers, seed=seed)
+    prepared: PreparedScene | None = None
+    rows = []
+    for pose in poses:
+        placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
+        try:
+            if prepared is None:
+                prepared = there = prepare(scene.varied(placement=placement), deadline)
+            else:
+                there = prepared.at(placement)
+            rows.append(_minimum(there, pose, options))
+        except OutOfTime:
+            break
+        except InputError as error:
+            if error.field is None or not error.field.startswith("placement"):
+                raise
+            rows.append(PlacedMinimum(pose, None, 0.0, False, 0, error.message))
+    return rows
+
+
+def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMinimum:
+    clock = StageClock(options.deadline, None)
+    surface = labelled(*with_finer_borders(prepared, clock), {})
+    instance = decomposition_of(surface, deadline=options.deadline).instance
+    areas = surface.vertex_areas
+    share = float(areas[[bool(own) for own in surface.vertex_colors]].sum() / areas.sum())
+    count = len(surface.vertices)
+    if instance.nothing_to_cover:
+        return PlacedMinimum(pose, None, 0.0, False, count, "nothing is reached")
+    solution = checked.solve(instance, options)
+    return PlacedMinimum(pose, solution.segments, share, solution.proved_for_surface, count)
