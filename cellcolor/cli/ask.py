@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_subject
@@ -14,6 +14,9 @@ from cellcolor.cli.terminal import complain, print_json, say
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.questions.places import read_place, read_weights
+
+if TYPE_CHECKING:
+    from cellcolor.lab.executors.work import Workers
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,9 +158,13 @@ class PlaceRequest:
 
 def ask_place(request: PlaceRequest) -> Exit:
     """Print where the part should stand."""
-    from cellcolor.cli.workers import workers_for
     from cellcolor.door.placing import place
 
+    jobs: int | Workers = request.jobs
+    if request.cluster is not None:
+        from cellcolor.cli.workers import workers_for
+
+        jobs = workers_for(request.jobs, request.cluster)
     ranges: dict[str, Any] = {name: _range(name, text) for name, text in request.ranges.items()}
     try:
         with stages_of(request.scene, "placing") as report:
@@ -168,7 +175,7 @@ def ask_place(request: PlaceRequest) -> Exit:
                 points=request.points,
                 best=request.best,
                 vertices=request.vertices,
-                jobs=workers_for(request.jobs, request.cluster),
+                jobs=jobs,
                 time_limit=request.deadline,
                 seed=request.seed,
                 progress=report,

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import nullcontext
 from os import PathLike
 from typing import TYPE_CHECKING
 
@@ -119,7 +120,8 @@ def place(
                 chosen.append(row)
         return chosen
 
-    with LocalWorkers(jobs) if isinstance(jobs, int) else jobs as workers:
+    given_workers = LocalWorkers(jobs) if isinstance(jobs, int) and jobs > 1 else jobs
+    with nullcontext() if isinstance(given_workers, int) else given_workers as workers:
         many = _Asked(workers, deadline, seed, report)
         try:
             report("a coarse mesh")
@@ -135,7 +137,7 @@ def place(
                 tried += many.minima(coarse, near)
             report("proving the best ones")
             chosen = [row.pose for row in best_of(tried, 2 * best)]
-            proved = many.minima(own, chosen, -(-len(chosen) // workers.slots))
+            proved = many.minima(own, chosen)
         except OutOfTime:
             complete = False
     listed = best_of(proved, best)
@@ -146,41 +148,56 @@ def place(
 
 
 class _Asked:
-    """Processes that are asked for the minima of many placements."""
+    """Who is asked for the minima of many placements: this process, or others."""
 
     def __init__(
-        self, workers: Workers, deadline: Deadline, seed: int, report: Callable[[str], None]
+        self,
+        workers: Workers | None,
+        deadline: Deadline,
+        seed: int,
+        report: Callable[[str], None],
     ) -> None:
         self._workers, self._deadline, self._seed, self._report = workers, deadline, seed, report
         self._done = 0
         self.complete = True
 
-    def minima(
-        self, scene: Scene, poses: Sequence[Pose], batch: int = _BATCH
-    ) -> list[PlacedMinimum]:
+    def minima(self, scene: Scene, poses: Sequence[Pose]) -> list[PlacedMinimum]:
         """A row for each placement, in their order; fewer if the time ends.
 
         Raises:
             OutOfTime: the deadline came before the first.
             CellcolorError: a process could not do its work.
         """
-        from cellcolor.questions.placing import minima_at
-
         self._deadline.check()
-        left = self._deadline.left
-        limits = Limits(min(left, _ALL_DAY) + _ENDING)
-        parts = [poses[at : at + batch] for at in range(0, len(poses), batch)]
-        tasks = (
-            (number, Task(minima_at, (scene, part, left, 1, self._seed), limits))
-            for number, part in enumerate(parts)
-        )
+        slots = 1 if self._workers is None else self._workers.slots
+        size = min(_BATCH, -(-len(poses) // slots) or 1)
+        parts = [poses[at : at + size] for at in range(0, len(poses), size)]
         found: dict[int, list[PlacedMinimum]] = {}
-        for number, ended in as_they_end(self._workers, tasks):
-            if ended.end == "failed":
-                raise CellcolorError(f"placements could not be tried: {ended.error}")
-            found[number] = ended.value or []
-            self._done += len(found[number])
+        for number, rows in self._asked(scene, parts):
+            found[number] = rows
+            self._done += len(rows)
             self._report(f"{self._done} placements")
         rows = [row for number in sorted(found) for row in found[number]]
         self.complete &= len(rows) == len(poses)
         return rows
+
+    def _asked(
+        self, scene: Scene, parts: Sequence[Sequence[Pose]]
+    ) -> Iterator[tuple[int, list[PlacedMinimum]]]:
+        """The rows of each part, as they come."""
+        from cellcolor.questions.placing import minima_at
+
+        if self._workers is None:
+            for number, part in enumerate(parts):
+                yield number, minima_at(scene, part, self._deadline.left, 1, self._seed)
+            return
+        left = self._deadline.left
+        limits = Limits(min(left, _ALL_DAY) + _ENDING)
+        tasks = (
+            (number, Task(minima_at, (scene, part, left, 1, self._seed), limits))
+            for number, part in enumerate(parts)
+        )
+        for number, ended in as_they_end(self._workers, tasks):
+            if ended.end == "failed":
+                raise CellcolorError(f"placements could not be tried: {ended.error}")
+            yield number, ended.value or []

@@ -1,0 +1,192 @@
+"""Where a part should stand: each row against the scene with that placement written in."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+from commands import json_lines, run
+from hypothesis import given
+from hypothesis import strategies as st
+from shipped import SCENES, shipped
+
+import cellcolor
+from cellcolor.deadline import NEVER
+from cellcolor.frontend import Scene
+from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Placements, Pose
+from cellcolor.questions.placing import around, coarse_scene, distance, minima_at, spread
+from examples import examples
+
+RANGES = {"x": (0.3, 0.6), "y": (-0.3, 0.1)}
+NUMBERS = st.floats(-2, 2, allow_nan=False)
+
+
+def place(**changes: Any) -> Placements:
+    given: dict[str, Any] = {**RANGES, "points": 4, "best": 2, "vertices": 50} | changes
+    return cellcolor.place(shipped("wok_obstacle", 80), **given)
+
+
+@pytest.fixture(scope="module")
+def found() -> Placements:
+    return place()
+
+
+def at(scene: Scene, pose: Pose) -> Scene:
+    return scene.moved(position_m=pose[:3], rpy_rad=pose[3:])
+
+
+def by_hand(scene: Scene) -> tuple[int | None, float, int]:
+    """Segments, share and vertices of a scene, built and solved as anybody would."""
+    built = cellcolor.build(scene)
+    solution = cellcolor.solve(built).solution
+    assert solution.proved_for_surface
+    areas = built.surface.vertex_areas
+    colored = [bool(colors) for colors in built.surface.vertex_colors]
+    share = float(areas[colored].sum() / areas.sum())
+    return solution.segments, share, len(areas)
+
+
+def test_rows_are_those_of_the_scene_with_the_placement_written_in(found: Placements) -> None:
+    own = shipped("wok_obstacle", 80)
+    coarse = coarse_scene(own, 50, NEVER)
+    for scene, rows in ((own, (found.here, *found.best)), (coarse, found.tried[:3])):
+        for row in rows:
+            segments, share, vertices = by_hand(at(scene, row.pose))
+            assert (row.segments, row.vertices) == (segments, vertices) and row.proved_for_surface
+            assert row.covered_share == pytest.approx(share)
+    assert found.here.pose == (*own.placement.position_m, *own.placement.rpy_rad)
+    assert found.complete and found.cover == found.here.covered_share
+
+
+def test_the_best_come_first_and_cover_enough(found: Placements) -> None:
+    ranks = [row.rank(found.cover) for row in found.best]
+    assert ranks == sorted(ranks) and len(found.best) == 2
+    coarse = [row for row in found.tried if row.vertices < found.here.vertices]
+    assert len(coarse) == 4 + 2 * 3  # one point around each of the three best, twice
+    for row in (*found.best, *found.tried):
+        x, y, *others = row.pose
+        assert RANGES["x"][0] <= x <= RANGES["x"][1] and RANGES["y"][0] <= y <= RANGES["y"][1]
+        assert tuple(others) == found.here.pose[2:]
+
+
+@pytest.mark.second
+def test_two_processes_find_the_same(found: Placements) -> None:
+    other = place(jobs=2)
+    assert list(other) == list(found)
+
+
+def test_where_the_part_cannot_stand_the_row_says_why() -> None:
+    scene = shipped("wok", 60)
+    here: Pose = (*scene.placement.position_m, *scene.placement.rpy_rad)
+    within = (0.0, 0.0, -0.15, 0.0, 0.0, 0.0)  # its top in the base
+    rows = minima_at(scene, [within, here, within, here], np.inf, 1, 0)
+    assert [bool(row.refused) for row in rows] == [True, False, True, False]
+    assert "stands in the robot's" in rows[0].refused and rows[0] == rows[2]
+    assert rows[1] == rows[3] and rows[1].segments == by_hand(scene)[0]
+    assert rows[0].rank(0.0) > rows[1].rank(0.0) and rows[0].lift_offs is None
+
+
+@examples(50)
+@given(
+    names=st.sets(st.sampled_from(VARIABLES), min_size=1),
+    start=st.tuples(*6 * [NUMBERS]),
+    low=NUMBERS,
+    width=st.floats(0.01, 2),
+    count=st.integers(1, 40),
+    share=st.floats(0.01, 1),
+    seed=st.integers(0, 100),
+)
+def test_points_stay_in_their_ranges(
+    names: set[str], start: Pose, low: float, width: float, count: int, share: float, seed: int
+) -> None:
+    ranges = dict.fromkeys(sorted(names), (low, low + width))
+    poses = spread(ranges, start, count, seed)
+    near = around(ranges, poses[0], share, count, seed)
+    assert len(poses) == len(near) == count and len(set(poses)) == count
+    for pose in (*poses, *near):
+        for name, value, before in zip(VARIABLES, pose, start, strict=True):
+            if name in ranges:
+                assert low - 1e-12 <= value <= low + width + 1e-12
+            else:
+                assert value == before
+    assert all(distance(ranges, pose, poses[0]) <= share / 2 + 1e-9 for pose in near)
+
+
+@examples(50)
+@given(
+    rows=st.lists(
+        st.tuples(st.none() | st.integers(1, 5), st.floats(0, 1)), min_size=1, max_size=8
+    ),
+    cover=st.floats(0, 1),
+)
+def test_the_rank_is_what_is_asked_for(rows: list[tuple[int | None, float]], cover: float) -> None:
+    """Of those that cover enough the one with the fewest segments, then with the largest area."""
+    values = [PlacedMinimum((0, 0, 0, 0, 0, 0), n, share, True, 1) for n, share in rows]
+    best = min(values, key=lambda row: row.rank(cover))
+    enough = [(n, -share) for n, share in rows if n is not None and share >= cover]
+    if enough:
+        assert (best.segments, -best.covered_share) == min(enough)
+    else:
+        assert best.covered_share == max(share for _, share in rows)
+
+
+def test_a_mesh_file_is_made_coarser_and_collides_as_before() -> None:
+    scene = Scene.read(SCENES.parent / "parts" / "bracket.toml")
+    coarse = coarse_scene(scene, 150, NEVER)
+    whole, surface = scene.covered(), coarse.covered()
+    assert len(surface.vertices) < len(whole.vertices) / 1.5
+    area, wanted = surface.vertex_areas().sum(), whole.vertex_areas().sum()
+    assert area == pytest.approx(wanted, rel=0.05)
+    assert coarse.solid_object == (scene.solid_object or scene.object)
+    assert coarse_scene(scene, 10**5, NEVER).covered().vertices.shape == whole.vertices.shape
+
+
+@pytest.mark.parametrize(
+    ("changes", "field"),
+    [
+        ({"x": (0.5, 0.3)}, "x"),
+        ({"x": (0.5, float("nan"))}, "x"),
+        ({"x": None, "y": None}, None),
+        ({"cover": 1.5}, "cover"),
+        ({"points": 0}, "points"),
+        ({"best": 0}, "best"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused(changes: dict[str, Any], field: str | None) -> None:
+    with pytest.raises(cellcolor.InputError) as caught:
+        place(**changes)
+    assert caught.value.field == field and "\n" not in str(caught.value)
+
+
+def test_a_limit_that_ends_before_the_scene_itself_is_solved() -> None:
+    with pytest.raises(cellcolor.OutOfTime):
+        place(time_limit=1e-3)
+
+
+def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "wok.toml"
+    text = (SCENES / "wok_obstacle.toml").read_text()
+    setup = (SCENES.parents[1] / "models" / "robots" / "ur5_polishing.toml").as_posix()
+    text = text.replace("../../models/robots/ur5_polishing.toml", setup)
+    file.write_text(text.replace("target_vertices = 1000", "target_vertices = 80"))
+    options = ("--x", "0.4,0.5", "--points", "1", "--vertices", "50", "--best", "1")
+    assert run("place", file, *options, "--json") == 0
+    rows = json_lines(capsys.readouterr().out)
+    assert rows[0]["position_m"] == [0.465, -0.15, -0.04] and rows[0]["rpy_rad"] == [0, 0, 0]
+    assert {"lift_offs", "covered_share", "proved_for_surface"} <= rows[1].keys()
+    assert all(0.4 <= row["position_m"][0] <= 0.5 for row in rows)
+    for wrong, said in (
+        ((file,), "nothing may move"),
+        ((file, "--x", "1"), "--x: a range is two numbers"),
+        ((file, "--x", "0.5,0.4"), "x: the range from 0.5 to 0.4 is empty"),
+        ((file, "--yaw", "0,inf"), "yaw: its range must be two numbers"),
+        ((tmp_path / "none.toml", "--x", "0,1"), "No such file"),
+        ((SCENES.parent / "index.json", "--x", "0,1"), "is no scene"),
+    ):
+        assert run("place", *wrong) == 2
+        assert said in capsys.readouterr().err
