@@ -21,6 +21,8 @@ from cellcolor.lab.runs.table import read_table
 from cellcolor.lab.runs.timings import START_UP, Timing
 from cellcolor.solvers.registry import GROUP
 
+pytestmark = pytest.mark.second
+
 RING = PAPER / "ring.json"
 ZEROS = PAPER / "crossing-zeros.json"
 Capture = pytest.CaptureFixture[str]

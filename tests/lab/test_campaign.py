@@ -41,6 +41,8 @@ from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Answer, OnProgress, Options
 
+pytestmark = pytest.mark.second
+
 RING = Instance.read(PAPER / "ring.json")
 EVERY_KIND = len(KINDS)
 

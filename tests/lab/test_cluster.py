@@ -21,6 +21,8 @@ distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is 
 
 from cellcolor.lab.executors.cluster import ClusterWorkers  # noqa: E402
 
+pytestmark = pytest.mark.second
+
 LIMITS = Limits(60.0)
 
 

@@ -29,6 +29,7 @@ from cellcolor.solvers.interface import STRANDS, Options
 LIBRARY = LibraryIndex.read(INSTANCES / INDEX)
 
 
+@pytest.mark.second
 def test_the_index_is_true() -> None:
     """Hashes, counts, and all bounds, with every solution and certificate checked."""
     assert problems(INSTANCES) == []

@@ -21,6 +21,8 @@ from cellcolor.oracle.proof_cache import ProofCache
 sys.path.append(str(INSTANCES.parent / "benchmarks"))
 import oracle
 
+pytestmark = pytest.mark.second
+
 ROOT = INSTANCES.parent
 SCENES = {
     "hemisphere, flat": "hemisphere_flat",

@@ -209,6 +209,7 @@ def test_an_amount_saves_what_it_says_and_less_of_it_does_not(tilted: Explanatio
     assert row.segments is not None and row.segments < (tilted.base.segments or 0)
 
 
+@pytest.mark.second
 def test_where_one_is_not_enough_the_smallest_set_is_found() -> None:
     """An obstacle that stands there twice: neither of the two costs anything alone."""
     scene = shipped("wok_obstacle", 200)

@@ -18,7 +18,10 @@ from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import make_solver
 from cellcolor.solvers.seamed import Seamed
 
-RIVALS = ("clingo", "highs", "maxsat", "cp-sat-pointers", "cp-sat-ranks", "cp-sat-contour")
+RIVALS = (
+    pytest.param("clingo", marks=pytest.mark.second),
+    *("highs", "maxsat", "cp-sat-pointers", "cp-sat-ranks", "cp-sat-contour"),
+)
 
 
 @pytest.mark.parametrize("solver", RIVALS)
