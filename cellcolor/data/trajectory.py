@@ -96,8 +96,8 @@ class Trajectory:
         times: (k,) float64, s.
         joints: (k, joints) float64, rad, or m of prismatic ones; unwound: no jumps by full circles.
         points: (k, 3) float64, where the tool's tip is, in the world, m.
-        normals: (k, 3) float64, unit vectors out of the surface; against the tool's axis where the task holds it
-            against the normal.
+        normals: (k, 3) float64, unit vectors out of the surface; against the tool's axis where the
+            task holds it against the normal.
         contact: (k,) whether the tool is on the surface.
         segment: (k,) int64, the segment of the painting that is worked on, -1 between them.
         unplanned: samples, ascending, after which the move to the next one was not planned: the

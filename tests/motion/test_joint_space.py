@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import cast
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.frontend.arm.joint_space import JointSpace
+from cellcolor.motion.free_space import FreeSpace
+from cellcolor.motion.home import free_near
 
 MIXED = st.lists(
     st.tuples(st.booleans(), st.floats(-9.0, 9.0), st.floats(-9.0, 9.0)), min_size=1, max_size=4
@@ -72,3 +75,18 @@ def test_a_slide_of_a_circle_in_meters_is_no_turn() -> None:
     assert both.period.tolist() == [0, math.tau]
     # 0.3 m of a reach of 0.5 m are more than half a radian, and less than a whole one.
     assert both.largest(np.array([[0.3, 0.5], [0.3, 0.7]])).tolist() == [0.6, 0.7]
+
+
+def test_a_proposed_home_moves_a_slide_by_its_share_of_the_reach() -> None:
+    """0.1 rad at first, so 0.05 m on an arm that reaches 0.5 m."""
+
+    class Free:
+        space = space([True, False])
+
+        def __call__(self, asked: np.ndarray) -> np.ndarray:
+            return np.asarray((asked[:, 0] > 0.03) & (asked[:, 1] > 0.06))
+
+    home = np.zeros(2)
+    near = free_near(cast(FreeSpace, Free()), home)
+    assert near is not None
+    assert 0.03 < near[0] <= 0.05 and 0.06 < near[1] <= 0.1
