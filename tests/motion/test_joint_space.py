@@ -84,6 +84,7 @@ def test_a_proposed_home_moves_a_slide_by_its_share_of_the_reach() -> None:
         space = space([True, False])
 
         def __call__(self, asked: np.ndarray) -> np.ndarray:
+            assert np.abs(asked[:, 0]).max() <= 0.05 and 0.09 < np.abs(asked[:, 1]).max() <= 0.1
             return np.asarray((asked[:, 0] > 0.03) & (asked[:, 1] > 0.06))
 
     home = np.zeros(2)
