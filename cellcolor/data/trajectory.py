@@ -85,7 +85,7 @@ class RepeatedStretch:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Trajectory:
-    """Joint angles over time.
+    """Joint positions over time.
 
     Between two samples every joint moves in proportion to time. A stretch of samples in contact
     without one that is not is a **stroke**; between two strokes the tool is lifted off.
@@ -94,9 +94,10 @@ class Trajectory:
         name: what to call it.
         joint_names: the arm's joints, base first.
         times: (k,) float64, s.
-        joints: (k, joints) float64, rad, unwound: no jumps by full circles.
+        joints: (k, joints) float64, rad, or m of prismatic ones; unwound: no jumps by full circles.
         points: (k, 3) float64, where the tool's tip is, in the world, m.
-        normals: (k, 3) float64, unit vectors out of the surface; against the tool's axis.
+        normals: (k, 3) float64, unit vectors out of the surface; against the tool's axis where the
+            task holds it against the normal.
         contact: (k,) whether the tool is on the surface.
         segment: (k,) int64, the segment of the painting that is worked on, -1 between them.
         unplanned: samples, ascending, after which the move to the next one was not planned: the

@@ -268,7 +268,8 @@ class Motion(Table):
     neighboring passes. The tool retracts by ``retract_m`` along the normal; between segments the
     arm keeps ``clearance_m`` from everything. A URDF has velocities, which
     ``joint_velocities_rad_per_s`` may lower, but no accelerations. Lists of joints go from base to
-    tool; ``home_rad`` is where the arm begins and ends, nowhere in particular without it.
+    tool, with m in the place of rad for prismatic ones; ``home_rad`` is where the arm begins and
+    ends, nowhere in particular without it.
     """
 
     tool_radius_m: Positive = 0.015

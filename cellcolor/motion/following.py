@@ -8,18 +8,16 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.smooth import Measure, follow_edges
+from cellcolor.frontend.reach.smooth import follow_edges
 from cellcolor.motion.samples import Samples
 
-__all__ = ["CIRCLE", "Followed", "follow", "joint_limits", "unwound", "whole_turns"]
-
-CIRCLE = 2 * np.pi
-_ROUNDING = 1e-9  # rad; an angle on its limit is inside
+__all__ = ["Followed", "follow", "joint_space", "unwound"]
 
 
 @dataclass(frozen=True)
@@ -27,8 +25,8 @@ class Followed:
     """A branch of the arm along samples.
 
     Attributes:
-        joints: (k, joints) in rad, unwound between neighbors; NaN without solution. Whole turns of
-            all of them together are still to be chosen.
+        joints: (k, joints) in rad or m, unwound between neighbors; NaN without solution. Whole
+            turns of all of them together are still to be chosen.
         reasons: (k,) codes of the judge: the first test that each sample fails.
         torn: (k - 1,) whether the branch jumps between a sample and the next one.
     """
@@ -60,63 +58,35 @@ def follow(
     valid = verdicts.reasons == VALID
     both = np.flatnonzero(valid[:-1] & valid[1:])
     steps = np.column_stack([both, both + 1])
-    measure = Measure(
-        prepared.setup.continuity,
-        prepared.arm.conditioning.near_singular_determinant,
-        prepared.kinematics.lever,
-    )
     motions = follow_edges(
         Surface(samples.points, np.empty((0, 3), dtype=np.int64), samples.normals),
         steps,
         branches[both],
         (found[both], found[both + 1]),
         (verdicts.determinants[both], verdicts.determinants[both + 1]),
-        measure,
+        prepared.arm.measure,
         partial(prepared.arm.probe, deadline=deadline),
     )
     torn = np.zeros(len(samples) - 1, dtype=bool)
     torn[both[~motions.smooth]] = True
-    return Followed(unwound(found), verdicts.reasons, torn)
+    return Followed(unwound(found, joint_space(prepared)), verdicts.reasons, torn)
 
 
-def unwound(joints: Array) -> Array:
-    """The same angles (k, joints) modulo full circles, each the nearest to the one before it.
+def unwound(joints: Array, space: JointSpace) -> Array:
+    """The same positions (k, joints) modulo full circles, each the nearest to the one before it.
 
     Where there is none (NaN) the next one goes on from the last that there is.
     """
     result = joints.copy()
     there = np.flatnonzero(~np.isnan(joints[:, 0]))
     if len(there):
-        result[there] = np.unwrap(joints[there], axis=0)
+        result[there] = space.unwrap(joints[there])
     return result
 
 
-def joint_limits(prepared: PreparedScene) -> tuple[Array, Array]:
-    """Lower and upper limits (joints,), rad; none if the setup leaves collisions out."""
-    robot = prepared.robot
-    if prepared.setup.constraints.collision:
-        return robot.lower, robot.upper
-    return np.full(robot.joints, -np.inf), np.full(robot.joints, np.inf)
-
-
-def whole_turns(joints: Array, lower: Array, upper: Array) -> tuple[Index, ...] | None:
-    """By how many full circles each joint can be turned so that all of a motion is in its limits.
-
-    Args:
-        joints: (k, joints) in rad, unwound.
-        lower, upper: (joints,) rad.
-
-    Returns:
-        For each joint all numbers of circles, ascending; None if there is none for a joint. A joint
-        without limits has those that bring its middle next to zero.
-    """
-    lowest, highest = joints.min(axis=0), joints.max(axis=0)
-    choices = []
-    for low, high, least, most in zip(lower, upper, lowest, highest, strict=True):
-        middle = -np.rint((least + most) / 2 / CIRCLE)
-        first = np.ceil((low - least - _ROUNDING) / CIRCLE) if np.isfinite(low) else middle
-        last = np.floor((high - most + _ROUNDING) / CIRCLE) if np.isfinite(high) else middle
-        if first > last:
-            return None
-        choices.append(np.arange(int(first), int(last) + 1))
-    return tuple(choices)
+def joint_space(prepared: PreparedScene) -> JointSpace:
+    """The joints of a scene's arm; without limits if the setup leaves collisions out."""
+    robot, limits = prepared.robot, (prepared.robot.lower, prepared.robot.upper)
+    if not prepared.setup.constraints.collision:
+        limits = np.full(robot.joints, -np.inf), np.full(robot.joints, np.inf)
+    return JointSpace.of(robot.slides, *limits, prepared.kinematics.reach)

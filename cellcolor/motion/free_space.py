@@ -12,7 +12,7 @@ from cellcolor.frontend.arm.robot import Body, Robot, wider, wider_body
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.memory import cached
-from cellcolor.motion.following import joint_limits
+from cellcolor.motion.following import joint_space
 
 __all__ = ["FreeSpace"]
 
@@ -25,14 +25,14 @@ class FreeSpace:
     its way off the object or to it.
 
     Attributes:
-        limits: lower and upper (joints,) of the joints, rad.
+        space: of the joints, with their limits.
     """
 
     def __init__(self, prepared: PreparedScene, clearance: float, *, leaving: bool = False) -> None:
         """``clearance`` is what is kept from everything besides the setup's margins, m."""
         place = prepared.workplace
         self._place, self._on = place, prepared.setup.constraints.collision
-        self.limits = joint_limits(prepared)
+        self.space = joint_space(prepared)
         self._leaving, margins = leaving, prepared.setup.margins
         tip = replace(place.tip.body, link=place.robot.bodies[_last(place.robot)].link)
 
@@ -48,7 +48,7 @@ class FreeSpace:
         self._half = keeping(clearance / 2, margins.between_links_m / 2)
 
     def __call__(self, configurations: Array) -> Mask:
-        """Which of configurations (k, joints) in rad, taken as they are, are free, (k,)."""
+        """Which of configurations (k, joints), taken as they are, are free, (k,)."""
         free = self.inside(configurations)
         rows = np.flatnonzero(free)
         free[rows] = self.clear(configurations[rows])
@@ -56,7 +56,7 @@ class FreeSpace:
 
     def inside(self, configurations: Array) -> Mask:
         """Which of them are inside the joint limits, (k,)."""
-        lower, upper = self.limits
+        lower, upper = self.space.limits
         return np.asarray(((configurations >= lower) & (configurations <= upper)).all(axis=1))
 
     def clear(self, configurations: Array) -> Mask:

@@ -16,13 +16,16 @@ from cellcolor.motion.free_space import FreeSpace
 __all__ = ["check_home", "free_near", "home_of"]
 
 _TRIED = 256  # configurations at each distance
-_FIRST, _FARTHER = 0.1, 1.3  # rad, and the factor from one distance to the next
+_FIRST, _FARTHER = (
+    0.1,
+    1.3,
+)  # rad (or units of a slide), and the factor from one distance to the next
 _SHOWN = 3  # contacts
-_DIGITS = 2  # of a proposed angle, rad
+_DIGITS = 2  # of a proposed position, rad or m
 
 
 def home_of(motion: Motion) -> Array | None:
-    """Where the arm begins and ends (joints,), rad; None if that does not matter."""
+    """Where the arm begins and ends (joints,), rad or m; None if that does not matter."""
     return None if motion.home_rad is None else np.array(motion.home_rad)
 
 
@@ -59,9 +62,9 @@ def free_near(free: FreeSpace, home: Array) -> list[float] | None:
     drawn = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIED, len(home)))
     distances = (_FIRST * _FARTHER**step for step in range(100))
     for distance in takewhile(lambda far: far < np.pi, distances):
-        tried = np.round(home + distance * drawn, _DIGITS)
+        tried = np.round(home + distance * free.space.units * drawn, _DIGITS)
         found = np.flatnonzero(free(tried))
         if len(found):
-            nearest = np.argmin(np.abs(tried[found] - home).max(axis=1))
+            nearest = np.argmin(free.space.largest(tried[found] - home))
             return [float(angle) for angle in tried[found[nearest]]]
     return None

@@ -25,20 +25,13 @@ def motion_of(prepared: PreparedScene) -> Motion:
         InputError: there is none, or a list has another number of joints than the arm, the home
             position is outside the limits, a length is larger than the part or the arm's reach, the
             tool retracts less than it has to keep clear, the arm's solutions have no names, or the
-            arm is planar or has a prismatic joint.
+            arm is planar.
     """
     setup, robot = prepared.setup, prepared.robot
     with in_file(setup.file):
         prepared.arm.check_named()
         if robot.task.plane:
             message = "a planar arm does not lift its tool off the part, so no motion is planned"
-            raise InputError(None, "robot.kinematics", message)
-        if not robot.task.direction or robot.slides.any():
-            message = (
-                "motions are laid out for joints that turn and a tool against the normal, so none "
-                "is planned for an arm with a prismatic joint that moves, nor where the tool's "
-                "direction is not asked for"
-            )
             raise InputError(None, "robot.kinematics", message)
         motion = setup.motion
         if motion is None:
@@ -48,11 +41,13 @@ def motion_of(prepared: PreparedScene) -> Motion:
             if given is not None and len(given) != robot.joints:
                 message = f"has {len(given)} numbers for {robot.joints} joints"
                 raise InputError(None, f"motion.{key}", message)
-        for joint, angle in enumerate(motion.home_rad or ()):
-            if not robot.lower[joint] <= angle <= robot.upper[joint]:
+        for joint, at in enumerate(motion.home_rad or ()):
+            if not robot.lower[joint] <= at <= robot.upper[joint]:
                 message = f"outside the limits of {robot.joint_names[joint]!r}"
-                if abs(angle) > 2 * math.pi:
-                    message += f": {looks_like_degrees(angle)}"
+                if robot.slides[joint]:
+                    message += ", in m"
+                elif abs(at) > 2 * math.pi:
+                    message += f": {looks_like_degrees(at)}"
                 raise InputError(None, f"motion.home_rad[{joint}]", message)
         check_motion(motion, prepared.surface, prepared.scene, prepared.kinematics.reach)
         least = setup.task.contact_radius_m + motion.clearance_m

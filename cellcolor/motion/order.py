@@ -9,7 +9,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
-from cellcolor.motion.following import CIRCLE, whole_turns
+from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.motion.strokes import Stroke
 
 __all__ = ["ordered"]
@@ -21,7 +21,7 @@ _BETTER = 1e-9  # s; by less no order counts as better
 
 def ordered(
     strokes: Sequence[Stroke],
-    limits: tuple[Array, Array],
+    space: JointSpace,
     velocities: Array,
     home: Array | None,
     deadline: Deadline,
@@ -34,23 +34,24 @@ def ordered(
 
     Args:
         strokes: each fits into the limits.
-        limits: lower and upper (joints,) of the joints, rad.
-        velocities: (joints,) the greatest, rad/s.
-        home: (joints,) where the arm begins and ends, rad; None if that does not matter.
+        space: of the joints.
+        velocities: (joints,) the greatest, rad/s or m/s.
+        home: (joints,) where the arm begins and ends; None if that does not matter.
         deadline: when to give up.
 
     Raises:
         OutOfTime: the deadline came first.
     """
-    own = [_ways(stroke, *limits) for stroke in strokes]
+    own = [_ways(stroke, space) for stroke in strokes]
     ways = [way for some in own for way in some]
     first = np.cumsum([0, *map(len, own)])
     rows = [np.arange(a, b) for a, b in pairwise(first.tolist())]
     starts, ends = (np.array([way.joints[at] for way in ways]) for at in (0, -1))
-    between = _seconds(ends[:, None], starts[None], velocities)
+    between = _seconds(space.step(ends[:, None], starts[None]), velocities)
     from_home, to_home = np.zeros(len(ways)), np.zeros(len(ways))
     if home is not None:
-        from_home, to_home = _seconds(home, starts, velocities), _seconds(ends, home, velocities)
+        from_home = _seconds(space.step(home, starts), velocities)
+        to_home = _seconds(space.step(ends, home), velocities)
 
     def best_of(order: Sequence[int]) -> tuple[float, list[int]]:
         return _best(order, rows, between, from_home, to_home)
@@ -64,21 +65,20 @@ def ordered(
     return [ways[number] for number in best_of(best)[1]]
 
 
-def _ways(stroke: Stroke, lower: Array, upper: Array) -> list[Stroke]:
+def _ways(stroke: Stroke, space: JointSpace) -> list[Stroke]:
     """A stroke in both directions, and if it is closed from several starts."""
     starts = [0]
-    if stroke.closed:
+    if stroke.is_closed(space):
         evenly = np.linspace(0, len(stroke) - 1, _STARTS, endpoint=False)
         starts = sorted(set(evenly.astype(int).tolist()))
-    begun = [stroke.begun_at(start) for start in starts]
-    fitting = [way for way in begun if whole_turns(way.joints, lower, upper) is not None]
+    begun = [stroke.begun_at(start, space) for start in starts]
+    fitting = [way for way in begun if space.fits(way.joints)]
     return [way for one in fitting for way in (one, one.reversed())]
 
 
-def _seconds(starts: Array, ends: Array, velocities: Array) -> Array:
+def _seconds(way: Array, velocities: Array) -> Array:
     """How long the slowest joint takes at least, whatever whole turns are chosen, s."""
-    apart = np.abs(np.remainder(ends - starts + np.pi, CIRCLE) - np.pi)
-    return np.asarray((apart / velocities).max(axis=-1))
+    return np.asarray((np.abs(way) / velocities).max(axis=-1))
 
 
 def _best(

@@ -16,7 +16,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.motion.assembly import assembled
-from cellcolor.motion.following import joint_limits
+from cellcolor.motion.following import joint_space
 from cellcolor.motion.home import home_of
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.order import ordered
@@ -89,11 +89,7 @@ def plan_motion(
     """
     prepared = built.prepared
     motion = motion_of(prepared)
-    speeds, home, limits = (
-        speeds_of(motion, prepared.robot),
-        home_of(motion),
-        joint_limits(prepared),
-    )
+    speeds, home = speeds_of(motion, prepared.robot), home_of(motion)
     # Refuses a home that is no place for the arm, before anything takes time.
     planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
     clock = StageClock(deadline, progress)
@@ -142,7 +138,7 @@ def plan_motion(
     if not strokes:
         raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
-        strokes = ordered(strokes, limits, speeds.velocities, home, deadline)
+        strokes = ordered(strokes, joint_space(prepared), speeds.velocities, home, deadline)
     with clock.timed("transfers"):
         strokes, transfers = planner.between_strokes(strokes)
     with clock.timed("times"):

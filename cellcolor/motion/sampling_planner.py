@@ -12,6 +12,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import Deadline
+from cellcolor.frontend.arm.joint_space import JointSpace
 
 __all__ = ["sampled_way"]
 
@@ -21,8 +22,7 @@ _BRANCH = 1.0  # rad, the longest new branch of a tree
 def sampled_way(
     start: Array,
     end: Array,
-    lower: Array,
-    upper: Array,
+    limits: JointSpace,
     free: Callable[[Array], Mask],
     step: float,
     rounds: int,
@@ -32,10 +32,11 @@ def sampled_way(
     """Corners (c, joints) of a way, straight for the joints between them; None if none was found.
 
     Args:
-        start, end: (joints,) rad, both free.
-        lower, upper: (joints,) limits, rad.
+        start, end: (joints,) both free.
+        limits: the joints, and what they keep to.
         free: which of configurations (k, joints) are free, (k,).
-        step: between two tested configurations of a way a joint moves at most so far, rad.
+        step: between two tested configurations of a way a joint moves at most so far, rad or
+            units of a slide.
         rounds: of the planner; a number, so that the time that they take decides nothing.
         seed: the same way for the same seed.
         deadline: when to give up.
@@ -54,7 +55,7 @@ def sampled_way(
 
         def checkMotion(self, first: Any, second: Any, *_: Any) -> bool:
             one, other = array(first), array(second)
-            count = max(1, int(np.ceil(np.abs(other - one).max() / step)))
+            count = max(1, int(np.ceil(limits.largest(other - one) / step)))
             way = one + np.linspace(0.0, 1.0, count + 1)[1:, None] * (other - one)
             return bool(free(way).all())
 
@@ -63,8 +64,9 @@ def sampled_way(
     for joint in range(joints):
         # Farther than half a circle beyond both ends no way round anything leads.
         least, most = sorted((start[joint], end[joint]))
-        bounds.setLow(joint, max(float(lower[joint]), float(least) - np.pi))
-        bounds.setHigh(joint, min(float(upper[joint]), float(most) + np.pi))
+        more = np.pi * float(limits.units[joint])
+        bounds.setLow(joint, max(float(limits.lower[joint]), float(least) - more))
+        bounds.setHigh(joint, min(float(limits.upper[joint]), float(most) + more))
     space.setBounds(bounds)
     information = base.SpaceInformation(space)
     information.setStateValidityChecker(lambda state: bool(free(array(state)[None])[0]))

@@ -12,7 +12,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.courses import Course, Courses, laid_out
-from cellcolor.motion.following import joint_limits, whole_turns
+from cellcolor.motion.following import joint_space
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
@@ -93,14 +93,14 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
 
     courses = courses_with((), own)
     strokes = _on(ground, courses, branch)
-    limits = joint_limits(prepared)
-    if all(whole_turns(stroke.joints, *limits) is not None for stroke in strokes):
+    space = joint_space(prepared)
+    if all(space.fits(stroke.joints) for stroke in strokes):
         return SegmentStrokes(courses, strokes, None)
     cracks = [crack for crack in ground.surface.cracks if color in crack.colors]
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
     left_out = np.array(sorted(courses.reasons), dtype=np.int64)
     parts = parts_of(small, ground.states, segment, left_out, closed)
-    walls = walls_of(parts, small.whole, limits, ground.deadline)
+    walls = walls_of(parts, small.whole, space, ground.deadline)
     parted = len(strokes)
     courses = courses_with(walls.edges, courses.reasons)
     name = prepared.robot.joint_names[walls.joint]
@@ -113,7 +113,7 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
     cut = [
         part
         for stroke in strokes
-        for part in cut_where_full(stroke, *limits, prepared.robot.joint_names)
+        for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
     return SegmentStrokes(courses, cut, walls)
 
@@ -121,10 +121,12 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
 def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
     """The strokes on all paths of a segment, what fails cut out of them."""
     found: list[Stroke] = []
-    names = ground.prepared.judge.reason_names
+    names, space = ground.prepared.judge.reason_names, joint_space(ground.prepared)
     for course in courses.courses:
         segment = course.path.segment
-        parts = trimmed(segment, branch, course.samples, course.followed, ground.shortest, names)
+        parts = trimmed(
+            segment, branch, course.samples, course.followed, ground.shortest, names, space
+        )
         if parts and found:
             parts[0] = replace(parts[0], parting=_apart(course))
         found += parts

@@ -14,10 +14,11 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import LeftOut
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.mesh.small_triangles import small_areas, small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.following import CIRCLE
+from cellcolor.motion.following import joint_space
 from cellcolor.union_find import UnionFind
 
 __all__ = [
@@ -74,14 +75,16 @@ class CornerStates:
     """What the arm can do at the corners of small triangles, in the color of their segment.
 
     Attributes:
-        joints: (6 m, 3, joints) in rad, those of the second and the third corner unwound from the
-            first; NaN without solution or segment.
+        joints: (6 m, 3, joints) in rad or m, those of the second and the third corner unwound
+            from the first; NaN without solution or segment.
         reasons: (6 m,) codes of the judge: the first test that a corner fails.
+        space: of the joints.
         wound: (6 m,) whether the angles do not come back on the way round: the branch jumps inside.
     """
 
     joints: Array
     reasons: NDArray[np.uint8]
+    space: JointSpace
     wound: Mask
 
     def bad(self, names: tuple[str, ...]) -> dict[int, str]:
@@ -117,17 +120,13 @@ def corner_states(
     first = np.argmax(failed != VALID, axis=1)  # 0, which is valid then, if none has failed
     reasons[own] = failed[np.arange(len(own)), first]
     one, two, three = at_corners.swapaxes(0, 1)
-    out, across, back = nearest(one, two), nearest(two, three), nearest(three, one)
+    space = joint_space(prepared)
+    out, across, back = space.step(one, two), space.step(two, three), space.step(three, one)
     wound = np.zeros(len(small.corners), dtype=bool)
-    wound[own] = (np.abs(out + across + back) > CIRCLE / 2).any(axis=1)  # NaN is not
+    wound[own] = (np.abs(space.periods(out + across + back)) > 0).any(axis=1)  # NaN is not
     joints = np.full((len(small.corners), 3, found.shape[1]), np.nan)
     joints[own] = np.stack([one, one + out, one - back], axis=1)
-    return CornerStates(joints, reasons, wound)
-
-
-def nearest(first: Array, second: Array) -> Array:
-    """From angles to others modulo full circles: the shorter way, rad."""
-    return np.asarray(np.remainder(second - first + np.pi, CIRCLE) - np.pi)
+    return CornerStates(joints, reasons, space, wound)
 
 
 def left_out_parts(small: SmallTriangles, reasons: dict[int, str]) -> tuple[LeftOut, ...]:

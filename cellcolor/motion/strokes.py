@@ -8,7 +8,8 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
-from cellcolor.motion.following import CIRCLE, Followed, whole_turns
+from cellcolor.frontend.arm.joint_space import JointSpace
+from cellcolor.motion.following import Followed
 from cellcolor.motion.samples import Samples
 
 __all__ = ["Parting", "Stroke", "cut_where_full", "trimmed"]
@@ -39,7 +40,7 @@ class Stroke:
         segment: of the painting.
         branch: of the arm.
         points, normals: (k, 3) as of the samples.
-        joints: (k, joints) rad, unwound; whole turns of all of them together are still to be
+        joints: (k, joints) rad or m, unwound; whole turns of all of them together are still to be
             chosen.
         parting: why it is not one with an earlier stroke of its segment; None of the first one.
     """
@@ -54,12 +55,11 @@ class Stroke:
     def __len__(self) -> int:
         return len(self.points)
 
-    @property
-    def closed(self) -> bool:
+    def is_closed(self, space: JointSpace) -> bool:
         """Whether it ends where it begins, in the same configuration but for whole turns."""
         apart = float(np.linalg.norm(self.points[0] - self.points[-1]))
         off = self.joints[-1] - self.joints[0]
-        turned = np.abs(off - CIRCLE * np.rint(off / CIRCLE)).max()
+        turned = np.abs(off - space.period * space.periods(off)).max()
         return apart < _SAME and bool(turned < _SAME / 1e-3)
 
     def part(self, first: int, end: int) -> Stroke:
@@ -75,12 +75,12 @@ class Stroke:
             self, points=self.points[::-1], normals=self.normals[::-1], joints=self.joints[::-1]
         )
 
-    def begun_at(self, sample: int) -> Stroke:
+    def begun_at(self, sample: int, space: JointSpace) -> Stroke:
         """A closed stroke that begins and ends at another of its samples."""
         if sample == 0:
             return self
         # What is passed after the old end goes on from there, by whole turns farther if it winds.
-        wound = CIRCLE * np.rint((self.joints[-1] - self.joints[0]) / CIRCLE)
+        wound = space.period * space.periods(self.joints[-1] - self.joints[0])
         return replace(
             self,
             points=np.concatenate([self.points[sample:], self.points[1 : sample + 1]]),
@@ -88,9 +88,9 @@ class Stroke:
             joints=np.concatenate([self.joints[sample:], self.joints[1 : sample + 1] + wound]),
         )
 
-    def turned(self, circles: Index) -> Stroke:
-        """Every joint (joints,) turned by so many full circles all along."""
-        return replace(self, joints=self.joints + CIRCLE * circles)
+    def turned(self, turns: Index, space: JointSpace) -> Stroke:
+        """Every joint (joints,) turned by so many periods all along."""
+        return replace(self, joints=self.joints + space.period * turns)
 
 
 def trimmed(
@@ -100,12 +100,14 @@ def trimmed(
     followed: Followed,
     shortest: float,
     names: tuple[str, ...],
+    space: JointSpace,
 ) -> list[Stroke]:
     """The stretches of a path whose samples are all valid and none torn from the next.
 
     Args:
         shortest: stretches that are shorter are left out, m.
         names: of the codes of the judge.
+        space: of the joints.
     """
     good = followed.reasons == VALID
     if not good.any():
@@ -116,7 +118,7 @@ def trimmed(
     found: list[Stroke] = []
     for first, last in zip(np.flatnonzero(begins), np.flatnonzero(ends), strict=True):
         rows = slice(int(first), int(last) + 1)
-        joints = np.unwrap(followed.joints[rows], axis=0)
+        joints = space.unwrap(followed.joints[rows])
         points, normals = samples.points[rows], samples.normals[rows]
         length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
         if len(points) < 2 or (length < shortest and len(points) < len(samples)):
@@ -133,9 +135,7 @@ def trimmed(
     return found
 
 
-def cut_where_full(
-    stroke: Stroke, lower: Array, upper: Array, joint_names: tuple[str, ...]
-) -> list[Stroke]:
+def cut_where_full(stroke: Stroke, space: JointSpace, joint_names: tuple[str, ...]) -> list[Stroke]:
     """Parts of a stroke that each fit into the joint limits; the stroke itself if it does.
 
     Each goes as far as it can. Between two parts the tool is lifted off, and joints come back by
@@ -145,17 +145,17 @@ def cut_where_full(
     first = 0
     while first < len(stroke) - 1:
         fits, too_far = first, len(stroke)  # how far it is known to fit, and not to
-        if whole_turns(stroke.joints[first:], lower, upper) is not None:
+        if space.fits(stroke.joints[first:]):
             fits = too_far - 1
         while too_far - fits > 1 and fits < len(stroke) - 1:
             middle = (fits + too_far) // 2
-            if whole_turns(stroke.joints[first : middle + 1], lower, upper) is not None:
+            if space.fits(stroke.joints[first : middle + 1]):
                 fits = middle
             else:
                 too_far = middle
         part = stroke.part(first, fits + 1)
         if parts:
-            part = replace(part, parting=_full(stroke, parts[-1], first, lower, upper, joint_names))
+            part = replace(part, parting=_full(stroke, parts[-1], first, space, joint_names))
         parts.append(part)
         first = fits
         if (
@@ -166,17 +166,10 @@ def cut_where_full(
 
 
 def _full(
-    stroke: Stroke, before: Stroke, sample: int, lower: Array, upper: Array, names: tuple[str, ...]
+    stroke: Stroke, before: Stroke, sample: int, space: JointSpace, names: tuple[str, ...]
 ) -> Parting:
     """Why a stroke was cut at a sample that the part before it still has."""
     joints = np.concatenate([before.joints, stroke.joints[sample : sample + 2]])
-    joint = next(
-        (
-            number
-            for number in range(len(names))
-            if whole_turns(joints[:, [number]], lower[[number]], upper[[number]]) is None
-        ),
-        0,
-    )
+    joint = next((number for number, own in enumerate(space.turns(joints)) if not len(own)), 0)
     x, y, z = stroke.points[sample].tolist()
     return Parting("winding", f"{names[joint]} would run out of its limits", (x, y, z))

@@ -30,8 +30,8 @@ class Speeds:
     """What limits the arm's speed.
 
     Attributes:
-        velocities: (joints,) rad/s.
-        accelerations: (joints,) rad/s^2.
+        velocities: (joints,) rad/s or m/s.
+        accelerations: (joints,) rad/s^2 or m/s^2.
     """
 
     velocities: Array
@@ -44,7 +44,7 @@ def timed(
     """Times (k,) of the samples of a motion from rest to rest, from 0 on, s.
 
     Args:
-        joints: (k, joints) rad, unwound, neighbors near each other.
+        joints: (k, joints) rad or m, unwound, neighbors near each other.
         speeds: of the joints.
         points: (k, 3) where the tip is, m; only with a speed of the tool.
         tool_speed: the tool goes no faster, m/s.

@@ -13,7 +13,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
-from cellcolor.motion.following import CIRCLE, whole_turns
+from cellcolor.motion.following import joint_space
 from cellcolor.motion.free_space import FreeSpace
 from cellcolor.motion.home import check_home, home_of
 from cellcolor.motion.samples import DISTANCE, TURN, angles_between
@@ -23,6 +23,7 @@ from cellcolor.motion.turns import Visit, chosen_turns
 
 __all__ = ["Transfer", "Transfers"]
 
+# Bounds in rad are in units of a slide as well (JointSpace.units).
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
 _COARSE = 0.04  # rad, between samples of a move that is only tried
 _FEW_ROUNDS, _MANY_ROUNDS = 600, 20_000  # of the sampling planner: seconds, or a minute or two
@@ -39,7 +40,7 @@ class Transfer:
     """A motion without contact, its first and last configuration included.
 
     Attributes:
-        joints: (k, joints) rad, unwound.
+        joints: (k, joints) rad or m, unwound.
         gap: after which of them the way to the next one was not planned; None if all of it was.
     """
 
@@ -58,7 +59,7 @@ class Transfers:
         seed: int,
         deadline: Deadline,
     ) -> None:
-        """``velocities`` (joints,) in rad/s; ``seed`` is that of the sampling planner.
+        """``velocities`` (joints,) in rad/s or m/s; ``seed`` is that of the sampling planner.
 
         Raises:
             InputError: the home position is not free.
@@ -69,7 +70,7 @@ class Transfers:
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
         self._clear = FreeSpace(prepared, motion.clearance_m)
         self._wide = FreeSpace(prepared, motion.clearance_m + _SPARE)
-        self._home = home_of(motion)
+        self._home, self._space = home_of(motion), joint_space(prepared)
         self._shares: dict[bytes, float] = {}
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
@@ -89,17 +90,17 @@ class Transfers:
             [self._retreat(one.joints[at], one.normals[at], one.branch) for one in strokes]
             for at in (0, -1)
         )
-        limits, home = self._clear.limits, self._home
+        space, home = self._space, self._home
         visits = []
         for way_on, stroke, way_off in zip(onto, strokes, off, strict=True):
             span = np.concatenate([way_on, stroke.joints, way_off])
-            if whole_turns(span, *limits) is None:
+            if not space.fits(span):
                 span = stroke.joints
             visits.append(Visit(way_on[-1], way_off[-1], span))
-        circles = chosen_turns(visits, home, limits, self._velocities, self._detour)
-        turned = [stroke.turned(own) for stroke, own in zip(strokes, circles, strict=True)]
+        circles = chosen_turns(visits, home, space, self._velocities, self._detour)
+        turned = [stroke.turned(own, space) for stroke, own in zip(strokes, circles, strict=True)]
         onto, off = (
-            [self._high(way + CIRCLE * own) for way, own in zip(ways, circles, strict=True)]
+            [self._high(way + space.period * own) for way, own in zip(ways, circles, strict=True)]
             for ways in (onto, off)
         )
         if home is None:
@@ -118,12 +119,12 @@ class Transfers:
         with nothing in the way below it; there may be none, and then it has no length.
 
         Args:
-            joints: (joints,) in contact, rad, unwound.
+            joints: (joints,) in contact, unwound.
             normal: (3,) the surface's, outward.
             branch: of the configuration.
 
         Returns:
-            (k, joints) from the contact on, rad, unwound.
+            (k, joints) from the contact on, unwound.
         """
         tip = forward(self._prepared.robot, joints[None]).tip[0]
         count = int(np.ceil(self._height / (DISTANCE * _ROOM)))
@@ -133,8 +134,8 @@ class Transfers:
         found = self._prepared.arm.follow(points, directions, np.full(count, branch, dtype=np.intp))
         solved = ~np.isnan(found[:, 0])
         found = found[: count if solved.all() else int(np.argmin(solved))]
-        way = joints + np.unwrap(np.concatenate([joints[None], found]) - joints, axis=0)
-        steady = np.abs(np.diff(way, axis=0)).max(axis=1) <= _FASTER
+        way = joints + self._space.unwrap(np.concatenate([joints[None], found]) - joints)
+        steady = self._space.largest(np.diff(way, axis=0)) <= _FASTER
         fine = np.append(steady & self._leaving.clear(way[1:]), False)
         way = way[: int(np.argmin(fine)) + 1]
         clear = np.flatnonzero(self._clear.clear(way[1:]))
@@ -180,7 +181,7 @@ class Transfers:
         return float((np.abs(end - start) / self._velocities).max())
 
     def _share(self, start: Array, end: Array) -> float:
-        count = max(1, int(np.ceil(np.abs(end - start).max() / _COARSE)))
+        count = max(1, int(np.ceil(self._space.largest(end - start) / _COARSE)))
         share = np.linspace(0.0, 1.0, count + 1)[:, None]
         return float(1.0 - self._clear(start + share * (end - start)).mean())
 
@@ -202,7 +203,7 @@ class Transfers:
                 (self._clear, _FINE, _MANY_ROUNDS),
             ):
                 found = sampled_way(
-                    start, end, *self._clear.limits, free, step, rounds, self._seed, self._deadline
+                    start, end, self._space, free, step, rounds, self._seed, self._deadline
                 )
                 self._deadline.check()
                 if found is None:
@@ -221,7 +222,8 @@ class Transfers:
         def free(configurations: Array) -> Mask:
             found = self._wide(configurations)
             off = np.minimum(
-                np.abs(configurations - start).max(axis=1), np.abs(configurations - end).max(axis=1)
+                self._space.largest(configurations - start),
+                self._space.largest(configurations - end),
             )
             doubtful = np.flatnonzero(~found & (off < _NEAR))
             found[doubtful] = self._clear(configurations[doubtful])
@@ -232,12 +234,13 @@ class Transfers:
     def _dense(self, corners: Array) -> Array:
         """Samples (k, joints) of straight ways for the joints through corners (c, joints).
 
-        From one to the next the tip moves at most 1 mm, and the tool's axis and every joint turn
-        by at most 1 degree.
+        From one to the next the tip and every slide move at most 1 mm, and the tool's axis and
+        every other joint turn by at most 1 degree.
         """
         parts = [corners[:1]]
+        most = np.where(self._space.slides, DISTANCE, TURN) * _ROOM
         for start, end in pairwise(corners):
-            count = max(1, int(np.ceil(np.abs(end - start).max() / (TURN * _ROOM))))
+            count = max(1, int(np.ceil((np.abs(end - start) / most).max())))
             while True:
                 share = np.linspace(0.0, 1.0, count + 1)[:, None]
                 way = start + share * (end - start)

@@ -9,7 +9,7 @@ from itertools import pairwise, product
 import numpy as np
 
 from cellcolor.arrays import Array, Index
-from cellcolor.motion.following import CIRCLE, whole_turns
+from cellcolor.frontend.arm.joint_space import JointSpace
 
 __all__ = ["Visit", "chosen_turns"]
 
@@ -21,7 +21,7 @@ _CHECKS = 400  # moves that are asked about at most
 
 @dataclass(frozen=True)
 class Visit:
-    """Where a stroke is come to and left from, and all angles in between; rad.
+    """Where a stroke is come to and left from, and all positions in between; rad or m.
 
     Attributes:
         start, end: (joints,).
@@ -36,7 +36,7 @@ class Visit:
 def chosen_turns(
     visits: Sequence[Visit],
     home: Array | None,
-    limits: tuple[Array, Array],
+    space: JointSpace,
     velocities: Array,
     detour: Callable[[Array, Array], float],
 ) -> list[Index]:
@@ -47,20 +47,21 @@ def chosen_turns(
 
     Args:
         visits: in their order; each fits into the limits.
-        home: (joints,) where the arm begins and ends, rad; None if that does not matter.
-        limits: lower and upper (joints,), rad.
-        velocities: (joints,) the greatest, rad/s.
+        home: (joints,) where the arm begins and ends; None if that does not matter.
+        space: of the joints.
+        velocities: (joints,) the greatest, rad/s or m/s.
         detour: by how much longer than a straight move from one configuration (joints,) to
             another the arm takes, s; 0 where that is free.
     """
+    limits = space.limits
     lower, upper = (np.where(np.isfinite(limits).all(axis=0), own, 0.0) for own in limits)
     middle = (lower + upper) / 2
     circles, starts, ends, aside = [], [], [], []
     for visit in visits:
-        own = _choices(visit, limits, middle)
+        own = _choices(visit, space, middle)
         circles.append(own)
-        starts.append(visit.start + CIRCLE * own)
-        ends.append(visit.end + CIRCLE * own)
+        starts.append(visit.start + space.period * own)
+        ends.append(visit.end + space.period * own)
         aside.append(_ASIDE * np.abs((starts[-1] + ends[-1]) / 2 - middle).sum(axis=1))
     if home is not None:
         at_home = home[None]
@@ -100,14 +101,14 @@ def chosen_turns(
     return [own[at] for own, at in zip(circles, of_visits, strict=True)]
 
 
-def _choices(visit: Visit, limits: tuple[Array, Array], middle: Array) -> Index:
+def _choices(visit: Visit, space: JointSpace, middle: Array) -> Index:
     """Full circles (c, joints) by which a visit can be turned."""
-    possible = whole_turns(visit.span, *limits)
-    assert possible is not None  # asked by who calls
+    possible = space.turns(visit.span)
+    assert all(map(len, possible))  # asked by who calls
     at = (visit.span.min(axis=0) + visit.span.max(axis=0)) / 2
     near = []
     for joint, turns in enumerate(possible):
-        off = np.abs(at[joint] + CIRCLE * turns - middle[joint])
+        off = np.abs(at[joint] + space.period[joint] * turns - middle[joint])
         if visit.span[:, joint].min() == visit.span[:, joint].max():  # locked: it stays as it is
             near.append(turns[[np.abs(turns).argmin()]])
             continue

@@ -18,8 +18,8 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline
+from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
-from cellcolor.motion.following import CIRCLE
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 
 __all__ = ["Parts", "Walls", "parts_of", "walls_of"]
@@ -119,15 +119,13 @@ def parts_of(
         lowest,
         highest,
         np.column_stack([part_of[first], part_of[after]]),
-        np.rint(at_middle / CIRCLE).astype(np.int64),
+        states.space.periods(at_middle).astype(np.int64),
         small.side[first],
         np.linalg.norm(small.points[middle] - small.points[centroid], axis=1),
     )
 
 
-def walls_of(
-    parts: Parts, mesh: TriangleMesh, limits: tuple[Array, Array], deadline: Deadline
-) -> Walls:
+def walls_of(parts: Parts, mesh: TriangleMesh, space: JointSpace, deadline: Deadline) -> Walls:
     """Walls between which the joints of a segment stay inside their limits.
 
     Of all trees that are grown, one that reaches the largest area is taken, and of these the one
@@ -136,13 +134,13 @@ def walls_of(
     Args:
         parts: of the segment.
         mesh: the mesh.
-        limits: lower and upper (joints,) of the joints, rad.
+        space: of the joints.
         deadline: when to give up.
 
     Raises:
         OutOfTime: the deadline came first.
     """
-    grower = _Grower(parts, limits, deadline)
+    grower = _Grower(parts, space, deadline)
     one, other = parts.steps.T
     left = np.ones(len(parts.places), dtype=bool)
     walls = np.zeros(len(parts.steps), dtype=bool)
@@ -174,8 +172,8 @@ class _Grower:
         joint: one that a closed walk turns by a full circle; otherwise that which moves farthest.
     """
 
-    def __init__(self, parts: Parts, limits: tuple[Array, Array], deadline: Deadline) -> None:
-        self._parts, self._limits, self._deadline = parts, limits, deadline
+    def __init__(self, parts: Parts, space: JointSpace, deadline: Deadline) -> None:
+        self._parts, self._space, self._deadline = parts, space, deadline
         self._beside: list[list[tuple[int, float, Index]]] = [[] for _ in parts.places]
         ends = parts.places[parts.steps]
         lengths = np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1).tolist()
@@ -186,13 +184,14 @@ class _Grower:
         everywhere = np.ones(len(parts.places), dtype=bool)
         joints = parts.lowest.shape[1]
         self._free = self._grown(everywhere, 0, np.zeros(joints, dtype=np.int64), None)
-        lowest = (parts.lowest + CIRCLE * self._free.turns)[self._free.reached].min(axis=0)
-        highest = (parts.highest + CIRCLE * self._free.turns)[self._free.reached].max(axis=0)
+        lowest = (parts.lowest + space.period * self._free.turns)[self._free.reached].min(axis=0)
+        highest = (parts.highest + space.period * self._free.turns)[self._free.reached].max(axis=0)
         seen = self._free.reached[parts.steps[:, 0]]
         winds = np.asarray(self.torn(self._free)[seen].any(axis=0))
         self.joint = int(np.argmax(winds) if winds.any() else np.argmax(highest - lowest))
         # A joint that does not wind, and fits as a whole, needs no more than one start.
-        whole = [_fitting(*span) for span in zip(lowest, highest, *limits, strict=True)]
+        spans = zip(lowest, highest, *space.limits, space.period, strict=True)
+        whole = [_fitting(*span) for span in spans]
         self._whole = [
             None if wind or not turns else turns[0]
             for wind, turns in zip(winds, whole, strict=True)
@@ -211,7 +210,8 @@ class _Grower:
         found = _Tree(np.zeros(len(left), dtype=bool), np.zeros_like(self._free.turns))
         for root in _spread(parts.places, np.flatnonzero(left)):
             for margin in (_MARGIN, 0.0):
-                limits = self._limits[0] + margin, self._limits[1] - margin
+                off = margin * self._space.units
+                limits = self._space.lower + off, self._space.upper - off
                 for start in self._starts(root, limits):
                     self._deadline.check()
                     tree = self._grown(left, root, start, limits)
@@ -227,7 +227,8 @@ class _Grower:
     def _starts(self, root: int, limits: tuple[Array, Array]) -> list[Index]:
         """Turns (joints,) of a root that are inside the limits."""
         parts, choices = self._parts, []
-        spans = zip(parts.lowest[root], parts.highest[root], *limits, strict=True)
+        ends = parts.lowest[root], parts.highest[root]
+        spans = zip(*ends, *limits, self._space.period, strict=True)
         for joint, span in enumerate(spans):
             whole = self._whole[joint]
             if whole is not None and self._free.reached[root]:
@@ -240,7 +241,7 @@ class _Grower:
         self, allowed: Mask, root: int, start: Index, limits: tuple[Array, Array] | None
     ) -> _Tree:
         """A tree of the shortest ways from a root, among allowed parts and inside limits."""
-        parts = self._parts
+        parts, period = self._parts, self._space.period
         turns = np.zeros(parts.lowest.shape, dtype=np.int64)
         reached = np.zeros(len(parts.places), dtype=bool)
         queue, count = [(0.0, 0, root, start)], 0
@@ -254,8 +255,8 @@ class _Grower:
                     continue
                 there = own + more
                 if limits is not None:
-                    inside = parts.lowest[other] + CIRCLE * there >= limits[0]
-                    inside &= parts.highest[other] + CIRCLE * there <= limits[1]
+                    inside = parts.lowest[other] + period * there >= limits[0]
+                    inside &= parts.highest[other] + period * there <= limits[1]
                     if not inside.all():
                         continue
                 count += 1
@@ -263,14 +264,16 @@ class _Grower:
         return _Tree(reached, turns)
 
 
-def _fitting(lowest: float, highest: float, lower: float, upper: float) -> list[int]:
-    """The full circles that bring a range of angles inside limits, the middle ones first."""
+def _fitting(lowest: float, highest: float, lower: float, upper: float, period: float) -> list[int]:
+    """The periods that bring a range of positions inside limits, the middle ones first."""
     if not (np.isfinite(lower) and np.isfinite(upper)):
         return [0]
-    first, last = np.ceil((lower - lowest) / CIRCLE), np.floor((upper - highest) / CIRCLE)
+    if not period:
+        return [0] if lower <= lowest and highest <= upper else []
+    first, last = np.ceil((lower - lowest) / period), np.floor((upper - highest) / period)
     turns = range(int(first), int(last) + 1)
     middle = (lower + upper - lowest - highest) / 2
-    return sorted(turns, key=lambda turn: abs(CIRCLE * turn - middle))
+    return sorted(turns, key=lambda turn: abs(period * turn - middle))
 
 
 def _spread(places: Array, members: Index) -> list[int]:

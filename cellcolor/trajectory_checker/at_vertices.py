@@ -18,6 +18,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import poses_of
+from cellcolor.trajectory_checker.joint_steps import joint_steps
 from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT, TURN
 from cellcolor.trajectory_checker.tool_turn import across_of, turns_off
 
@@ -134,9 +135,9 @@ def at_vertices(
     branch, apart = np.zeros(len(joints), dtype=np.int64), np.full(len(joints), np.inf)
     for rows in chunks(len(joints), 64 * robot.joints * len(built.branches)):
         deadline.check()
-        way = built.configurations[vertex[rows]][:, :, compared] - joints[rows, None][..., compared]
-        around = np.remainder(way + np.pi, 2 * np.pi) - np.pi
-        way = np.abs(np.where(robot.slides[compared], way, around)).max(axis=2)
+        known = built.configurations[vertex[rows]][:, :, compared]
+        asked = joints[rows, None][..., compared]
+        way = joint_steps(robot.slides[compared], asked, known).max(axis=2)
         way = np.where(np.isnan(way), np.inf, way)
         branch[rows] = np.argmin(way, axis=1)
         apart[rows] = way[np.arange(len(way)), branch[rows]]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,7 +27,7 @@ from cellcolor.trajectory_checker.on_surface import (
     judge_cracks,
     judge_dragged,
 )
-from cellcolor.trajectory_checker.tolerances import Limits
+from cellcolor.trajectory_checker.tolerances import OFF_SURFACE, Limits
 from cellcolor.trajectory_checker.tool_turn import across_of, judge_turn
 from cellcolor.trajectory_checker.validity import judge_validity
 
@@ -63,14 +64,13 @@ def check_trajectory(
     Raises:
         InputError: the scene was prepared with another mesh than the labelled surface, the
             trajectory is of another arm, or the setup's velocities are; or the arm's
-            solutions have no names, or it has a prismatic joint.
+            solutions have no names.
         OutOfTime: the deadline came first.
         TooLarge: surface or trajectory would not fit into memory.
     """
     report, prepared = progress or (lambda _: None), built.prepared
-    robot, motion = prepared.robot, prepared.setup.motion
+    robot, motion, direction = prepared.robot, prepared.setup.motion, prepared.robot.task.direction
     prepared.arm.check_named()
-    _check_task(prepared)
     _check_mesh(built)
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)
@@ -88,14 +88,17 @@ def check_trajectory(
     report("contact")
     fine_edge = _WITHOUT_SPACING if motion is None else _FINE * motion.spacing_m
     fine = refined(prepared.surface, fine_edge, deadline)
+    if not direction:  # the place tells; the tool, whether it is on this side of a thin sheet
+        fine = replace(fine, away=OFF_SURFACE)
     rows = np.flatnonzero(dense.contact)
     located = fine.locate(dense.tips[rows], dense.outward[rows], deadline)
-    touching = judge_contact(dense, rows, located, faults)
+    touching = judge_contact(dense, rows, located, direction, faults)
     judge_dragged(dense, fine, deadline, faults)
     across, turn = np.zeros((len(rows), 3)), prepared.setup.task.turn
     if turn is not None:
         across = across_of(robot, dense.joints[rows], deadline)
-        judge_turn(turn, dense, rows, located.normals, across, faults)
+        wanted = -located.normals if direction else dense.axes[rows]
+        judge_turn(turn, dense, rows, wanted, across, faults)
     branches = branches_of(prepared, dense, rows, across, deadline)
     judge_cracks(built, dense, rows, located, branches, fine, faults)
     covered: CoveredArea | None = None
@@ -150,18 +153,6 @@ def _verdict(
         covered=covered,
         notes=tuple(notes),
     )
-
-
-def _check_task(prepared: PreparedScene) -> None:
-    """Refuse what contacts and joints are not judged for: the tool is held to the normal here."""
-    robot = prepared.robot
-    if robot.slides.any() or not (robot.task.direction or robot.task.plane):
-        message = (
-            "trajectories are judged for joints that turn and a tool against the normal, so none "
-            "of an arm with a prismatic joint that moves, nor where the tool's direction is not "
-            "asked for"
-        )
-        raise InputError(None, "robot.kinematics", message)
 
 
 def _check_mesh(built: BuildResult) -> None:
@@ -222,4 +213,4 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         names = [robot.joint_names[joint] for joint in np.flatnonzero(np.isnan(velocity))]
         notes.append(f"Without a limit, so velocities are not judged: {', '.join(names)}.")
         velocity = np.where(np.isnan(velocity), np.inf, velocity)
-    return JointLimits(lower, upper, velocity, acceleration, tool_speed)
+    return JointLimits(lower, upper, velocity, acceleration, tool_speed, robot.slides)

@@ -28,7 +28,7 @@ class Dense:
     Attributes:
         sample: (d,) the sample, or the one before.
         way: (d,) how far it is to the next sample, 0 at a sample.
-        joints: (d, joints) in rad.
+        joints: (d, joints) in rad or m.
         tips: (d, 3) where the tool's tip is, m.
         axes: (d, 3) unit vectors along the tool, from the flange to the tip.
         contact: (d,) whether it is in contact: between two samples if both are.
@@ -79,7 +79,8 @@ def densified(
         TooLarge: there would be millions.
     """
     joints, count = trajectory.joints, len(trajectory.joints)
-    steps = np.abs(np.diff(joints, axis=0)).max(axis=1, initial=0.0) / STEP_ANGLE
+    most = np.where(robot.slides, STEP, STEP_ANGLE)
+    steps = (np.abs(np.diff(joints, axis=0)) / most).max(axis=1, initial=0.0)
     moved = np.linalg.norm(np.diff(tips, axis=0), axis=1) / STEP
     turned = 2 * np.arcsin(np.clip(np.linalg.norm(np.diff(axes, axis=0), axis=1) / 2, 0, 1))
     longest = np.maximum(np.maximum(steps, moved), turned / STEP_ANGLE)

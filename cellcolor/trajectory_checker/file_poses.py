@@ -23,11 +23,13 @@ def judge_poses(
 ) -> None:
     """Note samples whose stated point or normal is another one.
 
+    Joints only give the normal where the task holds the tool against it.
+
     Args:
         tips, axes: (k, 3) what forward kinematics gives, m and unit vectors.
     """
     apart = np.linalg.norm(trajectory.points - tips, axis=1)
-    turned = _angles(trajectory.normals, -axes)
+    turned = _turned(robot, trajectory.normals, axes)
     wrong = (apart > POSE_DISTANCE) | (turned > POSE_ANGLE)
     if not wrong.any():
         return
@@ -43,6 +45,11 @@ def judge_poses(
         tips,
         joint,
     )
+
+
+def _turned(robot: Robot, normals: Array, axes: Array) -> Array:
+    """How far stated normals (k, 3) are off those that tool axes give, (k,) in rad."""
+    return _angles(normals, -axes) if robot.task.direction else np.zeros(len(normals))
 
 
 def _angles(one: Array, other: Array) -> Array:
@@ -63,7 +70,7 @@ def _swapped(trajectory: Trajectory, robot: Robot, wrong: Index) -> tuple[str, i
     def fits(joints: Array, points: Array, normals: Array) -> bool:
         poses = forward(robot, joints)
         near = np.linalg.norm(points - poses.tip, axis=1) <= POSE_DISTANCE
-        return bool((near & (_angles(normals, -poses.tool_axis) <= POSE_ANGLE)).all())
+        return bool((near & (_turned(robot, normals, poses.tool_axis) <= POSE_ANGLE)).all())
 
     def exchanged(columns: Array, i: int, j: int) -> Array:
         order = np.arange(columns.shape[1])

@@ -54,6 +54,8 @@ class FineMesh:
         triangles: (m, 3).
         face: (m,) which face of the given surface each small triangle is a part of.
         corners: (m, 3, 3) barycentric coordinates, in that face, of each of its corners.
+        away: a triangle that faces away from the tool counts as so much farther, m, while others do
+            not; infinite where the tool is held against the normal.
     """
 
     surface: Surface
@@ -61,6 +63,7 @@ class FineMesh:
     triangles: Index
     face: Index
     corners: Array
+    away: float = np.inf
 
     @cached_property
     def areas(self) -> Array:
@@ -120,7 +123,8 @@ class FineMesh:
     def locate(self, points: Array, outward: Array, deadline: Deadline = NEVER) -> Located:
         """The nearest points of the surface.
 
-        Of a thin sheet, the side whose normals are less than 90 degrees off is meant, if one is.
+        Of a thin sheet, the side whose normals are less than 90 degrees off is meant, if one is
+        (``away`` says how much farther off it may be).
         Points farther off than 20 mm may get one that is only nearly the nearest.
 
         Args:
@@ -166,7 +170,7 @@ class FineMesh:
         apart = np.linalg.norm(nearest - points[:, None], axis=2)
         facing = np.einsum("kqd,kd->kq", self._facing[candidates], outward) > 0
         # Where none of those asked faces this way, the nearest one will do.
-        apart = np.where(facing | ~facing.any(axis=1, keepdims=True), apart, np.inf)
+        apart = np.where(facing | ~facing.any(axis=1, keepdims=True), apart, apart + self.away)
         best = np.argmin(apart, axis=1)
         k = np.arange(len(points))
         return apart[k, best], far[:, -1], candidates[k, best], weights[k, best]

@@ -12,6 +12,7 @@ from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.tolerances import (
     ANGLE_ROUNDING,
     BOW,
+    BOW_OF_SLIDE,
     JUMP,
     POSE_ROUNDING,
     SHARE_OVER_LIMIT,
@@ -25,10 +26,11 @@ class JointLimits:
     """What the joints keep to; each (joints,).
 
     Attributes:
-        lower, upper: rad; None where the setup leaves limits and collisions out.
-        velocity: rad/s.
-        acceleration: rad/s²; None where the setup has none.
+        lower, upper: rad, or m of a slide; None where the setup leaves limits and collisions out.
+        velocity: rad/s or m/s.
+        acceleration: rad/s² or m/s²; None where the setup has none.
         tool_speed: of the tip in contact, m/s, no array; infinite where the setup has none.
+        slides: which joints are prismatic.
     """
 
     lower: Array | None
@@ -36,6 +38,12 @@ class JointLimits:
     velocity: Array
     acceleration: Array | None
     tool_speed: float
+    slides: Mask
+
+    @property
+    def units(self) -> list[str]:
+        """What the position of each joint is in."""
+        return ["m" if slides else "rad" for slides in self.slides]
 
 
 def judge_joints(
@@ -52,12 +60,12 @@ def judge_joints(
     Returns:
         (k - 1,) which steps are jumps.
     """
-    steps = np.diff(trajectory.joints, axis=0)
+    steps, units = np.diff(trajectory.joints, axis=0), limits.units
     _judge_limits(trajectory, tips, limits, faults)
     together = trajectory.contact[1:] & trajectory.contact[:-1]
     if not timed:
         jumps = (np.abs(steps) > JUMP) & together[:, None]
-        _note_jumps(jumps, steps, trajectory.joint_names, tips, faults)
+        _note_jumps(jumps, steps, trajectory.joint_names, units, tips, faults)
         return np.asarray(jumps.any(axis=1))
     passed = np.diff(trajectory.times)
     ascending = passed > 0
@@ -78,21 +86,21 @@ def judge_joints(
     fast = np.abs(velocity) > limits.velocity * (1 + SHARE_OVER_LIMIT) + rounding
     fast |= ~ascending[:, None]
     jumps = (np.abs(steps) > JUMP) & (fast | together[:, None])
-    _note_jumps(jumps, steps, trajectory.joint_names, tips, faults)
+    _note_jumps(jumps, steps, trajectory.joint_names, units, tips, faults)
     fast &= ~jumps & ascending[:, None]
     faults.add_joint_stretches(
         "velocity",
         fast,
         np.abs(velocity),
         lambda k, joint: (
-            f"moves at {abs(velocity[k, joint]):.4g} rad/s, allowed are "
+            f"moves at {abs(velocity[k, joint]):.4g} {units[joint]}/s, allowed are "
             f"{limits.velocity[joint]:.4g}"
         ),
         tips,
     )
     if limits.acceleration is not None and len(passed) > 1:
         known = ascending & ~jumps.any(axis=1)
-        _judge_accelerations(trajectory, known, tips, limits.acceleration, faults)
+        _judge_accelerations(trajectory, known, tips, limits, limits.acceleration, faults)
     _judge_tool_speed(tips, safe[:, 0], together & ~jumps.any(axis=1), limits.tool_speed, faults)
     return np.asarray(jumps.any(axis=1))
 
@@ -104,12 +112,18 @@ def _judge_limits(
     if lower is None or upper is None:
         return
     over = np.maximum(joints - upper, lower - joints)
+
+    def beyond(k: int, joint: int) -> str:
+        if limits.slides[joint]:
+            return f"{1000 * over[k, joint]:.3g} mm"
+        return f"{np.degrees(over[k, joint]):.3g} degrees"
+
     faults.add_joint_stretches(
         "joint limit",
         over > ANGLE_ROUNDING,
         over,
         lambda k, joint: (
-            f"is at {joints[k, joint]:.5f} rad, {np.degrees(over[k, joint]):.3g} degrees beyond "
+            f"is at {joints[k, joint]:.5f} {limits.units[joint]}, {beyond(k, joint)} beyond "
             f"its limits of {lower[joint]:.5f} and {upper[joint]:.5f}"
         ),
         tips,
@@ -117,10 +131,16 @@ def _judge_limits(
 
 
 def _note_jumps(
-    jumps: Mask, steps: Array, names: tuple[str, ...], tips: Array, faults: FaultList
+    jumps: Mask,
+    steps: Array,
+    names: tuple[str, ...],
+    units: list[str],
+    tips: Array,
+    faults: FaultList,
 ) -> None:
     for sample, joint in np.argwhere(jumps).tolist():
-        text = f"{names[joint]} moves by {steps[sample, joint]:.4g} rad to the next sample"
+        by = f"{steps[sample, joint]:.4g} {units[joint]}"
+        text = f"{names[joint]} moves by {by} to the next sample"
         faults.add("jump", text, sample, sample + 1, joint, place=tips[sample])
 
 
@@ -140,7 +160,12 @@ def _judge_tool_speed(
 
 
 def _judge_accelerations(
-    trajectory: Trajectory, known: Mask, tips: Array, most: Array, faults: FaultList
+    trajectory: Trajectory,
+    known: Mask,
+    tips: Array,
+    limits: JointLimits,
+    most: Array,
+    faults: FaultList,
 ) -> None:
     """Note samples where no smooth motion through the samples keeps the accelerations.
 
@@ -154,8 +179,9 @@ def _judge_accelerations(
     a(r + t + s)/4 off (u + w)/2. The arm rests before the first sample and after the last.
 
     Along a line of many samples the motion cannot have been elsewhere. It is allowed ``BOW`` off
-    the line, so where the line ends its velocity is within sqrt(2 a BOW) of the line's: longer
-    lines have no more time for a change than those for which that is ar/2.
+    the line (``BOW_OF_SLIDE`` if it is prismatic), so where the line ends its velocity is within
+    sqrt(2 a BOW) of the line's: longer lines have no more time for a change than those for which
+    that is ar/2.
 
     Args:
         known: (k - 1,) steps that are motions.
@@ -172,7 +198,7 @@ def _judge_accelerations(
         if after == len(known):
             passed, velocity = np.append(passed, 0.0), np.concatenate([velocity, rest])
             rows = np.append(rows, len(times) - 1)
-        _note_accelerations(trajectory, rows, passed, velocity, tips, most, faults)
+        _note_accelerations(trajectory, rows, passed, velocity, tips, limits, most, faults)
 
 
 def _note_accelerations(
@@ -181,6 +207,7 @@ def _note_accelerations(
     passed: Array,
     velocity: Array,
     tips: Array,
+    limits: JointLimits,
     most: Array,
     faults: FaultList,
 ) -> None:
@@ -191,7 +218,7 @@ def _note_accelerations(
     rounding = np.divide(ANGLE_ROUNDING, passed, where=passed > 0, out=np.zeros_like(passed))
     rounding = rounding[:, None]
     # In which a velocity can change beside a line, and from one end of it to the other.
-    longest = np.sqrt(8 * BOW / most)
+    longest = np.sqrt(8 * np.where(limits.slides, BOW_OF_SLIDE, BOW) / most)
     beside = np.minimum(passed[:, None], longest)
     along = np.minimum(passed[:, None], 2 * longest)
     between = (beside[1:] + beside[:-1]) / 2
@@ -213,7 +240,8 @@ def _note_accelerations(
         at_fault,
         excess,
         lambda k, joint: (
-            f"accelerates by {excess[k, joint]:.4g} rad/s², allowed are {most[joint]:.4g}"
+            f"accelerates by {excess[k, joint]:.4g} {limits.units[joint]}/s², "
+            f"allowed are {most[joint]:.4g}"
         ),
         tips,
     )

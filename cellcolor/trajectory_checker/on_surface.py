@@ -14,6 +14,7 @@ from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
+from cellcolor.trajectory_checker.joint_steps import joint_steps
 from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT
 from cellcolor.trajectory_checker.tool_turn import nearest_turns
 
@@ -22,18 +23,19 @@ __all__ = ["branches_of", "judge_contact", "judge_cracks", "judge_dragged"]
 _PARTS = 16  # of a step that seems to cross a crack, to see whether it passes by its end
 
 
-def judge_contact(dense: Dense, rows: Index, located: Located, faults: FaultList) -> Mask:
+def judge_contact(
+    dense: Dense, rows: Index, located: Located, direction: bool, faults: FaultList
+) -> Mask:
     """Note where the tip is off the surface or the tool is tilted.
 
     Args:
         rows: (c,) those of ``dense`` in contact; ``located`` says where they are on the surface.
+        direction: whether the task holds the tool against the normal.
 
     Returns:
         (c,) where the tip is on the surface.
     """
     apart = np.linalg.norm(dense.tips[rows] - located.points, axis=1)
-    chord = np.linalg.norm(dense.outward[rows] - located.normals, axis=1)
-    tilt = 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0))
     _note(
         "off surface",
         dense,
@@ -43,15 +45,18 @@ def judge_contact(dense: Dense, rows: Index, located: Located, faults: FaultList
         "the tip is {:.4g} mm off the surface, allowed are {:.4g}",
         faults,
     )
-    _note(
-        "tilted",
-        dense,
-        rows,
-        np.degrees(tilt),
-        float(np.degrees(TILT)),
-        "the tool is {:.4g} degrees off the surface's normal, allowed are {:.4g}",
-        faults,
-    )
+    if direction:
+        chord = np.linalg.norm(dense.outward[rows] - located.normals, axis=1)
+        tilt = 2 * np.arcsin(np.clip(chord / 2, 0.0, 1.0))
+        _note(
+            "tilted",
+            dense,
+            rows,
+            np.degrees(tilt),
+            float(np.degrees(TILT)),
+            "the tool is {:.4g} degrees off the surface's normal, allowed are {:.4g}",
+            faults,
+        )
     return np.asarray(apart <= OFF_SURFACE)
 
 
@@ -123,8 +128,11 @@ def branches_of(
         solutions, before = _solutions(
             prepared, dense.tips[own], dense.axes[own], across[part], deadline
         )
-        off = solutions[..., :compared] - dense.joints[own, None, :compared]
-        off = np.abs(np.remainder(off + np.pi, 2 * np.pi) - np.pi).max(axis=2)
+        off = joint_steps(
+            prepared.robot.slides[:compared],
+            dense.joints[own, None, :compared],
+            solutions[..., :compared],
+        ).max(axis=2)
         off = np.where(np.isnan(off), np.inf, off)
         nearest = np.argmin(off, axis=1)
         known = off[np.arange(len(own)), nearest] <= BRANCH

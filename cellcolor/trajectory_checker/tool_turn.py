@@ -50,17 +50,17 @@ def nearest_turns(turn: Turn, points: Array, directions: Array, across: Array) -
 
 
 def judge_turn(
-    turn: Turn, dense: Dense, rows: Index, normals: Array, across: Array, faults: FaultList
+    turn: Turn, dense: Dense, rows: Index, directions: Array, across: Array, faults: FaultList
 ) -> None:
     """Note where the tool has none of the turns that the setup gives.
 
     Args:
         rows: (c,) those of ``dense`` in contact.
-        normals: (c, 3) of the surface there.
+        directions: (c, 3) unit vectors that the tool's z axis should have there.
         across: (c, 3) the tool's x axis there.
     """
     excess = np.zeros(len(dense))
-    off = turns_off(turn, dense.tips[rows], -normals, across).min(axis=1, initial=np.inf)
+    off = turns_off(turn, dense.tips[rows], directions, across).min(axis=1, initial=np.inf)
     excess[rows] = np.degrees(off)
     most = float(np.degrees(TURN))
 

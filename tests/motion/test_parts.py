@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import NEVER
+from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.motion.following import Followed, whole_turns
+from cellcolor.motion.following import Followed
 from cellcolor.motion.order import ordered
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
 from cellcolor.motion.sampling_planner import sampled_way
@@ -23,6 +24,12 @@ from examples import examples
 
 ANGLES = st.floats(-3.0, 3.0)
 UP = np.array([0.0, 0.0, 1.0])
+
+
+def turning(lower: list[float], upper: list[float]) -> JointSpace:
+    """Joints that all turn, with these limits."""
+    slides = np.zeros(len(lower), dtype=bool)
+    return JointSpace.of(slides, np.array(lower), np.array(upper), 1.0)
 
 
 def stroke(joints: np.ndarray, segment: int = 0) -> Stroke:
@@ -59,13 +66,15 @@ def test_samples_lie_on_the_path_and_are_near_each_other(
 )
 def test_whole_turns_are_all_that_fit(angles: list[float], lower: float, upper: float) -> None:
     joints = np.array(angles)[:, None]
-    found = whole_turns(joints, np.array([lower]), np.array([upper]))
+    space = turning([lower], [upper])
+    (found,) = space.turns(joints)
     fitting = [
         turn
         for turn in range(-10, 11)
         if all(lower - 1e-9 <= angle + 2 * np.pi * turn <= upper + 1e-9 for angle in angles)
     ]
-    assert (found is None and not fitting) or (found is not None and list(found[0]) == fitting)
+    assert found.tolist() == fitting
+    assert space.fits(joints) == bool(fitting)
 
 
 def test_a_bad_sample_and_a_jump_cut_a_path_and_are_named() -> None:
@@ -78,7 +87,8 @@ def test_a_bad_sample_and_a_jump_cut_a_path_and_are_named() -> None:
     points = np.column_stack([np.arange(30) * 1e-3, np.zeros((30, 2))])
     samples = Samples(points, np.tile(UP, (30, 1)), np.zeros(30, dtype=np.int64))
     names = ("valid", "no solution", "joint limits")
-    parts = trimmed(4, 0, samples, Followed(joints, reasons, torn), 0.0, names)
+    space = turning([-np.inf] * 2, [np.inf] * 2)
+    parts = trimmed(4, 0, samples, Followed(joints, reasons, torn), 0.0, names, space)
     ends = [(round(part.points[0, 0] * 1e3), round(part.points[-1, 0] * 1e3)) for part in parts]
     assert ends == [(0, 9), (11, 19), (20, 29)]
     texts = [part.parting.text if part.parting else None for part in parts]
@@ -94,9 +104,9 @@ def test_a_bad_sample_and_a_jump_cut_a_path_and_are_named() -> None:
 def test_a_stroke_that_winds_is_cut_as_seldom_as_can_be(turned: float, room: float) -> None:
     joints = np.linspace(0.3, 0.3 + turned, 400)[:, None]
     # The range of the limits is a full circle and more, so that any angle is inside somehow.
-    lower, upper = np.array([-np.pi]), np.array([np.pi + room])
-    parts = cut_where_full(stroke(joints), lower, upper, ("pan",))
-    assert all(whole_turns(part.joints, lower, upper) is not None for part in parts)
+    space = turning([-np.pi], [np.pi + room])
+    parts = cut_where_full(stroke(joints), space, ("pan",))
+    assert all(space.fits(part.joints) for part in parts)
     assert np.array_equal(parts[0].joints[0], joints[0])
     for before, after in pairwise(parts):
         assert np.array_equal(before.joints[-1], after.joints[0])
@@ -105,7 +115,7 @@ def test_a_stroke_that_winds_is_cut_as_seldom_as_can_be(turned: float, room: flo
         assert "pan" in after.parting.text
         # With the next sample it would not have fitted any more.
         longer = np.concatenate([before.joints, after.joints[1:2]])
-        assert whole_turns(longer, lower, upper) is None
+        assert not space.fits(longer)
     assert parts[-1].joints[-1] == joints[-1]
 
 
@@ -148,8 +158,8 @@ def wall(configurations: np.ndarray) -> np.ndarray:
 
 def test_the_sampling_planner_finds_a_way_round_and_the_same_for_a_seed() -> None:
     ends = np.array([0.0, 0.0, 0.0]), np.array([2.0, 0.0, 0.0])
-    limits = np.full(3, -3.0), np.full(3, 3.0)
-    ways = [sampled_way(*ends, *limits, wall, 0.01, 600, seed, NEVER) for seed in (5, 5, 6)]
+    limits = turning([-3.0] * 3, [3.0] * 3)
+    ways = [sampled_way(*ends, limits, wall, 0.01, 600, seed, NEVER) for seed in (5, 5, 6)]
     first, again, other = ways
     assert first is not None
     assert again is not None
@@ -168,10 +178,8 @@ def test_the_sampling_planner_says_if_it_finds_none() -> None:
         return np.asarray(np.abs(configurations[:, 0] - 1) > 0.2)
 
     start, end = np.array([0.0, 0.0]), np.array([2.0, 0.0])
-    assert (
-        sampled_way(start, end, np.full(2, -3.0), np.full(2, 3.0), shut, 0.04, 600, 0, NEVER)
-        is None
-    )
+    limits = turning([-3.0] * 2, [3.0] * 2)
+    assert sampled_way(start, end, limits, shut, 0.04, 600, 0, NEVER) is None
 
 
 def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:
@@ -185,7 +193,7 @@ def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:
         way = np.linspace(start[0], end[0], 200)
         return 100.0 if (np.abs(np.abs(way) - np.pi) < 0.1).any() else 0.0
 
-    limits = np.array([-2 * np.pi]), np.array([2 * np.pi])
+    limits = turning([-2 * np.pi], [2 * np.pi])
     free = chosen_turns(visits, np.array([1.5]), limits, np.array([3.0]), detour)
     assert [int(own[0]) for own in free] == [0, -1]
     near = chosen_turns(visits, None, limits, np.array([3.0]), lambda *_: 0.0)
@@ -198,7 +206,7 @@ def test_strokes_are_ordered_and_turned_round_so_that_transfers_are_short() -> N
     strokes = [
         stroke(np.linspace(a, b, 5)[:, None], segment) for segment, (a, b) in enumerate(spans)
     ]
-    limits = np.array([-2 * np.pi]), np.array([2 * np.pi])
+    limits = turning([-2 * np.pi], [2 * np.pi])
     found = ordered(strokes, limits, np.array([1.0]), np.array([0.0]), NEVER)
     # Home is at 0, and the way back from wherever the last one ends counts as well: the strokes
     # are passed upwards, or all of them downwards.

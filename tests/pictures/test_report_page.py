@@ -20,6 +20,7 @@ pytest.importorskip("pinocchio")
 
 from browser import DESKTOP, PHONE, opened
 from documents import Document
+from slides import SLIDE, driven_scara
 from stand_in import stand_in
 
 from cellcolor.data.trajectory import Trajectory
@@ -190,6 +191,26 @@ def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
         seen.append(view.screenshot())
         assert len(set(seen)) == 3
         assert faults == []
+
+
+@pytest.mark.second
+def test_a_joint_that_slides_is_drawn_sliding(tmp_path: Path) -> None:
+    """The tip that the page computes in a few configurations is that of forward kinematics."""
+    made = driven_scara()
+    (tmp_path / "slides.html").write_bytes(made.page())
+    rows = np.linspace(0, len(made.trajectory.times) - 1, 7).astype(int)
+    asked = made.trajectory.joints[rows]
+    tips = forward(made.built.robot, asked).tip
+    with opened(tmp_path / "slides.html", DESKTOP) as (page, faults):
+        poses = page.evaluate(
+            "(asked) => { const arm = JSON.parse(document.getElementById('data').textContent).arm;"
+            " return asked.map((joints) => armPoses(arm, joints).at(-1)); }",
+            asked.tolist(),
+        )
+        assert faults == []
+    drawn = np.array(poses).reshape(-1, 4, 4)[:, :3, 3]
+    assert np.ptp(asked[:, SLIDE]) > 0.02
+    assert np.abs(drawn - tips).max() < 1e-9
 
 
 @pytest.mark.second

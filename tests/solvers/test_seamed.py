@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
@@ -17,6 +16,7 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import make_solver
 from cellcolor.solvers.seamed import Seamed
+from examples import examples
 
 RIVALS = (
     pytest.param("clingo", marks=pytest.mark.second),

@@ -29,7 +29,9 @@ def driven(times: Array, joint: Array) -> Trajectory:
 
 
 def faults(trajectory: Trajectory) -> set[FaultKind]:
-    limits = JointLimits(None, None, np.array([np.inf]), np.array([MOST]), np.inf)
+    limits = JointLimits(
+        None, None, np.array([np.inf]), np.array([MOST]), np.inf, np.zeros(1, bool)
+    )
     found = FaultList(trajectory, timed=True)
     judge_joints(trajectory, np.asarray(trajectory.points), limits, True, found)
     return set(found.counts)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -101,6 +103,24 @@ def test_of_a_thin_sheet_the_side_that_faces_the_tool_is_meant() -> None:
     for side in (1.0, -1.0):
         located = fine.locate(place, np.array([[0.0, 0.0, side]]))
         assert located.normals[0, 2] == side
+
+
+def test_an_upright_tool_is_where_its_tip_is() -> None:
+    """On a wall, 10 mm below a roof; and of a thin sheet on the side that faces it."""
+    roof = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]) * 0.02
+    wall = np.array([[1, 0, 0], [1, 0, -1], [1, 1, -1], [1, 1, 0]]) * 0.02
+    faces = np.array([[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]])
+    normals = np.repeat([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]], 4, axis=0)
+    fine = refined(Surface(np.concatenate([roof, wall]), faces, normals), 0.003, NEVER)
+    place, up = np.array([[0.02, 0.01, -0.01]]), np.array([[0.0, 0.0, 1.0]])
+    at = replace(fine, away=0.001).locate(place, up)
+    assert np.abs(at.points - place).max() < 1e-12 and at.normals[0, 0] == 1
+    under = roof - [0, 0, 1e-4]
+    back = np.array([[0, 1, 2], [0, 2, 3], [4, 6, 5], [4, 7, 6]])
+    normals = np.repeat([[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], 4, axis=0)
+    sheet = refined(Surface(np.concatenate([roof, under]), back, normals), 0.003, NEVER)
+    at = replace(sheet, away=0.001).locate(np.array([[0.01, 0.01, -1e-4]]), up)
+    assert at.normals[0, 2] == 1
 
 
 def test_what_would_not_fit_into_memory_is_refused() -> None:

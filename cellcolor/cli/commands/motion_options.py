@@ -43,11 +43,11 @@ _KEYS = {
     "tool_radius_m": "Of the tool's footprint, m.",
     "spacing_m": "Between neighboring passes, m.",
     "speed_m_per_s": "Of the tool on the surface, m/s; slower where joints limit it.",
-    "joint_velocities_rad_per_s": "Where they are to be below those of the URDF, rad/s.",
-    "joint_accelerations_rad_per_s2": "What a URDF does not have, rad/s².",
+    "joint_velocities_rad_per_s": "Where they are to be below the URDF's, rad/s (slides m/s).",
+    "joint_accelerations_rad_per_s2": "What a URDF does not have, rad/s² (slides m/s²).",
     "retract_m": "Along the normal, before a move to another stroke, m.",
     "clearance_m": "To everything, between strokes, m.",
-    "home_rad": "Where the arm begins and ends, rad.",
+    "home_rad": "Where the arm begins and ends, rad (slides m).",
 }
 """What each key means. The setup says what may be left out, and checks the numbers."""
 

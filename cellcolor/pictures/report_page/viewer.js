@@ -41,17 +41,23 @@ function turnedAbout([x, y, z], angle) {
   ];
 }
 
+// A joint's motion along or about its axis, a unit vector.
+function movedBy(axis, slides, position) {
+  if (!slides) return turnedAbout(axis, position);
+  const [x, y, z] = axis.map((a) => a * position);
+  return [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1];
+}
+
 // The poses of the world and of the frames behind all joints and followers, and the tool's tip last.
 function armPoses(arm, joints) {
   const poses = [IDENTITY];
   for (let joint = 0; joint < arm.axis.length; joint++) {
     const fixed = times(poses[joint], arm.placement[joint]);
-    poses.push(times(fixed, turnedAbout(arm.axis[joint], joints[joint])));
+    poses.push(times(fixed, movedBy(arm.axis[joint], arm.slides[joint], joints[joint])));
   }
   const tip = times(poses[arm.axis.length], arm.tip);
   for (const { parent, placement, back, axis, slides, leader, multiplier, offset } of arm.followers) {
-    const position = multiplier * joints[leader] + offset, [x, y, z] = axis.map((a) => a * position);
-    const moved = slides ? [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1] : turnedAbout(axis, position);
+    const moved = movedBy(axis, slides, multiplier * joints[leader] + offset);
     poses.push(times(times(times(poses[parent], placement), moved), back));
   }
   return [...poses, tip];

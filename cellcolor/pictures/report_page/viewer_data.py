@@ -121,6 +121,7 @@ def _arm(robot: Robot) -> dict[str, Any]:
     return {
         "placement": robot.placement.reshape(-1, 16).tolist(),  # row by row
         "axis": robot.axis.tolist(),
+        "slides": robot.slides.tolist(),
         "tip": robot.tip.ravel().tolist(),
         "followers": [
             {

@@ -26,7 +26,6 @@ from shipped import ROBOTS, TOP
 import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.trajectory import Trajectory
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult, Scene, Setup, build_surface
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
@@ -382,27 +381,6 @@ def test_a_turn_cannot_be_given_where_the_last_joint_slides_across() -> None:
     with pytest.raises(InputError, match="slides across") as caught:
         TurnedKinematics(Scara, robot, FILES, Turn(along=(1, 0, 0)))
     assert caught.value.field == "joint[j4]"
-
-
-def test_motions_are_neither_planned_nor_judged(built: BuildResult) -> None:
-    from cellcolor.trajectory_checker.check import check_trajectory
-
-    with pytest.raises(InputError, match="prismatic joint that moves") as caught:
-        cellcolor.plan(built.scene)
-    assert caught.value.field == "robot.kinematics"
-    one = built.configurations[:1, 0]
-    trajectory = Trajectory(
-        name="one",
-        joint_names=built.robot.joint_names,
-        times=np.zeros(1),
-        joints=np.nan_to_num(one),
-        points=built.surface.vertices[:1],
-        normals=np.array([[0.0, 0.0, 1.0]]),
-        contact=np.ones(1, dtype=bool),
-        segment=np.zeros(1, dtype=np.int64),
-    )
-    with pytest.raises(InputError, match="prismatic joint that moves"):
-        check_trajectory(built, trajectory)
 
 
 def test_reach_is_what_no_configuration_exceeds() -> None:

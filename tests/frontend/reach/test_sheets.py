@@ -199,8 +199,10 @@ def test_without_names_an_arm_is_solved_and_nothing_is_painted_or_planned() -> N
     assert caught.value.field == "robot.kinematics"
     with pytest.raises(InputError, match="have no names"):
         cellcolor.paint(built, solution)
+    told: list[str] = []
     with pytest.raises(InputError, match="have no names"):
-        cellcolor.plan(scene)
+        cellcolor.plan(scene, progress=told.append)
+    assert "colors" not in told  # refused before anything long begins
 
 
 def test_out_of_reach_of_all_there_are_no_colors() -> None:

@@ -1,0 +1,172 @@
+"""A SCARA is planned, driven and judged; drives forged at its prismatic joint are refused."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+pytest.importorskip("coal")
+
+from forged_drives import HONEST, Honest, dropped_stroke, rows_of
+from slides import MOTION, SLIDE, driven_scara, scara_scene
+
+import cellcolor
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.errors import InputError
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.trajectory_checker.check import check_trajectory
+from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
+
+NAME = "joint_3"
+
+
+@pytest.fixture(scope="module")
+def prepared() -> PreparedScene:
+    return prepare(scara_scene())
+
+
+@pytest.fixture(scope="module")
+def honest(prepared: PreparedScene) -> Honest:
+    made = driven_scara()
+    assert made.solution.segments == 2
+    return Honest(prepared, made.trajectory, 1)
+
+
+def judged(prepared: PreparedScene, trajectory: Trajectory) -> TrajectoryVerdict:
+    built = replace(driven_scara().built, prepared=prepared)
+    return check_trajectory(built, trajectory, minimum_lift_offs=1)
+
+
+def moved(honest: Honest, slide: np.ndarray) -> Trajectory:
+    """The drive with the slide elsewhere, and the tips that belong to it."""
+    joints = honest.trajectory.joints.copy()
+    joints[:, SLIDE] = slide
+    return replace(
+        honest.trajectory, joints=joints, points=forward(honest.prepared.robot, joints).tip
+    )
+
+
+def test_a_scara_is_driven_with_the_proved_number_of_lift_offs(honest: Honest) -> None:
+    verdict, trajectory = driven_scara().verdict, honest.trajectory
+    assert verdict.valid and verdict.faults == ()
+    assert verdict.lift_offs == 1 and trajectory.unplanned == ()
+    robot = honest.prepared.robot
+    assert np.ptp(trajectory.joints[trajectory.contact][:, SLIDE]) > 0.05  # the pipe slopes
+    assert (trajectory.joints >= robot.lower).all() and (trajectory.joints <= robot.upper).all()
+    # Upright all the time, and the normal is off by what the pipe slopes.
+    axes = forward(robot, trajectory.joints).tool_axis
+    assert np.abs(axes - [0, 0, -1]).max() < 1e-9
+    off = (-axes * trajectory.normals).sum(axis=1)[trajectory.contact]
+    assert off.min() < np.cos(0.2)
+    passed = np.diff(trajectory.times)
+    speed = np.abs(np.diff(trajectory.joints[:, SLIDE])) / passed
+    assert 0.14 < speed.max() <= 0.15 * (1 + 1e-9)
+
+
+@pytest.mark.parametrize("name", HONEST)
+def test_honest_drives_of_it_stay_valid(name: str, honest: Honest) -> None:
+    assert judged(honest.prepared, HONEST[name](honest)).faults == ()
+
+
+def test_a_row_doubled_at_full_speed_of_the_slide_is_refused(honest: Honest) -> None:
+    """The slide would stand still for 0.1 s and go on at once."""
+    trajectory = honest.trajectory
+    speed = np.abs(np.diff(trajectory.joints[:, SLIDE])) / np.diff(trajectory.times)
+    row = int(np.argmax(speed)) + 1
+    rows = np.insert(np.arange(len(trajectory.times)), row, row)
+    times = np.array(trajectory.times)[rows]
+    times[row + 1 :] += 0.1
+    verdict = judged(honest.prepared, rows_of(trajectory, rows, times=times))
+    faults = [fault for fault in verdict.of_kind("acceleration") if fault.joint == NAME]
+    assert faults and re.search(r"by \S+ m/s², allowed are 2$", faults[0].text)
+
+
+@pytest.mark.parametrize("number", [0, 1])
+def test_a_dropped_stroke_is_missed(number: int, honest: Honest) -> None:
+    forged = dropped_stroke(honest, number)
+    assert check_trajectory(
+        honest.prepared, driven_scara().built, forged, minimum_lift_offs=None
+    ).of_kind("uncovered")
+
+
+def test_a_slide_over_its_speed_is_refused(honest: Honest) -> None:
+    """Only the slide is: the joints that turn may go a hundred times as fast."""
+    motion = MOTION.model_copy(
+        update={
+            "joint_velocities_rad_per_s": (300.0, 300.0, 0.15, 600.0),
+            "joint_accelerations_rad_per_s2": (8e4, 8e4, 2e4, 16e4),
+            "speed_m_per_s": 10.0,
+        }
+    )
+    slower = prepare(scara_scene(motion))
+    trajectory = honest.trajectory
+    assert judged(slower, trajectory).valid
+    fast = judged(slower, replace(trajectory, times=np.asarray(trajectory.times) / 1.2))
+    assert set(fast.fault_counts) == {"velocity"}
+    assert {fault.joint for fault in fast.faults} == {NAME}
+    assert re.search(r"moves at 0\.18\d* m/s, allowed are 0\.15$", fast.faults[0].text)
+
+
+def test_a_slide_beyond_its_limit_is_refused(honest: Honest) -> None:
+    """Its range is from 0 to 0.21 m; on the way, where no surface says where the tip has to be."""
+    trajectory = honest.trajectory
+    row = trajectory.strokes[0][1] + 20
+    assert not trajectory.contact[row]
+    slide = trajectory.joints[:, SLIDE].copy()
+    slide[row] = -0.0125
+    verdict = judged(honest.prepared, moved(honest, slide))
+    (fault,) = verdict.of_kind("joint limit")
+    assert fault.joint == NAME
+    assert "is at -0.01250 m, 12.5 mm beyond its limits of 0.00000 and 0.21000" in fault.text
+
+
+def test_a_slide_a_full_circle_off_is_another_place(honest: Honest) -> None:
+    slide = honest.trajectory.joints[:, SLIDE] + 2 * np.pi
+    verdict = judged(honest.prepared, moved(honest, slide))
+    assert verdict.of_kind("joint limit") and verdict.of_kind("off surface")
+
+
+def test_a_slide_that_lifts_the_tool_a_little_is_off_the_surface(honest: Honest) -> None:
+    """By 1.5 mm in a stroke, where the slope of the pipe is not steep."""
+    trajectory, (first, after) = honest.trajectory, honest.trajectory.strokes[0]
+    slide = trajectory.joints[:, SLIDE].copy()
+    middle = (first + after) // 2
+    slide[middle : middle + 20] += 1.5 * OFF_SURFACE
+    assert judged(honest.prepared, moved(honest, slide)).of_kind("off surface")
+
+
+def test_a_wrong_turn_of_the_tool_is_noted(honest: Honest) -> None:
+    joints = honest.trajectory.joints.copy()
+    joints[:, 3] += np.radians(2.0)
+    points = forward(honest.prepared.robot, joints).tip
+    verdict = judged(honest.prepared, replace(honest.trajectory, joints=joints, points=points))
+    assert verdict.of_kind("turned")
+    assert "2 degrees off the turn" in verdict.of_kind("turned")[0].text
+
+
+def test_an_arm_for_the_position_only_is_driven_as_well() -> None:
+    """Three joints, the slide among them; the turn of the tool follows."""
+    scene = scara_scene(
+        MOTION.model_copy(
+            update={
+                "joint_velocities_rad_per_s": (3.0, 3.0, 0.15),
+                "joint_accelerations_rad_per_s2": (8.0, 8.0, 2.0),
+            }
+        )
+    )
+    robot = {"kinematics": "scara-rrp", "fixed_joints": {"joint_4": 0.3}}
+    made = cellcolor.plan(scene.with_setup(scene.setup.varied(robot=robot, task={"turn": None})))
+    assert made.verdict.valid and made.verdict.lift_offs == 1
+    assert np.ptp(made.trajectory.joints[:, SLIDE]) > 0.05
+
+
+def test_a_home_of_a_slide_is_in_meters() -> None:
+    with pytest.raises(InputError, match="outside the limits of 'joint_3', in m") as caught:
+        cellcolor.plan(scara_scene(MOTION.model_copy(update={"home_rad": (0.0, 0.5, 0.3, 0.0)})))
+    assert caught.value.field == "motion.home_rad[2]"
