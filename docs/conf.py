@@ -13,6 +13,7 @@ from sphinx.ext.napoleon import Config, GoogleDocstring
 sys.path.append(str(Path(__file__).parent))
 
 import library_table
+import reports
 
 import cellcolor
 from cellcolor import __version__
@@ -35,7 +36,7 @@ myst_heading_anchors = 3
 # The code of the tutorials is run anew for each build; an error in it ends the build.
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 60
+nb_execution_timeout = 180  # of a cell; one plans a motion
 nb_merge_streams = True
 
 # The reference is made of the docstrings of every module that there is (_write_reference).
@@ -69,6 +70,8 @@ html_theme = "furo"
 html_title = f"cellcolor {version}"
 html_show_sphinx = False
 html_copy_source = False
+html_extra_path = ["_reports"]  # beside the front page (_write_reports)
+reports.FOLDER.mkdir(exist_ok=True)
 
 
 class _Docstring(GoogleDocstring):
@@ -118,8 +121,15 @@ def _write_library(_app: Sphinx) -> None:
     library_table.write_table(library_table.LIBRARY, library_table.FOLDER)
 
 
+def _write_reports(app: Sphinx) -> None:
+    """Write the pages that the front page embeds and its gallery leads to."""
+    if app.builder.name == "html":
+        reports.write_reports(reports.FOLDER)
+
+
 def setup(app: Sphinx) -> None:
-    """Tell Sphinx of the docstrings' style, of the reference and of the library's table."""
+    """Tell Sphinx of the docstrings' style, and of what is written before the pages are read."""
     app.connect("builder-inited", _write_reference)
     app.connect("builder-inited", _write_library)
+    app.connect("builder-inited", _write_reports)
     app.connect("autodoc-process-docstring", _read_docstring)

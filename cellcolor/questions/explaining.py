@@ -18,6 +18,7 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
+from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
 from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.prepared import PreparedScene
@@ -112,11 +113,18 @@ class _Asked:
         return StageClock(self._options.deadline, None)
 
     def without(self, what: Sequence[Relaxation], note: str = "") -> RelaxedMinimum:
-        """The scene without these things.
+        """The scene without these things; a row without a number where it cannot be built then.
 
         Raises:
             OutOfTime: the deadline came first.
         """
+        try:
+            return self._built_without(what, note)
+        except InputError as error:
+            names, keys = _in_words(what)
+            return RelaxedMinimum(names, keys, None, 1, 0.0, False, f"it cannot be built: {error}")
+
+    def _built_without(self, what: Sequence[Relaxation], note: str) -> RelaxedMinimum:
         prepared, known = without(self._prepared, what), self._coarse.stages
         reasons: set[str] = set()
         for one in what:

@@ -1,6 +1,6 @@
-"""Draw the shipped scenes for the docs: ``python docs/figures/scenes.py [FOLDER]``.
+"""Draw the shipped scenes and parts for the docs: ``python docs/figures/scenes.py [FOLDER]``.
 
-Each picture is what ``cellcolor show`` draws of the scene's instance and its solution, made small.
+Each picture is what ``cellcolor show`` draws of an instance and its solution, made small.
 """
 
 from __future__ import annotations
@@ -13,13 +13,15 @@ from PIL import Image
 
 from cellcolor.cli import main as cellcolor
 
-SCENES = Path(__file__).resolve().parents[2] / "instances" / "scenes"
+INSTANCES = Path(__file__).resolve().parents[2] / "instances"
+SCENES, PARTS = INSTANCES / "scenes", INSTANCES / "parts"
 NAMES = ("hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square")
-WIDTH = 1000  # pixels
+PART_NAMES = ("bracket", "blend", "saddle", "perforated_sheet", "sphere", "torus")
+WIDTH, PART_WIDTH = 1000, 700  # pixels
 
 
 def main(folder: Path) -> None:
-    """Draw each scene by segment, and the wok by cell and as a graph too."""
+    """Draw each scene and part by segment, and the wok by cell and as a graph too."""
     with TemporaryDirectory() as work:
         for name in NAMES:
             instance, solution = SCENES / f"{name}.json", Path(work) / f"{name}.solution.json"
@@ -27,14 +29,19 @@ def main(folder: Path) -> None:
             show(folder / f"scene-{name}.png", instance, solution)
         show(folder / "wok-cells.png", SCENES / "wok.json")
         show(folder / "wok-graph.png", SCENES / "wok.json", "--graph")
+        for name in PART_NAMES:
+            instance, solution = Path(work) / f"{name}.json", Path(work) / f"{name}.solution.json"
+            run("build", PARTS / f"{name}.toml", "-o", instance)
+            run("solve", instance, "-o", solution)
+            show(folder / f"part-{name}.png", instance, solution, width=PART_WIDTH)
 
 
-def show(target: Path, *what: Path | str) -> None:
+def show(target: Path, *what: Path | str, width: int = WIDTH) -> None:
     """A picture of ``cellcolor show``, made small."""
     with TemporaryDirectory() as work:
         run("show", *what, "-o", Path(work) / "large.png")
         large = Image.open(Path(work) / "large.png").convert("RGB")
-    size = (WIDTH, round(WIDTH * large.height / large.width))
+    size = (width, round(width * large.height / large.width))
     small = large.resize(size, Image.Resampling.LANCZOS)
     small.quantize(256, dither=Image.Dither.NONE).save(target, optimize=True)
 

@@ -90,9 +90,7 @@ def test_a_row_doubled_at_full_speed_of_the_slide_is_refused(honest: Honest) -> 
 @pytest.mark.parametrize("number", [0, 1])
 def test_a_dropped_stroke_is_missed(number: int, honest: Honest) -> None:
     forged = dropped_stroke(honest, number)
-    assert check_trajectory(
-        honest.prepared, driven_scara().built, forged, minimum_lift_offs=None
-    ).of_kind("uncovered")
+    assert check_trajectory(driven_scara().built, forged).of_kind("uncovered")
 
 
 def test_a_slide_over_its_speed_is_refused(honest: Honest) -> None:
