@@ -28,6 +28,7 @@ _BATCH = 32  # placements a process; reading the scene takes as long as one or t
 _CLOSER = (0.25, 0.0625)  # shares of the ranges, of the boxes around the best placements
 _AROUND = 3  # placements that get boxes
 _NEXT = 0.05  # of the ranges; of placements nearer to each other one is enough
+_ATTEMPTS = 2  # at placements whose process broke down
 _ENDING = 10.0  # s that a process may take beyond its time
 _ALL_DAY = 86_400.0  # s, where there is no limit
 
@@ -78,7 +79,8 @@ def place(
         file = find_file(scene)  # type: ignore[arg-type]
         if not is_scene(file):
             raise InputError(str(file), None, "is no scene: a scene is a file .toml")
-    for name, number in (("points", points), ("best", best), ("vertices", vertices)):
+    counts = {"points": points, "best": best, "vertices": vertices}
+    for name, number in (counts | ({"jobs": jobs} if isinstance(jobs, int) else {})).items():
         if number < 1:
             raise InputError(None, name, f"must be 1 or more, is {number}")
     if cover is not None and not 0 <= cover <= 1:
@@ -106,15 +108,21 @@ def place(
     if not rows:
         raise OutOfTime
     here = rows[0]
+    if cover is None and here.segments is None:
+        message = (
+            f"say how much has to be covered: where the scene has it, the part cannot stand "
+            f"({here.refused or 'not solved in time'})"
+        )
+        raise InputError(None, "cover", message)
     asked = here.covered_share if cover is None else cover
     tried: list[PlacedMinimum] = []
     proved: list[PlacedMinimum] = []
     complete = True
 
-    def best_of(found: Sequence[PlacedMinimum], count: int) -> list[PlacedMinimum]:
+    def best_of(found: Sequence[PlacedMinimum], count: int, enough: float) -> list[PlacedMinimum]:
         """The best ones, none of them next to a better one."""
         chosen: list[PlacedMinimum] = []
-        for row in sorted(found, key=lambda row: row.rank(asked)):
+        for row in sorted(found, key=lambda row: row.rank(enough)):
             apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
             if row.segments is not None and apart and len(chosen) < count:
                 chosen.append(row)
@@ -126,21 +134,23 @@ def place(
         try:
             report("a coarse mesh")
             coarse = coarse_scene(own, vertices, deadline)
-            tried += many.minima(coarse, spread(ranges, start, points, seed))
+            tried += many.minima(coarse, [start, *spread(ranges, start, points, seed)])
+            # The share of a coarse mesh is another one: like is compared with like.
+            enough = asked if cover is not None or not tried else tried[0].covered_share
             for number, share in enumerate(_CLOSER, 1):
                 each = max(points // 8, 1)
                 near = [
                     pose
-                    for turn, row in enumerate(best_of(tried, _AROUND))
+                    for turn, row in enumerate(best_of(tried, _AROUND, enough))
                     for pose in around(ranges, row.pose, share, each, seed + 10 * number + turn)
                 ]
                 tried += many.minima(coarse, near)
             report("proving the best ones")
-            chosen = [row.pose for row in best_of(tried, 2 * best)]
+            chosen = [row.pose for row in best_of(tried, 2 * best, enough)]
             proved = many.minima(own, chosen)
         except OutOfTime:
             complete = False
-    listed = best_of(proved, best)
+    listed = best_of(proved, best, asked)
     others = [row for row in proved if row not in listed]
     return Placements(
         own.name, asked, here, tuple(listed), (*tried, *others), complete and many.complete
@@ -191,13 +201,19 @@ class _Asked:
             for number, part in enumerate(parts):
                 yield number, minima_at(scene, part, self._deadline.left, 1, self._seed)
             return
-        left = self._deadline.left
-        limits = Limits(min(left, _ALL_DAY) + _ENDING)
-        tasks = (
-            (number, Task(minima_at, (scene, part, left, 1, self._seed), limits))
-            for number, part in enumerate(parts)
-        )
-        for number, ended in as_they_end(self._workers, tasks):
-            if ended.end == "failed":
-                raise CellcolorError(f"placements could not be tried: {ended.error}")
-            yield number, ended.value or []
+        lost = list(enumerate(parts))
+        for attempt in range(1, _ATTEMPTS + 1):
+            left = self._deadline.left
+            limits = Limits(min(left, _ALL_DAY) + _ENDING)
+            tasks = [
+                (number, Task(minima_at, (scene, part, left, 1, self._seed), limits))
+                for number, part in lost
+            ]
+            lost = []
+            for number, ended in as_they_end(self._workers, tasks):
+                if ended.end in ("done", "timeout", "stopped"):
+                    yield number, ended.value or []
+                elif ended.end == "failed" or attempt == _ATTEMPTS:
+                    raise CellcolorError(f"placements could not be tried: {ended.error}")
+                else:  # the process was lost, not the work
+                    lost.append((number, parts[number]))

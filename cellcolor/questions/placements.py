@@ -46,14 +46,14 @@ class PlacedMinimum:
         """One between each two segments."""
         return None if self.segments is None else max(0, self.segments - 1)
 
-    def rank(self, cover: float) -> tuple[bool, float, float]:
+    def rank(self, cover: float) -> tuple[bool, float, bool, float]:
         """What a better placement has less of.
 
-        Enough area comes first, then the number, then the area that is left uncovered.
+        Enough area comes first, then the number, then its proof, then the area left uncovered.
         """
         enough = self.segments is not None and self.covered_share >= cover - _SAME_SHARE
         number = float(self.segments) if enough and self.segments is not None else 0.0
-        return not enough, number, 1.0 - self.covered_share
+        return not enough, number, not self.proved_for_surface, 1.0 - self.covered_share
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""

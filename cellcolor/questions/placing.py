@@ -51,9 +51,13 @@ def check_ranges(ranges: Ranges) -> None:
     Raises:
         InputError: a variable is unknown, a range is empty or has no numbers, or there is none.
     """
-    for name, (low, high) in ranges.items():
+    for name, given in ranges.items():
         if name not in VARIABLES:
             raise InputError(None, name, f"is none of {', '.join(VARIABLES)}")
+        try:
+            low, high = map(float, given)
+        except (TypeError, ValueError) as error:
+            raise InputError(None, name, "its range must be two numbers") from error
         if not (np.isfinite(low) and np.isfinite(high)):
             raise InputError(None, name, "its range must be two numbers")
         if low >= high:
@@ -157,14 +161,29 @@ def minima_at(
                 prepared = there = prepare(scene.varied(placement=placement), deadline)
             else:
                 there = prepared.at(placement)
-            rows.append(_minimum(there, pose, options))
+            within = _stands_in(there)
+            if within is None:
+                rows.append(_minimum(there, pose, options))
+            else:
+                rows.append(PlacedMinimum(pose, None, 0.0, False, 0, f"stands in {within}"))
         except OutOfTime:
             break
         except InputError as error:
-            if error.field is None or not error.field.startswith("placement"):
-                raise
+            if prepared is None and not (error.field or "").startswith("placement"):
+                raise  # it is the scene, wherever the part stands
             rows.append(PlacedMinimum(pose, None, 0.0, False, 0, error.message))
     return rows
+
+
+def _stands_in(prepared: PreparedScene) -> str | None:
+    """What the part is in or touches: the ground or an obstacle; None if nothing."""
+    place, vertices = prepared.workplace, prepared.surface.vertices
+    if place.ground is not None and (place.ground.along(vertices) < place.ground.offset_m).any():
+        return "the ground"
+    for number, solid in enumerate(place.obstacles, 1):
+        if solid.meets(place.target) or (solid.at_least(vertices) <= 0).any():
+            return f"obstacle {number}"
+    return None
 
 
 def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMinimum:

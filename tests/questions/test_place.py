@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,8 @@ from shipped import SCENES, shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
+from cellcolor.lab.executors.alone import Ended
+from cellcolor.lab.executors.work import Task, Workers
 from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Placements, Pose
 from cellcolor.questions.placing import around, coarse_scene, distance, minima_at, spread
 from examples import examples
@@ -68,8 +71,10 @@ def test_the_best_come_first_and_cover_enough(found: Placements) -> None:
     ranks = [row.rank(found.cover) for row in found.best]
     assert ranks == sorted(ranks) and len(found.best) == 2
     coarse = [row for row in found.tried if row.vertices < found.here.vertices]
-    assert len(coarse) == 4 + 2 * 3  # one point around each of the three best, twice
-    for row in (*found.best, *found.tried):
+    # Where it stands, the points, and one around each of the three best, twice.
+    assert len(coarse) == 1 + 4 + 2 * 3
+    assert coarse[0].pose == found.here.pose
+    for row in (*found.best, *found.tried[1:]):
         x, y, *others = row.pose
         assert RANGES["x"][0] <= x <= RANGES["x"][1] and RANGES["y"][0] <= y <= RANGES["y"][1]
         assert tuple(others) == found.here.pose[2:]
@@ -90,6 +95,55 @@ def test_where_the_part_cannot_stand_the_row_says_why() -> None:
     assert "stands in the robot's" in rows[0].refused and rows[0] == rows[2]
     assert rows[1] == rows[3] and rows[1].segments == by_hand(scene)[0]
     assert rows[0].rank(0.0) > rows[1].rank(0.0) and rows[0].lift_offs is None
+
+
+def test_a_part_does_not_stand_in_the_ground_or_in_an_obstacle() -> None:
+    """The rim of the cap under the ground; the cylinder through the cap, beside its middle."""
+    scene = shipped("wok_obstacle", 60)
+    poses: list[Pose] = [
+        (0.465, -0.15, -0.12, 0.0, 0.0, 0.0),
+        (0.3, 0.06, -0.04, 0.0, 0.0, 0.0),
+        (0.465, -0.15, -0.04, 0.0, 0.0, 0.0),
+    ]
+    rows = minima_at(scene, poses, np.inf, 1, 0)
+    assert [row.refused for row in rows] == ["stands in the ground", "stands in obstacle 1", ""]
+
+
+def test_where_the_scene_has_it_in_the_base_the_share_has_to_be_said() -> None:
+    scene = shipped("wok", 60).moved(position_m=(0.0, 0.0, -0.15))
+    asked: dict[str, Any] = {"x": (0.3, 0.6), "z": (-0.05, 0.0), "points": 1, "best": 1}
+    with pytest.raises(cellcolor.InputError, match="say how much has to be covered") as caught:
+        cellcolor.place(scene.varied(ground=None), **asked)
+    assert caught.value.field == "cover" and "stands in the robot's" in str(caught.value)
+    found = cellcolor.place(scene.varied(ground=None), **asked, cover=0.2, vertices=60)
+    assert found.here.refused and found.best[0].covered_share >= 0.2
+
+
+class Losing(Workers):
+    """Workers that lose the first pieces of work, as a process that is killed does."""
+
+    slots = 2
+
+    def __init__(self, lost: int) -> None:
+        self.lost = lost
+
+    def submit(self, task: Task, /) -> Future[Ended]:
+        future: Future[Ended] = Future()
+        self.lost -= 1
+        if self.lost >= 0:
+            future.set_result(Ended("crashed", error="killed"))
+        else:
+            future.set_result(Ended("done", task.function(*task.arguments)))
+        return future
+
+    def __exit__(self, *_: object) -> None:
+        """Nothing is left to end."""
+
+
+def test_a_lost_process_loses_no_placement(found: Placements) -> None:
+    assert list(place(jobs=Losing(1))) == list(found)
+    with pytest.raises(cellcolor.CellcolorError, match="could not be tried: killed"):
+        place(jobs=Losing(10**6))
 
 
 @examples(50)
@@ -154,6 +208,9 @@ def test_a_mesh_file_is_made_coarser_and_collides_as_before() -> None:
         ({"cover": 1.5}, "cover"),
         ({"points": 0}, "points"),
         ({"best": 0}, "best"),
+        ({"jobs": 0}, "jobs"),
+        ({"x": 0.5}, "x"),
+        ({"x": ("a", "b")}, "x"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(changes: dict[str, Any], field: str | None) -> None:

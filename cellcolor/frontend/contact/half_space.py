@@ -61,6 +61,10 @@ class _Below(Solid):
         super().__init__(shape, width, distances)
         self._below = below
 
+    def meets(self, mesh: Solid) -> bool:  # noqa: ARG002
+        """Not known of faces; who asks has vertices as well."""
+        return False
+
     def _touches(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
         if body.solid is None:
             return super()._touches(body, ends, poses)

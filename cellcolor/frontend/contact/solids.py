@@ -142,6 +142,11 @@ class Solid:
         """Lower bounds (k,) of the distances of points (k, 3), m."""
         return self._distances(points)[0]
 
+    def meets(self, mesh: Solid) -> bool:
+        """Whether a face of a mesh touches it; a mesh that is wholly inside does not."""
+        request, result = fcl.CollisionRequest(), fcl.CollisionResult()
+        return bool(fcl.collide(self._thing.shape, mesh._thing.shape, request, result) > 0)
+
     def touched_by_fixed(self, robot: Robot, ends: Array, poses: Poses | None = None) -> str | None:
         """The link of the robot that cannot move and touches the solid, if there is one."""
         for body, both in zip(robot.bodies, ends, strict=True):
