@@ -4,8 +4,9 @@ Its own limit of 200 ms is one of wall-clock time, which a busy machine fails wi
 default tests draw fewer examples than those of ``pytest --hypothesis-profile=thorough``.
 """
 
-from examples import DEFAULT, THOROUGH
 from hypothesis import settings
+
+from examples import DEFAULT, THOROUGH
 
 settings.register_profile("any-machine", deadline=None, max_examples=DEFAULT)
 settings.register_profile("thorough", deadline=None, max_examples=THOROUGH)

@@ -13,6 +13,13 @@ from pathlib import Path
 import matplotlib as mpl
 import numpy as np
 from drawing import FILL, PLAIN, arrow, borders, cells, cut, fill, painting, panels, say
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from PIL import Image
+
+from cellcolor.data.instance import Cell
+from cellcolor.pictures.palette import INK, WARNING
 from examples import (
     BLUE,
     RED,
@@ -27,13 +34,6 @@ from examples import (
     ring,
     split,
 )
-from matplotlib.axes import Axes
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure
-from PIL import Image
-
-from cellcolor.data.instance import Cell
-from cellcolor.pictures.palette import INK, WARNING
 
 FIGURES: dict[str, Callable[[Figure], None]] = {}
 SIZES = {

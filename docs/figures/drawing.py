@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from examples import BLUE, GREEN, RED, YELLOW, Array, Example
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
@@ -13,6 +12,7 @@ from matplotlib.figure import Figure
 from cellcolor.data.solution import Solution
 from cellcolor.pictures.mesh_picture import mesh_picture_parts
 from cellcolor.pictures.palette import FAINT, INK
+from examples import BLUE, GREEN, RED, YELLOW, Array, Example
 
 FILL = {RED: "#e4707c", BLUE: "#6a9bd1", GREEN: "#83b97c", YELLOW: "#e8cf6b"}
 PLAIN = "#f1efea"

@@ -10,7 +10,6 @@ from dataclasses import replace
 
 import networkx as nx
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
@@ -27,6 +26,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers import checked
+from examples import examples
 
 SEEDS = st.integers(0, 10**6)
 THREE = drawn("AAB CAB CCB", {"A": [0, 1], "B": [1, 2], "C": [0, 2]})

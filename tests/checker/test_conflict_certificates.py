@@ -9,7 +9,6 @@ from typing import Any
 
 import networkx as nx
 import pytest
-from examples import examples
 from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -25,6 +24,7 @@ from cellcolor.data.instance import Cell, Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs, planar_graph
+from examples import examples
 
 RED, BLUE = 0, 1
 LABELS = {"R": [RED], "B": [BLUE], "M": [RED, BLUE], ".": []}

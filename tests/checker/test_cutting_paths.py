@@ -8,7 +8,6 @@ from collections.abc import Iterable, Sequence
 
 import networkx as nx
 import pytest
-from examples import examples
 from holes import fewest, holed
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
@@ -22,6 +21,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 Triangles = list[tuple[int, int, int]]
 Loops = list[list[int]]

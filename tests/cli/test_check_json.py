@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 from commands import run
 from documents import Document
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -30,6 +29,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.oracle import Proof, ProvenRange
 from cellcolor.testing.strategies import broken_plans, valid_plans
+from examples import examples
 
 RED, BLUE = 0, 1
 # Red reaches everything, so one segment is the minimum.

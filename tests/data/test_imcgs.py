@@ -6,7 +6,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from examples import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from isomorphism import isomorphic
@@ -16,6 +15,7 @@ from cellcolor.data.imcgs import read_imcgs
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
 from cellcolor.lab.families import planar_graph
+from examples import examples
 
 TWO_CELLS = """2 4
 0 1 2

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import json_lines, run
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
@@ -24,6 +23,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 Capture = pytest.CaptureFixture[str]
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
 from cellcolor.data.trajectory_csv import read_trajectory_csv
 from cellcolor.errors import InputError
+from examples import examples
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import pytest
 from documents import INSTANCE, PLAN, SOLUTION, SURFACE
-from examples import examples
 from hypothesis import given
 from library import INSTANCES, PAPER
 from meshes import surfaces
@@ -24,6 +23,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.errors import BeatenBound, InputError
 from cellcolor.oracle import ProvenRange, Verdict
+from examples import examples
 
 VALUES: list[Any] = [
     LabelledSurface.from_document(SURFACE),

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from isomorphism import isomorphic
@@ -20,6 +19,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
+from examples import examples
 
 
 class Asked(Deadline):

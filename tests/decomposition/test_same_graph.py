@@ -5,7 +5,6 @@ from __future__ import annotations
 import random
 from dataclasses import replace
 
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from relabelled import turned
@@ -13,6 +12,7 @@ from relabelled import turned
 from cellcolor.decomposition import decomposition_of
 from cellcolor.decomposition.same_graph import wrong_cell
 from cellcolor.lab.families.voronoi import voronoi
+from examples import examples
 
 SHAPES = st.sampled_from(["disc", "annulus", "sphere", "torus"])
 

@@ -22,7 +22,6 @@ from documents import (
     TRAJECTORY,
     VERDICT,
 )
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -42,6 +41,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 jsonschema = pytest.importorskip("jsonschema")
 

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
+
+from examples import examples
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 pytest.importorskip("coal")

@@ -10,7 +10,6 @@ from typing import Any
 
 import pytest
 from documents import Document
-from examples import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -33,6 +32,7 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.errors import BeatenBound, InputError
 from cellcolor.oracle import Proof, ProvenRange, Verdict
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 CORRIDORS = PAPER / "parallel-corridors.surface.json"
 RED, BLUE, GREEN = 0, 1, 2

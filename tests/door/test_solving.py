@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 import pytest
 from documents import PLAN, SOLUTION
-from examples import examples
 from hypothesis import given
 from library import INSTANCES, PAPER
 from meshes import drawn, surfaces
@@ -21,6 +20,7 @@ from shipped import ROBOTS, SCENES
 import cellcolor
 from cellcolor import InputError, Instance, LabelledSurface, Plan, Solution
 from cellcolor.cli import main
+from examples import examples
 
 RING = PAPER / "ring.json"
 RING_SURFACE = PAPER / "ring.surface.json"

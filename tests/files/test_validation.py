@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import pytest
 from documents import INSTANCE, SOLUTION
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
@@ -41,6 +40,7 @@ from cellcolor.data.solution import (
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
+from examples import examples
 
 Disguise = Callable[[Any], Any]
 

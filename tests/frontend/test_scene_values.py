@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import trimesh
 from box import obj
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError
@@ -21,6 +20,7 @@ from cellcolor.frontend import Scene, Setup, build_surface
 from cellcolor.frontend.contact.primitives import BoxObstacle, SphereObstacle
 from cellcolor.frontend.parts.arrays import ArraysObject
 from cellcolor.frontend.parts.shapes import CapObject, disc_mesh, spherical_cap
+from examples import examples
 
 SETUP = ROBOTS / "ur5_polishing.toml"
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) / 10

@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from shipped import SCENES, edited
@@ -20,6 +19,7 @@ from cellcolor.frontend.parts.shapes import disc_mesh, grid_mesh, rectangle, sph
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.survey import survey
+from examples import examples
 
 
 def turned_over(surface: Surface) -> Surface:

@@ -6,11 +6,11 @@ from collections import Counter
 from itertools import pairwise
 
 import numpy as np
-from examples import examples
 from hypothesis import example, given
 from hypothesis import strategies as st
 
 from cellcolor.motion.retraced import beside_itself, stretches
+from examples import examples
 
 WAYS = st.sampled_from([(1, 0), (-1, 0), (0, 1), (0, -1)])
 SPACING = 0.01  # m, the grid's lines are ten spacings apart

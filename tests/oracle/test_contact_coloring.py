@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import networkx
 import numpy as np
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
@@ -17,6 +16,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.vertex_contacts import VertexContacts
 from cellcolor.oracle import ProvenRange
 from cellcolor.oracle.contact_coloring import coloring_of
+from examples import examples
 
 RED, BLUE = 0, 1
 Rows = list[tuple[int, int, int]]

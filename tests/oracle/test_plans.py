@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
@@ -19,6 +18,7 @@ import cellcolor
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.lab.families import blobs
 from cellcolor.oracle import ProvenRange
+from examples import examples
 
 RED, BLUE = 0, 1
 ROW = drawn("AAMMBB AAMMBB AAMMBB", {"A": [RED], "M": [RED, BLUE], "B": [RED]})

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from meshes import drawn, surfaces
@@ -22,6 +21,7 @@ from cellcolor.errors import CellcolorError
 from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import paint
+from examples import examples
 
 
 def squeezed(surface: LabelledSurface, seed: int) -> LabelledSurface:

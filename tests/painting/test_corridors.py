@@ -5,7 +5,6 @@ from __future__ import annotations
 import networkx as nx
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -13,6 +12,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.painting.corridors import Room
 from cellcolor.painting.nearby import Nearby
+from examples import examples
 
 
 def drawn(seed: int, shape: str) -> tuple[LabelledSurface, list[int]]:

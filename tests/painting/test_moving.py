@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import example, given
 from hypothesis import strategies as st
 from painted import assert_whole, random_solution
@@ -23,6 +22,7 @@ from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.painting.moving import border_length, move_borders
 from cellcolor.painting.paint import Painted, paint
+from examples import examples
 
 
 def grid(

@@ -8,7 +8,6 @@ import random
 from dataclasses import replace
 
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
@@ -22,6 +21,7 @@ from cellcolor.lab.families.voronoi import voronoi
 from cellcolor.painting.paint import paint
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 SURFACES = sorted(
     [*INSTANCES.glob("paper/*.surface.json"), *INSTANCES.glob("random/*.surface.json")]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 
-from examples import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
@@ -16,6 +15,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 SEEDS = st.integers(0, 10**6)
 HOLED = [Instance.read(PAPER / f"{name}.json") for name in ("annulus", "three-loops")]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from itertools import combinations
 
 import pytest
-from examples import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES
@@ -34,6 +33,7 @@ from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner
 from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 SEEDS = st.integers(0, 10**6)
 OVER = Deadline.after(-1.0)

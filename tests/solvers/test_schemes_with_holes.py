@@ -9,7 +9,6 @@ from pathlib import Path
 import holes
 import pytest
 from commands import run
-from examples import examples
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
@@ -23,6 +22,7 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 SEEDS = st.integers(0, 10**6)
 RED, BLUE = 0, 1

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import pytest
-from examples import examples
 from hypothesis import find, given, settings
 from hypothesis import strategies as st
 
@@ -16,6 +15,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.testing.sheets import sheet
 from cellcolor.testing.strategies import broken_plans, instances, labelled_surfaces, valid_plans
+from examples import examples
 
 
 @examples(20)

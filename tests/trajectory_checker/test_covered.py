@@ -9,7 +9,6 @@ import pytest
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -21,6 +20,7 @@ from cellcolor.trajectory_checker.covered import patches, reach
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
 from cellcolor.trajectory_checker.repeated import passes, repeated_stretches
+from examples import examples
 
 
 def strip(heights: list[tuple[float, float]], width: float = 0.06) -> Surface:

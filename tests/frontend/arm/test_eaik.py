@@ -7,7 +7,6 @@ import sys
 import dh_arms
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import set_distance, wrapped
@@ -20,6 +19,7 @@ from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jac
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES
 from cellcolor.frontend.setup import RobotFiles
+from examples import examples
 
 LOCKED = 0.4
 NAMED = ("kr6", "irb120", "puma560", "ur5e")

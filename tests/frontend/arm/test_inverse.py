@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import Eaik, regular, set_distance, wrapped
@@ -16,6 +15,7 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot, load_robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
+from examples import examples
 
 LOCKED = 0.4
 

@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
@@ -31,6 +30,7 @@ from cellcolor.frontend.parts.shapes import (
 )
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.scene import Scene
+from examples import examples
 
 
 def double_areas(points: Array, faces: Array) -> Array:

@@ -6,7 +6,6 @@ import itertools
 import math
 from dataclasses import replace
 
-from examples import examples
 from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -22,6 +21,7 @@ from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.bounds.merged_cells import merge_cells
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 RED, BLUE = 0, 1
 SEEDS = st.integers(0, 10**6)

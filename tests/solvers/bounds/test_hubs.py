@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from examples import examples
 from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -18,6 +17,7 @@ from cellcolor.lab.families import hub, hub_grid, hub_with_loops, planar_graph
 from cellcolor.lab.families.hubs import hub_minimum
 from cellcolor.solvers.bounds.hubs import hub_bound
 from cellcolor.solvers.bounds.links import best_grouping
+from examples import examples
 
 SEEDS = st.integers(0, 10**6)
 COLORS = st.frozensets(st.integers(0, 3), min_size=1, max_size=3)

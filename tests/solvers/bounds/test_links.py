@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from itertools import chain
 
 from drawings import most_links_drawn, walks_and_parts
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from noncrossing import noncrossing
@@ -17,6 +16,7 @@ from cellcolor.lab.families import hub_with_loops
 from cellcolor.solvers.bounds.hubs import joinable_colors
 from cellcolor.solvers.bounds.links import Grouping, best_grouping, links_bound
 from cellcolor.solvers.cpsat.hubs.several_loops import many_links
+from examples import examples
 
 COLORS = st.frozensets(st.integers(0, 3), min_size=1, max_size=3)
 LOOPS = st.lists(

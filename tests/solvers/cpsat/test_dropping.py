@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import pytest
 from dart_graphs import graph_of
-from examples import examples
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
@@ -29,6 +28,7 @@ from cellcolor.solvers.cpsat.routes.dropping import drop_segments
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import held_nodes, painting_of_nodes, refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment
+from examples import examples
 
 RED, BLUE = 0, 1
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -16,6 +15,7 @@ from cellcolor.solvers.cpsat.hubs.division import divide_hubs
 from cellcolor.solvers.cpsat.hubs.several_loops import many_links
 from cellcolor.solvers.cpsat.model.painting import division_of, segments_of
 from cellcolor.solvers.cpsat.parts import split
+from examples import examples
 
 SEEDS = st.integers(0, 10**6)
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from copy import deepcopy
 
 from dart_graphs import graph_of
-from examples import examples
 from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
@@ -19,6 +18,7 @@ from cellcolor.solvers.cpsat.model.painting import Block, canonical, division_of
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment
+from examples import examples
 
 RED, BLUE = 0, 1
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from examples import examples
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
@@ -25,6 +24,7 @@ from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, SegmentPlan
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 RED, BLUE, GREEN = 0, 1, 2
 

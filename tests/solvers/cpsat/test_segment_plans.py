@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import pytest
-from examples import examples
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
@@ -18,6 +17,7 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat.routes import segment_plans
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
 from cellcolor.solvers.interface import Options
+from examples import examples
 
 RED, BLUE, GREEN = 0, 1, 2
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import pytest
 from dart_graphs import graph_of
-from examples import examples
 from exhaustive_minima import optimal_schemes
 from hypothesis import given
 from hypothesis import strategies as st
@@ -22,6 +21,7 @@ from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.cpsat.model.full import add_hint, full_model
 from cellcolor.solvers.cpsat.model.painting import painting_of
 from cellcolor.solvers.interface import Options, Start
+from examples import examples
 
 RED, BLUE = 0, 1
 

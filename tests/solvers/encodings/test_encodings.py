@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from examples import examples
 from exhaustive_minima import live_darts, minimum
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
@@ -31,6 +30,7 @@ from cellcolor.solvers.encodings.ranks import Ranks
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.registry import make_solver, solver_version
+from examples import examples
 
 NAMES = ("cp-sat-pointers", "cp-sat-ranks", "cp-sat-contour")
 FIGURES = sorted(
