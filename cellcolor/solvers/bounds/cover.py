@@ -2,7 +2,8 @@
 
 A color region is a connected component of the cells that have a color. Every segment lies in one,
 so there are as many segments as regions are needed to touch all cells; and cells of which no two
-lie in a common region, strangers to each other, are in different segments.
+lie in a common region, strangers to each other, are in different segments. Strangers are an
+independent set of the graph that joins two cells where a region holds both.
 """
 
 from __future__ import annotations

@@ -1,5 +1,8 @@
 """A division improved segment by segment: one is left out, and all others are routed anew.
 
+The literature calls this ruin and recreate (Schrimpf, Schneider, Stamm-Wilbrandt and Dueck, "Record
+breaking optimization results using the ruin and recreate principle", 2000).
+
 The segments of a division are a segment plan that can be drawn. Without one of them it is a plan
 with one segment less, if other segments can reach the cells that only this one touched. Routing
 such a plan takes a small part of the time of a model, and tries what windows cannot: segments
