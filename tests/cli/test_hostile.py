@@ -19,6 +19,8 @@ from pages import needs_frontend
 
 from cellcolor.cli.terminal import shown
 
+pytestmark = pytest.mark.second
+
 RING = PAPER / "ring.json"
 SCENE = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")
 Capture = pytest.CaptureFixture[str]

@@ -17,6 +17,8 @@ from cellcolor.lab.executors.alone import Ended, Limits, run_alone, watch
 from cellcolor.lab.executors.local import LocalWorkers
 from cellcolor.lab.executors.work import Task, as_they_end
 
+pytestmark = pytest.mark.second
+
 LIMITS = Limits(60.0)
 
 

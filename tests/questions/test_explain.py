@@ -120,6 +120,7 @@ def same_answers(found: Stages, other: Stages) -> bool:
     )
 
 
+@pytest.mark.second
 @pytest.mark.parametrize("name", ["wok_obstacle", "hemisphere_tilted"])
 def test_each_row_is_that_of_the_scene_with_the_thing_changed(
     name: str, monkeypatch: pytest.MonkeyPatch

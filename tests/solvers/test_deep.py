@@ -23,6 +23,8 @@ from cellcolor.solvers.dfs.cell_schemes import cell_schemes
 from cellcolor.solvers.dfs.graph import Graphs
 from cellcolor.solvers.interface import Options
 
+pytestmark = pytest.mark.second
+
 DEEP = 1500
 """Python's stack has room for a thousand calls."""
 

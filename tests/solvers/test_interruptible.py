@@ -15,6 +15,8 @@ from cellcolor.solvers.encodings.pointers import Pointers
 from cellcolor.solvers.encodings.problem import Problem
 from cellcolor.solvers.interruptible import make_cp_solver, make_portfolio
 
+pytestmark = pytest.mark.second
+
 
 @pytest.fixture(scope="module")
 def model() -> cp_model.CpModel:

@@ -25,6 +25,8 @@ from cellcolor.lab.families.meshes import make_mesh
 from cellcolor.mesh.oriented import directed_edges
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 EULER = {"disc": 1, "annulus": 0, "sphere": 2, "torus": 0, "double torus": -2}
 BORDERS = {"disc": 1, "annulus": 2, "sphere": 0, "torus": 0, "double torus": 0}
 

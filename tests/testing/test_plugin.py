@@ -19,6 +19,8 @@ from meshes import drawn
 import cellcolor
 from cellcolor.data.surface import LabelledSurface
 
+pytestmark = pytest.mark.second
+
 RED, BLUE = 0, 1
 ROW = drawn("AAMMBB AAMMBB AAMMBB", {"A": [RED], "M": [RED, BLUE], "B": [RED]})
 # An installation from before there was the entry point does not load the plugin by itself.
