@@ -23,6 +23,7 @@ from cellcolor.frontend.reach.validity import Judge
 
 __all__ = [
     "AddedTest",
+    "Distance",
     "GroundPlane",
     "JointRange",
     "LinkContact",
@@ -344,6 +345,30 @@ class ToolBody(Relaxation):
 
 
 @dataclass(frozen=True)
+class Distance(Relaxation):
+    """A distance that arm and tool keep (``margins`` of the setup), down to a touch."""
+
+    margin: str
+    reasons = None
+
+    @property
+    def name(self) -> str:
+        """As in "the distance to obstacles"."""
+        return f"distance {self.margin.removesuffix('_m').replace('_', ' ')}"
+
+    @property
+    def key(self) -> str:
+        """Of the setup."""
+        return f"margins.{self.margin}"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """With no distance to be kept."""
+        setup = prepared.arm.setup.varied(margins={self.margin: 0.0})
+        arm = replace(prepared.arm, setup=setup)
+        return _remade(prepared, replace(prepared.workplace, arm=arm))
+
+
+@dataclass(frozen=True)
 class AddedTest(Relaxation):
     """A test of validity that the scene has besides."""
 
@@ -403,6 +428,8 @@ def relaxations_of(prepared: PreparedScene) -> tuple[Relaxation, ...]:
             if limit
         ]
         found += [LinkContact(None)] if robot.tested_pairs else []
+        margins = prepared.setup.margins
+        found += [Distance(key) for key in type(margins).model_fields if getattr(margins, key)]
     if on.force:
         found.append(Torques())
     if on.conditioning:
