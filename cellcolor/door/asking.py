@@ -11,8 +11,12 @@ import numpy as np
 from cellcolor.data.instance import OUTSIDE, Instance
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import extras_for
-from cellcolor.door.shipped import find_file
-from cellcolor.door.subject import Solvable, Subject, is_made_by, is_scene, open_subject
+from cellcolor.door.subject import (
+    Solvable,
+    Subject,
+    open_subject,
+    scene_or_file,
+)
 from cellcolor.errors import InputError
 from cellcolor.questions.front import Front
 from cellcolor.questions.places import Place, chosen
@@ -105,11 +109,7 @@ def explain(
         OutOfTime: the time limit came before the scene itself was solved.
     """
     deadline = Deadline.of(time_limit)
-    if not is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
-        file = find_file(scene)  # type: ignore[arg-type]
-        if not is_scene(file):
-            raise InputError(str(file), None, "is no scene: a scene is a file .toml")
-        scene = file
+    scene = scene_or_file(scene)
     point = None
     if at is not None:
         point = np.asarray(at, dtype=float)

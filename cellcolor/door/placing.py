@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.extras import extras_for
-from cellcolor.door.shipped import find_file
-from cellcolor.door.subject import is_made_by, is_scene
+from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.lab.executors.alone import Limits
 from cellcolor.lab.executors.local import LocalWorkers
@@ -75,10 +74,7 @@ def place(
         OutOfTime: the time limit came before the scene itself was solved.
     """
     deadline = Deadline.of(time_limit)
-    if not is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
-        file = find_file(scene)  # type: ignore[arg-type]
-        if not is_scene(file):
-            raise InputError(str(file), None, "is no scene: a scene is a file .toml")
+    scene = scene_or_file(scene)
     counts = {"points": points, "best": best, "vertices": vertices}
     for name, number in (counts | ({"jobs": jobs} if isinstance(jobs, int) else {})).items():
         if number < 1:
@@ -100,7 +96,7 @@ def place(
     given = {"x": x, "y": y, "z": z, "roll": roll, "pitch": pitch, "yaw": yaw}
     ranges = {name: pair for name, pair in given.items() if pair is not None}
     check_ranges(ranges)
-    own: Scene = scene if isinstance(scene, SceneValue) else SceneValue.read(file)
+    own: Scene = scene if isinstance(scene, SceneValue) else SceneValue.read(scene)
     report = progress or (lambda _: None)
     report("where it stands")
     start = pose_of(own.placement)

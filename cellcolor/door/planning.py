@@ -16,11 +16,9 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.extras import require_motion
 from cellcolor.door.result import Result
-from cellcolor.door.shipped import find_file
 from cellcolor.door.solving import solve
-from cellcolor.door.subject import Subject, is_made_by, is_scene
+from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedPlan
-from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
 
@@ -157,11 +155,8 @@ def plan(
 
     deadline = Deadline.of(time_limit)
 
-    path = None
-    if not is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
-        path = find_file(scene)  # type: ignore[arg-type]
-        if not is_scene(path):
-            raise InputError(str(path), None, "is no scene: a scene is a file .toml")
+    given_or_file = scene_or_file(scene)
+    path = given_or_file if isinstance(given_or_file, Path) else None
     require_motion("planning a motion", _NEEDED)
     find_pattern(pattern or DEFAULT_PATTERN)
     from cellcolor.frontend.prepared import prepare
@@ -174,7 +169,7 @@ def plan(
     from cellcolor.trajectory_checker.check import check_trajectory
 
     clock = StageClock(deadline, progress)
-    given = Scene.read(path) if path is not None else scene
+    given = Scene.read(path) if path is not None else given_or_file
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)  # type: ignore[arg-type]
         # What is wrong with the motion is refused before the long work begins.

@@ -11,8 +11,12 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.result import Result
-from cellcolor.door.shipped import find_file
-from cellcolor.door.subject import Solvable, build_scene, is_made_by, is_scene, open_subject
+from cellcolor.door.subject import (
+    Solvable,
+    build_scene,
+    open_subject,
+    scene_or_file,
+)
 from cellcolor.errors import InputError
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options, Start
@@ -55,12 +59,7 @@ def build(
         OutOfTime: the time limit came first.
     """
     deadline = Deadline.of(time_limit)
-    if is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
-        return build_scene(scene, deadline, progress)  # type: ignore[arg-type]
-    path = find_file(scene)  # type: ignore[arg-type]
-    if not is_scene(path):
-        raise InputError(str(path), None, "is no scene: a scene is a file .toml")
-    return build_scene(path, deadline, progress)
+    return build_scene(scene_or_file(scene), deadline, progress)
 
 
 def decompose(source: Solvable, *, time_limit: TimeLimit = None) -> Instance:

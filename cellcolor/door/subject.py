@@ -270,6 +270,20 @@ def is_scene(path: Path) -> bool:
     return path.suffix == ".toml"
 
 
+def scene_or_file(scene: str | PathLike[str] | Scene) -> Scene | Path:
+    """A scene that is a value, or the file of one that is named.
+
+    Raises:
+        InputError: there is no such file, or it is no scene's.
+    """
+    if is_made_by(scene, "cellcolor.frontend.scene", "Scene"):
+        return scene  # type: ignore[return-value]
+    path = find_file(scene)  # type: ignore[arg-type]
+    if not is_scene(path):
+        raise InputError(str(path), None, "is no scene: a scene is a file .toml")
+    return path
+
+
 def build_scene(
     scene: Path | Scene,
     deadline: Deadline = NEVER,

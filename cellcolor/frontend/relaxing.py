@@ -198,10 +198,7 @@ class Threshold(Relaxation):
         """Of the setup."""
         return f"thresholds.{self.given}"
 
-    @property
-    def most(self) -> float:
-        """All of it."""
-        return 100.0
+    most = 100.0
 
     def by(self, amount: float) -> Threshold:
         """So many percent lower."""
