@@ -23,6 +23,9 @@ from cellcolor.deadline import Deadline as Deadline
 from cellcolor.deadline import OutOfTime as OutOfTime
 from cellcolor.door.asking import explain as explain
 from cellcolor.door.asking import tradeoff as tradeoff
+from cellcolor.door.comparing import ComparedArm as ComparedArm
+from cellcolor.door.comparing import Comparison as Comparison
+from cellcolor.door.comparing import compare as compare
 from cellcolor.door.covering import cover as cover
 from cellcolor.door.drawing import Drawing as Drawing
 from cellcolor.door.judging import check as check
@@ -37,6 +40,8 @@ from cellcolor.door.planning import PlannedScene as PlannedScene
 from cellcolor.door.planning import plan as plan
 from cellcolor.door.reading import read as read
 from cellcolor.door.result import Result as Result
+from cellcolor.door.setting_up import ChosenSetUps as ChosenSetUps
+from cellcolor.door.setting_up import setups as setups
 from cellcolor.door.shipped import library as library
 from cellcolor.door.showing import show as show
 from cellcolor.door.solving import build as build
@@ -59,8 +64,14 @@ from cellcolor.questions.explanation import Explanation as Explanation
 from cellcolor.questions.explanation import RelaxedMinimum as RelaxedMinimum
 from cellcolor.questions.front import Front as Front
 from cellcolor.questions.front import FrontPoint as FrontPoint
+from cellcolor.questions.placements import Leeway as Leeway
 from cellcolor.questions.placements import PlacedMinimum as PlacedMinimum
+from cellcolor.questions.placements import PlacementMap as PlacementMap
 from cellcolor.questions.placements import Placements as Placements
 from cellcolor.questions.places import WorldBox as WorldBox
+from cellcolor.questions.refinement import RefinedStep as RefinedStep
+from cellcolor.questions.refinement import Refinement as Refinement
+from cellcolor.questions.set_ups import SetUp as SetUp
+from cellcolor.questions.set_ups import SetUpPlan as SetUpPlan
 from cellcolor.tool_paths.cover import Covered as Covered
 from cellcolor.version import __version__ as __version__

@@ -115,4 +115,4 @@ NEVER = Deadline()
 """No deadline."""
 
 TimeLimit: TypeAlias = float | Deadline | None
-"""Seconds, a deadline, or None for as long as it takes."""
+"""Seconds, a deadline, or None for no limit."""

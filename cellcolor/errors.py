@@ -19,7 +19,7 @@ class CellcolorError(Exception):
 
 
 class InputError(CellcolorError):
-    """Something that was handed in cannot be used.
+    """Something that was passed in cannot be used.
 
     Attributes:
         file: the file at fault, or None when the data never was in a file.
@@ -67,7 +67,7 @@ class TooLarge(CellcolorError):
 class ContradictionError(CellcolorError):
     """Two things that cellcolor itself found contradict each other: cellcolor is wrong.
 
-    Nothing that is handed in can be the reason, so each of these is worth a report.
+    No input can be the reason, so each of these is worth a report.
     """
 
 

@@ -42,9 +42,10 @@ def calling_themselves(text: str) -> set[str]:
     names = {(within, name) for within, name, _ in found}
     graph: nx.DiGraph[tuple[str, str]] = nx.DiGraph()
     for within, name, function in found:
+        own_names = {node.arg for node in ast.walk(function.args) if isinstance(node, ast.arg)}
         for node in ast.walk(function):
             called = None
-            if isinstance(node, ast.Name):
+            if isinstance(node, ast.Name) and node.id not in own_names:
                 called = "", node.id
             elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
                 own = node.value.id in ("self", "cls", within)
@@ -67,6 +68,7 @@ def test_the_scan_sees_recursion() -> None:
     assert calling_themselves("def f():\n  def g(n):\n    return g(n)\n  return g(0)") == {"g"}
     assert calling_themselves("def f():\n  return g()\ndef g():\n  return 0") == set()
     assert calling_themselves("class A:\n  def f(self):\n    return f(self)") == set()
+    assert calling_themselves("def f(g):\n  return g\ndef g(f):\n  return f") == set()
 
 
 def test_no_function_calls_itself_on_the_size_of_an_input() -> None:

@@ -59,7 +59,7 @@ def claims(
         value = getattr(solution, name)
         if value > proved:
             found[name] = value
-    # What is proved hangs on the bound that it meets.
+    # What is proved depends on the bound that it meets.
     if solution.status == "optimal" and found:
         found["status"] = solution.status
     if solution.proved_for_surface and "surface_lower_bound" in found:

@@ -6,9 +6,9 @@ Look at the surface that the cells of A and B make, their borders filled with di
 (``filled_surface``).
 
 1. Let q be any curve in B from v to v'. Within Q there is one too. The two close to a curve in B,
-   which is homologous to a sum c of circles of B: to one of finitely many, on a sphere to none.
+   which is homologous to a sum c of cycles of B: one of finitely many, on a sphere none.
 2. A closed curve in P and in what B is not does not meet Q, so that it crosses q + c evenly.
-3. So P comes in even parity to all cells of A alone that hang together with u in what B is not: the
+3. So P comes in even parity to all cells of A alone that are connected with u outside B: the
    way back to u in there crosses neither q nor c. "In even parity" is counted from u, by crossings
    with q + c.
 4. If u' is one of these cells, and the color of A does not connect u and u' in this way for any c,
@@ -47,7 +47,7 @@ class TwoRegions:
         instance: the topological graph.
         colors: the two colors.
         cells: the cells of each of the two color regions.
-        count: is told how much work is about to be done; raises if that is too much.
+        count: called with the amount of work about to be done; raises if that is too much.
     """
 
     instance: Instance
@@ -119,7 +119,7 @@ class TwoRegions:
     def _connected(self, side: int, other: tuple[int, int], wall: object) -> list[dict[int, int]]:
         """What a side's color connects in even parity, of the cells in one wall of the other side.
 
-        There is one answer for each sum of circles of the other side. Cells with the same number
+        There is one answer for each sum of cycles of the other side. Cells with the same number
         are connected.
 
         Args:

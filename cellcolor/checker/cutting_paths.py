@@ -77,7 +77,7 @@ def whole_subcells(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
 def _of_cell(cell: Cell, subcells: Sequence[WholeSubCell]) -> int:
     """Sub-cells less one, and loops less the groups of loops that the curves cannot but connect.
 
-    Loops and sub-cells that meet make a graph; loops on a common circle of it are in one group.
+    Loops and sub-cells that meet make a graph; loops on a common cycle of it are in one group.
     """
     if len(subcells) == 1:
         return 0

@@ -206,7 +206,7 @@ def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Stran
     """What is wrong with one cell's division, taken alone."""
     problems = []
     if not cell.subcells:
-        problems.append(f"cells[{cell.id}].subcells: needs one sub-cell at least")
+        problems.append(f"cells[{cell.id}].subcells: needs at least one sub-cell")
     own, seen = set(darts), set[Strand]()
     for number, sub in enumerate(cell.subcells):
         where = f"cells[{cell.id}].subcells[{number}]"
@@ -218,9 +218,11 @@ def _cell_problems(instance: Instance, cell: CellDivision, darts: Sequence[Stran
         for name in sub.darts:
             dart = strand_of(name)
             if dart not in own:
-                problems.append(f"{where}.darts: {_text(dart)} is no live dart of cell {cell.id}")
+                problems.append(
+                    f"{where}.darts: {_text(dart)} is not a live dart of cell {cell.id}"
+                )
             if dart in seen:
-                problems.append(f"{where}.darts: {_text(dart)} stands twice")
+                problems.append(f"{where}.darts: {_text(dart)} appears twice")
             seen.add(dart)
     return problems
 

@@ -48,7 +48,7 @@ class FilledSurface:
     Args:
         instance: the topological graph.
         rooms: where segments can be: each a color, and cells in which it is available.
-        count: is told how much work is about to be done; raises if that is too much.
+        count: called with the amount of work about to be done; raises if that is too much.
 
     Attributes:
         polygons: the darts of each cell, its seams' among them.

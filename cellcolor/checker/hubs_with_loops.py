@@ -4,7 +4,7 @@ Draw a point in each loop and in each group of darts that a sub-cell connects, a
 dart. By Euler's formula, for each part of that plane graph, there are as many links as loops and
 walks round its faces together, less two for each part. A walk passes corners between a dart of a
 loop and the next. After a corner from color a to color b comes one from b, so that two corners of a
-walk are opposite ones, and a walk of three and more is needed wherever loops are to hang together
+walk are opposite ones, and a walk of three and more is needed wherever loops are to be connected
 that have no opposite corners (docs/bounds.md, "Hubs with several loops").
 """
 
@@ -73,7 +73,7 @@ def _most(loops: Sequence[Sequence[Corner]], count: Callable[[], None]) -> int:
             continue
         for drawn in range(part_count, kind_count + 1):
             count()
-            # So many kinds have to hang together by longer walks, each of which makes one of as
+            # So many kinds have to be connected by longer walks, each of which makes one of as
             # many as it has corners, at most.
             saved = kind_count - drawn
             walks = min(long // 3, long - saved)

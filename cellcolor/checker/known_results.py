@@ -32,7 +32,7 @@ def contradictions(instance: Instance, solution: Solution) -> list[str]:
 
 
 def _minimum(space: str, known: KnownResult, segments: int | None, bound: int) -> list[str]:
-    where = f"known.{space}.segments: {known.segments} are said to be the fewest"
+    where = f"known.{space}.segments: {known.segments} are claimed to be the fewest"
     if segments is not None and segments < known.segments:
         return [f"{where}, the division found has {segments}"]
     if bound > known.segments:

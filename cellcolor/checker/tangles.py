@@ -56,7 +56,7 @@ def cannot_be_drawn(
     Args:
         instance: the topological graph.
         segments: that touch an area of each of their groups.
-        count: is told how much work is about to be done; raises if that is too much.
+        count: called with the amount of work about to be done; raises if that is too much.
     """
     rooms = list(dict.fromkeys((segment.color, segment.cells) for segment in segments))
     surface = FilledSurface(instance, rooms, count)

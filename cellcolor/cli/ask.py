@@ -10,9 +10,11 @@ from typing import TYPE_CHECKING, Any
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.progress import stages_of
-from cellcolor.cli.terminal import complain, print_json, say
+from cellcolor.cli.terminal import apart_from, complain, print_json, say
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.drawing import kind_of_plot
 from cellcolor.errors import InputError
+from cellcolor.files.writing import check_output
 from cellcolor.questions.places import read_place, read_weights
 
 if TYPE_CHECKING:
@@ -28,6 +30,7 @@ class TradeoffRequest:
         weights: a file with the weights of the vertices.
         required, left_alone: places, see :func:`~cellcolor.questions.places.read_place`.
         share: of which the fewest lift-offs are asked, 0 to 1.
+        picture: of the front.
         as_json: a JSON object for each point instead of lines.
         workers, seed, deadline: of the search.
     """
@@ -37,6 +40,7 @@ class TradeoffRequest:
     required: str | None
     left_alone: str | None
     share: float | None
+    picture: Path | None
     as_json: bool
     workers: int | None
     seed: int
@@ -45,8 +49,10 @@ class TradeoffRequest:
 
 def ask_tradeoff(request: TradeoffRequest) -> Exit:
     """Print a front, or the point of it that covers a share."""
-    from cellcolor.door.asking import tradeoff
+    from cellcolor.door.asking import save_front, tradeoff
 
+    if request.picture is not None:
+        check_output(request.picture, kind_of_plot(request.picture), [request.source])
     required = None if request.required is None else read_place(request.required, "--required")
     alone = None if request.left_alone is None else read_place(request.left_alone, "--left-alone")
     weights = None if request.weights is None else read_weights(request.weights)
@@ -64,16 +70,21 @@ def ask_tradeoff(request: TradeoffRequest) -> Exit:
                 progress=report,
             )
     except OutOfTime:
-        complain(f"{request.source}: the time limit came before any division was known")
+        complain(f"{request.source}: the time limit came before any division was found")
         return Exit.STOPPED
     except InputError as error:
         raise error if error.file else error.in_file(str(request.source)) from error
     points = front.points if request.share is None else (front.at_least(request.share),)
-    for point in points:
-        if request.as_json:
-            print_json({"file": str(request.source)} | point.to_document())
-        else:
-            say(point)
+    with apart_from(request.picture):
+        for point in points:
+            if request.as_json:
+                print_json({"file": str(request.source)} | point.to_document())
+            else:
+                say(point)
+        if request.picture is not None:
+            save_front(front, request.picture)
+            if not request.as_json:
+                say(f"wrote {request.picture}")
     return Exit.DONE if all(point.proved for point in points) else Exit.STOPPED
 
 
@@ -137,7 +148,11 @@ class PlaceRequest:
         scene: its file.
         ranges: of each variable that was given, ``LOW,HIGH``.
         cover: the share that has to be covered; None for as much as where the part stands.
-        points, best, vertices: see :func:`~cellcolor.door.placing.place`.
+        points, best, vertices, tiles, leeway: see :func:`~cellcolor.door.placing.place`.
+        base: whether the arm's base is moved.
+        uncovered_price: see :func:`~cellcolor.door.placing.place`.
+        table: where rows are kept, and what is gone on from.
+        picture: of the map.
         as_json: a JSON object for each row instead of lines.
         jobs, cluster: who does the work.
         seed, deadline: of the search.
@@ -149,6 +164,12 @@ class PlaceRequest:
     points: int
     best: int
     vertices: int
+    tiles: int
+    leeway: float | None
+    base: bool
+    uncovered_price: float
+    table: Path | None
+    picture: Path | None
     as_json: bool
     jobs: int
     cluster: str | None
@@ -158,14 +179,16 @@ class PlaceRequest:
 
 def ask_place(request: PlaceRequest) -> Exit:
     """Print where the part should stand."""
-    from cellcolor.door.placing import place
+    from cellcolor.door.placing import place, save_map
 
+    if request.picture is not None:
+        check_output(request.picture, kind_of_plot(request.picture), [request.scene])
     jobs: int | Workers = request.jobs
     if request.cluster is not None:
         from cellcolor.cli.workers import workers_for
 
         jobs = workers_for(request.jobs, request.cluster)
-    ranges: dict[str, Any] = {name: _range(name, text) for name, text in request.ranges.items()}
+    ranges = ranges_of(request.ranges)
     try:
         with stages_of(request.scene, "placing") as report:
             found = place(
@@ -175,6 +198,11 @@ def ask_place(request: PlaceRequest) -> Exit:
                 points=request.points,
                 best=request.best,
                 vertices=request.vertices,
+                tiles=None if request.picture is None else request.tiles,
+                leeway=request.leeway,
+                base=request.base,
+                uncovered_price=request.uncovered_price,
+                table=request.table,
                 jobs=jobs,
                 time_limit=request.deadline,
                 seed=request.seed,
@@ -185,19 +213,29 @@ def ask_place(request: PlaceRequest) -> Exit:
         return Exit.STOPPED
     except InputError as error:
         raise error if error.file else error.in_file(str(request.scene)) from error
-    if request.as_json:
-        for row in found:
-            print_json({"file": str(request.scene)} | row.to_document())
-    else:
-        for line in str(found).split("\n"):
-            say(line)
+    with apart_from(request.picture):
+        if request.as_json:
+            for row in found:
+                moved = {"moved": "base"} if found.base else {}
+                print_json({"file": str(request.scene)} | moved | row.to_document())
+        else:
+            for line in str(found).split("\n"):
+                say(line)
+        if request.picture is not None:
+            save_map(found, request.picture)
+            if not request.as_json:
+                say(f"wrote {request.picture}")
     proved = found.best and all(row.proved_for_surface for row in found.best)
     return Exit.DONE if found.complete and proved else Exit.STOPPED
 
 
-def _range(name: str, text: str) -> tuple[float, float]:
-    try:
-        low, high = map(float, text.split(","))
-    except ValueError as error:
-        raise InputError(None, f"--{name}", "a range is two numbers: LOW,HIGH") from error
-    return low, high
+def ranges_of(texts: Mapping[str, str]) -> dict[str, Any]:
+    """The range of each variable that was given as ``LOW,HIGH``."""
+    ranges = {}
+    for name, text in texts.items():
+        try:
+            low, high = map(float, text.split(","))
+        except ValueError as error:
+            raise InputError(None, f"--{name}", "a range is two numbers: LOW,HIGH") from error
+        ranges[name] = low, high
+    return ranges

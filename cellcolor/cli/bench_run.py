@@ -134,7 +134,7 @@ def _subjects(text: str, seeds: Sequence[int]) -> Iterator[Specimen]:
     patterned = any(letter in text for letter in "*?[") and not Path(text).exists()
     names = [name for name in library() if fnmatchcase(name, text)] if patterned else [text]
     if not names:
-        raise InputError(None, None, f"{text}: no family and no shipped name is like this")
+        raise InputError(None, None, f"{text}: matches no family and no shipped name")
     for name in names:
         file = find_file(name)
         family = file.resolve().parent.name
@@ -151,7 +151,7 @@ def _shipped_families(pattern: str) -> list[list[Specimen]]:
             make = partial(read_instance, find_file(entry.name))
             families.setdefault(family, []).append(Specimen(family, None, entry.name, make))
     if not families:
-        raise InputError(None, None, f"{pattern}: the library has no family like this")
+        raise InputError(None, None, f"{pattern}: matches no family of the library")
     return list(families.values())
 
 
@@ -183,7 +183,7 @@ def _print(made: Sequence[Row], sweep: Sweep, wrong: Sequence[str]) -> None:
                 *(_seconds(runs.get(name, [])) for name in names),
             )
         console().print(table)
-    already = f", {sweep.skipped} left out or there already" if sweep.skipped else ""
+    already = f", {sweep.skipped} left out or already there" if sweep.skipped else ""
     proved = sum(row.solved for row in made)
     console().print(f"{count(len(made), 'run')}, {proved} with a proved minimum{already}")
     for line in wrong:

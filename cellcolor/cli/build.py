@@ -33,9 +33,7 @@ def build_instance(source: Path, output: Path) -> Exit:
     """Write an instance; for a scene its labelled surface and side file as well."""
     check_output(output, _INSTANCE, [source])
     if is_scene(output):
-        message = (
-            "must not end in .toml: by that ending the other commands would take it for a scene"
-        )
+        message = "must not end in .toml: the other commands would take it for a scene"
         raise InputError(str(output), None, message)
     with apart_from(output):
         instance = (_build_scene if is_scene(source) else _build_surface)(source, output)

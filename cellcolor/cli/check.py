@@ -21,9 +21,11 @@ from cellcolor.data.check_error import CheckError
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.claims import format_of_claim, read_trajectory
+from cellcolor.door.leaving_out import left_alone
 from cellcolor.door.shipped import find_claim, find_file
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError
+from cellcolor.questions.places import Place
 
 __all__ = ["Request", "check_files"]
 
@@ -41,6 +43,8 @@ class Request:
             there.
         demands: what else is wanted of a plan.
         as_json: one JSON object instead of lines.
+        tolerance: of a scene's part.
+        left_alone: where on the subject's surface nothing has to be covered.
     """
 
     subject: str
@@ -48,6 +52,8 @@ class Request:
     deadline: Deadline
     demands: PlanDemands
     as_json: bool
+    left_alone: Place | None = None
+    tolerance: str | None = None
 
 
 def check_files(request: Request) -> Exit:
@@ -94,9 +100,11 @@ def _check(request: Request, claim: Path) -> Exit:
 def _open(request: Request, deadline: Deadline) -> Subject:
     """The subject; one from standard input lies beside no other file."""
     if request.subject != STANDARD_INPUT:
-        return read_subject(find_file(request.subject), deadline)
-    with input_file(STANDARD_INPUT) as copy:
-        return replace(read_subject(copy, deadline), path=None)
+        subject = read_subject(find_file(request.subject), deadline, request.tolerance)
+    else:
+        with input_file(STANDARD_INPUT) as copy:
+            subject = replace(read_subject(copy, deadline), path=None)
+    return left_alone(subject, request.left_alone)
 
 
 def _check_plan(request: Request, subject: Subject, claim: Path) -> Exit:

@@ -54,7 +54,7 @@ def check_plan_file(
         claim: the file.
         name: what the verdict says that the file is.
         demands: what else is wanted.
-        deadline: when to be content with what is proved.
+        deadline: when to stop with what is proved by then.
 
     Raises:
         BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.

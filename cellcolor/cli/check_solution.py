@@ -42,7 +42,7 @@ def check_solution_file(subject: Subject, claim: Path, name: str) -> SolutionVer
             )
         key = scheme_key(division)
         if key in keys:
-            faults.append("the same scheme stands in an earlier line")
+            faults.append("an earlier line has the same scheme")
         keys.add(key)
         problems += [f"scheme {schemes}: {fault}" for fault in faults]
     # A solution alone may count schemes that it does not list; a list has to be whole.

@@ -2,20 +2,42 @@
 
 from __future__ import annotations
 
+import re
+from math import radians
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.door.subject import Subject, open_subject
+from cellcolor.door.extras import extras_for
+from cellcolor.door.leaving_out import Wanted
+from cellcolor.door.subject import Subject, build_scene, open_subject, scene_or_file
+from cellcolor.errors import InputError
+from cellcolor.questions.places import read_place
+
+if TYPE_CHECKING:
+    from cellcolor.frontend import Scene
+
+_UNITS = {
+    "mm": ("position_m", 1e-3),
+    "m": ("position_m", 1.0),
+    "deg": ("rotation_rad", radians(1.0)),
+    "rad": ("rotation_rad", 1.0),
+}
 
 
-def open_file(path: Path, deadline: Deadline = NEVER) -> Subject:
+def open_file(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:
     """Read what is in a file, and build a scene.
 
     Libraries that catch everything can swallow a signal; it is raised before and after a build.
+
+    Args:
+        path: of the file.
+        deadline: when a build has to end.
+        tolerance: of a scene's part, see :func:`with_tolerance`.
 
     Raises:
         InputError: with the file named.
@@ -23,14 +45,46 @@ def open_file(path: Path, deadline: Deadline = NEVER) -> Subject:
     """
     INTERRUPTS.check()
     with stages_of(path, "building") as report_stage:
-        subject = open_subject(path, deadline, report_stage)
+        if tolerance is None:
+            subject = open_subject(path, deadline, report_stage)
+        else:
+            built = build_scene(with_tolerance(path, tolerance), deadline, report_stage)
+            subject = Subject(path, built, built.surface)
     INTERRUPTS.check()
     return subject
 
 
-def read_subject(path: Path, deadline: Deadline = NEVER) -> Subject:
+def with_tolerance(path: Path, text: str) -> Scene:
+    """A scene whose part may stand off.
+
+    Args:
+        path: of the scene.
+        text: a length in ``mm`` or ``m``, an angle in ``deg`` or ``rad``, or both with a comma
+            between.
+
+    Raises:
+        InputError: the text is something else, or the file is no scene's.
+    """
+    tolerance: dict[str, float] = {}
+    for word in text.split(","):
+        found = re.fullmatch(r"([0-9.eE+-]+)(mm|m|deg|rad)", word.strip())
+        key, factor = ("", 1.0) if found is None else _UNITS[found[2]]
+        try:
+            tolerance[key] = factor * float("" if found is None or key in tolerance else found[1])
+        except ValueError as error:
+            message = f"must be a length and an angle with units, such as 2mm,0.5deg, is {text!r}"
+            raise InputError(None, "--tolerance", message) from error
+    with extras_for("the front end"):
+        from cellcolor.frontend.scene import Scene as SceneValue
+
+    scene = scene_or_file(path)
+    assert isinstance(scene, Path)
+    return SceneValue.read(scene).varied(tolerance=tolerance, file=scene)
+
+
+def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None = None) -> Subject:
     """The same, for commands that print no report: what a scene warns of goes to standard error."""
-    subject = open_file(path, deadline)
+    subject = open_file(path, deadline, tolerance)
     for warning in subject.warnings:
         complain(f"{path}: warning: {warning}")
     return subject
@@ -39,3 +93,16 @@ def read_subject(path: Path, deadline: Deadline = NEVER) -> Subject:
 def read_instance(path: Path, deadline: Deadline = NEVER) -> Instance:
     """An instance from anything that can be solved; see :func:`read_subject`."""
     return read_subject(path, deadline).graph(deadline)
+
+
+def read_wanted(cover: float | None, required: str | None, left_alone: str | None) -> Wanted:
+    """What has to be covered, as options say it.
+
+    Raises:
+        InputError: a place is none; names the option or the file.
+    """
+    return Wanted(
+        cover,
+        None if required is None else read_place(required, "--required"),
+        None if left_alone is None else read_place(left_alone, "--left-alone"),
+    )

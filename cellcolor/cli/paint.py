@@ -64,7 +64,7 @@ def paint_files(
     for line in _answers(painted):
         say(f"  {line}")
     for group in painted.merged:
-        say(f"  segments {listed(group)} of the solution touch in one color: painted they are one")
+        say(f"  segments {listed(group)} of the solution touch in one color: painted, they are one")
     return Exit.DONE
 
 
@@ -73,7 +73,7 @@ def _lines(report: BorderReport, several: bool) -> Iterator[str]:
     before, after = report.before, report.after
     if not several:
         return
-    yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as they were first drawn"
+    yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
     if after.narrowest is not None:
         x, y, z = after.narrowest.place
         width, number = after.narrowest.width_m, after.narrowest.segment
@@ -90,7 +90,7 @@ def _lines(report: BorderReport, several: bool) -> Iterator[str]:
 def _answers(painted: Painted) -> Iterator[str]:
     """What the scene has said of a painting, where it was asked and has refused something."""
     if len(painted.minima) > 1:
-        yield f"the scene refuses copied colors: {count(painted.minima[0], 'segment')} as solved,"
+        yield f"the scene rejects copied colors: {count(painted.minima[0], 'segment')} as solved,"
         yield f"{painted.segments} after solving again with the true colors of the refined surface"
     if painted.refused:
         refused = count(len(painted.refused), "vertex", "vertices")

@@ -8,11 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from cellcolor.cli.exits import Exit
+from cellcolor.cli.inputs import with_tolerance
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain, say
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.leaving_out import Wanted
 from cellcolor.door.plan_files import KINDS, check_folder
 from cellcolor.door.subject import Subject
 from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedPlan
@@ -22,7 +24,14 @@ _SHOWN = 5  # faults
 
 
 def plan_scene(
-    scene: Path, folder: Path, pattern: str, motion: Mapping[str, Any], deadline: Deadline
+    scene: Path,
+    folder: Path,
+    pattern: str,
+    wanted: Wanted,
+    tolerance: str | None,
+    ask: tuple[str, ...],
+    motion: Mapping[str, Any],
+    deadline: Deadline,
 ) -> Exit:
     """Plan, judge and write everything to a folder.
 
@@ -30,6 +39,9 @@ def plan_scene(
         scene: the scene's file.
         folder: where all files go; made where it does not exist.
         pattern: of the tool paths.
+        wanted: what has to be covered.
+        tolerance: of the scene's part.
+        ask: what the page is to tell besides.
         motion: keys of the setup's table ``[motion]``, which they replace.
         deadline: when to give up.
     """
@@ -40,7 +52,17 @@ def plan_scene(
     INTERRUPTS.check()
     try:
         with stages_of(scene, "planning") as report:
-            planned = plan(scene, pattern=pattern, time_limit=deadline, progress=report, **motion)
+            planned = plan(
+                scene if tolerance is None else with_tolerance(scene, tolerance),
+                pattern=pattern,
+                cover=wanted.cover,
+                required=wanted.required,
+                left_alone=wanted.left_alone,
+                ask=ask,
+                time_limit=deadline,
+                progress=report,
+                **motion,
+            )
             report("files and page")
             begun = time.perf_counter()
             planned.save(folder)

@@ -63,7 +63,7 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
     if found.segments is not None and segments > found.segments:
         message = f"says {found.segments}, its division has {count(segments, 'segment')}"
         raise InputError(None, "objective", message)
-    claim = "The solver from outside claims that no division has fewer segments; that is no proof."
+    claim = "The external solver claims that no division has fewer segments; this is not a proof."
     solution = Solution(
         instance=InstanceReference(instance.name, instance.sha256),
         search_space="paper",
@@ -84,5 +84,5 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
     )
     report = check_solution(instance, solution)
     if not report.valid:
-        raise InputError(None, None, f"is no legal division: {report.problems[0]}")
+        raise InputError(None, None, f"is not a legal division: {report.problems[0]}")
     return solution

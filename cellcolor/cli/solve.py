@@ -22,11 +22,16 @@ from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.search_end import Interrupted, end_the_search
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
-from cellcolor.cli.terminal import apart_from, complain, print_json, unheard
+from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
+from cellcolor.data import instance as instance_file
 from cellcolor.data import solution as solution_file
+from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.door.drawing import kind_of_picture
+from cellcolor.door.leaving_out import Wanted
+from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.files.writing import (
@@ -41,6 +46,8 @@ from cellcolor.files.writing import (
 from cellcolor.solvers.interface import PORTFOLIO, Options
 
 _SOLUTION = kind_of_format(solution_file.FORMAT)
+_SURFACE = kind_of_format(surface_file.FORMAT)
+_INSTANCE = kind_of_format(instance_file.FORMAT)
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,12 +59,16 @@ class Request:
         output: a file, or a folder for several inputs; None writes nothing.
         solver: the solver's name.
         options: how to solve; every file gets a deadline of its own.
-        time_limit: seconds for each file, None for as long as it takes.
+        time_limit: seconds for each file, None for no limit.
         begun: when the command began, on the clock of ``time.monotonic``: what it took to start
             counts for the first file.
         warm_start: a solution to start from.
+        wanted: what has to be covered.
+        tolerance: of scenes' parts.
         every: all optimal schemes.
         limit: with ``every``, no more schemes than that.
+        refine: whether scenes are refined until minimum and graph stay the same.
+        picture: of the steps of that.
         as_json: JSON Lines instead of tables.
     """
 
@@ -68,14 +79,20 @@ class Request:
     time_limit: float | None
     begun: float
     warm_start: Path | None
+    wanted: Wanted
+    tolerance: str | None
     every: bool
     limit: int
+    refine: bool
+    picture: Path | None
     as_json: bool
 
 
 def solve_files(request: Request) -> Exit:
     """Solve every file; a bad one does not stop the others."""
     targets = _targets(request)
+    if request.picture is not None:
+        check_output(request.picture, kind_of_picture(request.picture), _inputs(request))
     _check_able(request)
     _warn_of_workers(request.options.workers)
     with apart_from(request.output):
@@ -90,16 +107,16 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
         deadline = Deadline.after(request.time_limit, begun)
         begun = None
         try:
-            subject = read_subject(file, deadline)
-            instance = subject.graph(deadline)
+            subject = read_subject(file, deadline, request.tolerance)
+            subject.graph(deadline)
             options = replace(request.options, deadline=deadline)
-            solution = _solve(subject, file, target, request, options)
+            result = _solve(subject, file, target, request, options)
         except Interrupted:
             _say_failed(request, file, f"{file}: interrupted, nothing found yet")
             codes.append(Exit.STOPPED)
             break
         except OutOfTime:
-            message = f"{file}: unknown: the time limit came before any division was known"
+            message = f"{file}: unknown: the time limit came before any division was found"
             _say_failed(request, file, message, status="unknown")
             codes.append(Exit.STOPPED)
             continue
@@ -108,11 +125,16 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             _say_failed(request, file, str(error) if named else f"{file}: {error}")
             codes.append(Exit.BAD_INPUT)
             continue
+        instance, solution, refinement = result.instance, result.solution, result.refinement
         wrong = contradictions(instance, solution)
         if request.as_json:
             fault = {"error": "; ".join(wrong)} if wrong else {}
-            print_json({"file": str(file)} | solution.to_document() | fault)
+            share = {} if request.wanted.everything else {"covered_share": result.covered_share}
+            steps = {} if refinement is None else {"refinement": refinement.to_document()}
+            print_json({"file": str(file)} | solution.to_document() | share | steps | fault)
         else:
+            for line in [] if refinement is None else str(refinement).split("\n")[:-1]:
+                say(line)
             print_solution(instance, solution)
         for problem in wrong:
             complain(f"{file}: contradiction: {problem}")
@@ -123,6 +145,7 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             solution.status == "optimal"
             and solution.complete is not False
             and solution.cutting_paths == solution.cutting_paths_lower_bound
+            and (refinement is None or refinement.stable)
         )
         codes.append(Exit.INVALID if wrong else Exit.DONE if done else Exit.STOPPED)
         if INTERRUPTS.seen or (target is None and unheard()):
@@ -193,7 +216,7 @@ def _solve(
     target: Path | None,
     request: Request,
     options: Options,
-) -> Solution:
+) -> Result:
     """Solve one instance and write what was found."""
     from cellcolor.door.solving import solve
     from cellcolor.solvers.checked import check_able_to_list
@@ -202,7 +225,7 @@ def _solve(
     if request.every:
         check_able_to_list(request.solver, instance)
     with progress_of(file) as report, end_the_search():
-        solution = solve(
+        result = solve(
             subject,
             solver=request.solver,
             search_space=options.search_space,
@@ -212,26 +235,50 @@ def _solve(
             seed=options.seed,
             fewest_cuts=options.fewest_cuts,
             start=request.warm_start,
+            cover=request.wanted.cover,
+            required=request.wanted.required,
+            left_alone=request.wanted.left_alone,
+            refine_until_stable=request.refine,
             progress=report,
-        ).solution
+        )
+    solution = result.solution
+    beside = []
+    other = request.refine or not request.wanted.everything
+    if target is not None and not is_stream(target) and other:
+        beside = [_solved(result, target)]
+    if request.picture is not None:
+        from cellcolor.door.refining import draw_steps
+
+        draw_steps(result).save(request.picture)
     if not request.every:
         if target is not None:
             _make_folder(target)
             content = [solution.to_json().encode()]
-            write([Output(target, _SOLUTION, content)], _inputs(request))
-        return solution
+            write([*beside, Output(target, _SOLUTION, content)], _inputs(request))
+        return result
     with _spool(target) as spool:
         if INTERRUPTS.seen:
             solution = replace(solution, schemes=0, complete=False)
         else:
             with scheme_progress_of(file) as count, end_the_search():
-                solution = _with_schemes(instance, solution, request, options, spool, count)
+                solution = _with_schemes(result.instance, solution, request, options, spool, count)
         if target is not None and spool is not None:
             spool.seek(0)
             head = json.dumps(solution.to_document(), ensure_ascii=False) + "\n"
             output = Output(target, _SOLUTION, chain([head.encode()], spool))
-            write([output], _inputs(request))
-    return solution
+            write([*beside, output], _inputs(request))
+    return replace(result, solution=solution)
+
+
+def _solved(result: Result, target: Path) -> Output:
+    """What was solved, beside its solution, where that is not what was given: a finer mesh, or
+    what had to be covered; its surface, or its graph."""
+    what = "covered" if result.refinement is None else "refined"
+    beside = target.with_name(f"{target.name.removesuffix(target.suffix)}.{what}.json")
+    surface = result.surface
+    kind = _INSTANCE if surface is None else _SURFACE
+    text = (result.instance if surface is None else surface).to_json()
+    return Output(beside, kind, [text.encode()])
 
 
 def _make_folder(target: Path) -> None:
@@ -243,7 +290,7 @@ def _make_folder(target: Path) -> None:
 
 @contextmanager
 def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
-    """A file without a name, where schemes wait for the solution that goes before them.
+    """A file without a name, where schemes wait for the solution that precedes them.
 
     It is beside the target if it can, where there should be room for it.
     """

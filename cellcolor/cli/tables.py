@@ -47,7 +47,7 @@ def print_solution(instance: Instance, solution: Solution) -> None:
         shares = shares_of(instance, solution)
         out.print(_segments(instance, solution, shares))
         if not shares.certain:
-            out.print("ranges: where the cut runs through a divided cell is free, between its ends")
+            out.print("ranges: the cut through a divided cell may run anywhere between its ends")
             out.print()
     summary = Table(box=None, show_header=False, pad_edge=False)
     for name, value in [*_summary(solution), *_because(instance, solution)]:
@@ -132,7 +132,7 @@ def _extent(solution: Solution) -> str:
     if solution.complete:
         return "all of them"
     if solution.status != "optimal":
-        return "not looked for: the minimum is not proved"
+        return "not searched for: the minimum is not proved"
     return "the search was stopped, there may be more: see --limit and --time-limit"
 
 

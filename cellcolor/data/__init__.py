@@ -1,4 +1,4 @@
-"""The validated values that every stage hands on: surface, instance, solution, plan.
+"""The validated values that stages exchange: surface, instance, solution, plan.
 
-No solver and no robot in here (``docs/formats.md`` describes the files).
+This package contains no solver and no robot (``docs/formats.md`` describes the files).
 """

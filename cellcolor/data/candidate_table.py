@@ -1,7 +1,7 @@
-"""What became of every candidate of a surface, and the side file that holds it.
+"""The result for every candidate of a surface, and the side file that contains it.
 
 A candidate is a vertex and a branch of the arm's inverse kinematics. The side file lies beside a
-surface that was built from a scene; who writes it and who reads it share this class.
+surface that was built from a scene; its writer and its readers share this class.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ VALID = 0
 
 @dataclass(frozen=True, eq=False)
 class CandidateTable:
-    """What became of every candidate; ``n`` is the surface's number of vertices.
+    """The result for every candidate; ``n`` is the surface's number of vertices.
 
     Attributes:
         branches: names of the inverse-kinematic branches.
@@ -38,8 +38,8 @@ class CandidateTable:
         reasons: (n, branches) uint8 codes, the first test that a candidate failed.
         configurations: (n, branches, joints) in rad, NaN where a branch has no solution.
         node_color: (n, branches) the color of the surface that each candidate has, -1 for none.
-        surface_sha256: the fingerprint of the surface that all this is about; None in files of
-            before there were any.
+        surface_sha256: the fingerprint of the surface that the table belongs to; None in files
+            older than fingerprints.
     """
 
     branches: tuple[str, ...]
@@ -95,7 +95,7 @@ class CandidateTable:
             message = f"{reason}; build the scene again or give it"
             raise InputError(str(side), None, message) from error
         except (KeyError, ValueError, EOFError, AttributeError, zipfile.BadZipFile) as error:
-            raise InputError(str(side), None, f"is no side file: {error}") from error
+            raise InputError(str(side), None, f"is not a side file: {error}") from error
 
     @classmethod
     def beside(cls, surface: LabelledSurface, path: Path) -> CandidateTable:
@@ -121,17 +121,17 @@ class CandidateTable:
         return table
 
     def check(self, surface: LabelledSurface) -> None:
-        """Hold the table to be about a surface.
+        """Check that the table belongs to a surface.
 
         Raises:
             InputError: it is about another one, or has a code without a name.
         """
         if self.surface_sha256 is not None and self.surface_sha256 != surface.sha256:
-            message = "is of another surface; build the scene again"
+            message = "belongs to another surface; build the scene again"
             raise InputError(None, "surface_sha256", message)
         shape = (len(surface.vertices), len(self.branches))
         if self.reasons.shape != shape or self.node_color.shape != shape:
-            message = f"needs shape {shape}: it is of another surface"
+            message = f"needs shape {shape}: it belongs to another surface"
             raise InputError(None, "reasons", message)
         if self.reasons.size and self.reasons.max() >= len(self.reason_names):
             raise InputError(None, "reasons", f"unknown code {self.reasons.max()}")

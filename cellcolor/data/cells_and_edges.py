@@ -1,4 +1,4 @@
-"""Cells and edges, what an instance consists of, and what makes a topological graph of them.
+"""Cells and edges, the parts of an instance, and the rules that make them a topological graph.
 
 They are imported from :mod:`cellcolor.data.instance`.
 """
@@ -62,8 +62,8 @@ class Edge:
         id: positive; ``+id`` is its dart in the cell on the left, ``-id`` on the right.
         left: cell on the left, or ``OUTSIDE``.
         right: cell on the right, or ``OUTSIDE``.
-        colors: the joinable colors, ascending, where they are fewer than the two cells share; None
-            else.
+        colors: the joinable colors, ascending, if they are fewer than the two cells share; None
+            otherwise.
         length: metres, if known.
     """
 
@@ -97,7 +97,7 @@ def shared_colors(cells: Sequence[Cell], edge: Edge) -> set[int]:
 
 
 def check_graph(cells: Sequence[Cell], edges: Sequence[Edge], color_count: int) -> None:
-    """Refuse what is no topological graph.
+    """Reject anything that is not a topological graph.
 
     Raises:
         InputError: anything that ``docs/formats.md`` forbids, with field and element.
@@ -129,7 +129,7 @@ def _check_edges(cells: Sequence[Cell], edges: Sequence[Edge], color_count: int)
         if edge.id < 1:
             raise InputError(None, f"{where}.id", f"must be positive, is {edge.id}")
         if edge.id in seen:
-            raise InputError(None, f"{where}.id", f"edge {edge.id} stands twice")
+            raise InputError(None, f"{where}.id", f"edge {edge.id} appears twice")
         seen.add(edge.id)
         for side, cell in (("left", edge.left), ("right", edge.right)):
             if not OUTSIDE <= cell < len(cells):
@@ -166,7 +166,7 @@ def _check_darts(cells: Sequence[Cell], edges: Sequence[Edge]) -> None:
                         f"{owner[dart]} on its {side}, so this loop does not close",
                     )
                 if dart in seen:
-                    raise InputError(None, where, f"dart {dart} stands twice")
+                    raise InputError(None, where, f"dart {dart} appears twice")
                 seen.add(dart)
     for position, edge in enumerate(edges):
         for dart in (edge.id, -edge.id):
@@ -186,14 +186,14 @@ def _check_colors(colors: Sequence[int], count: int, where: str) -> None:
             raise InputError(None, where, f"unknown color {color}")
     for color, following in pairwise(colors):
         if color == following:
-            raise InputError(None, where, f"color {color} stands twice")
+            raise InputError(None, where, f"color {color} appears twice")
 
 
 def check_color_names(colors: Sequence[str]) -> None:
-    """Refuse names of colors that are not distinct: plans and pictures name colors by them.
+    """Reject color names that are not distinct: plans and pictures refer to colors by name.
 
     Raises:
-        InputError: a name stands twice.
+        InputError: a name appears twice.
     """
     first: dict[str, int] = {}
     for number, name in enumerate(colors):

@@ -20,10 +20,10 @@ class CheckError:
     """Why nothing can be said about a solution, a plan or a trajectory.
 
     Attributes:
-        file: what was to be checked, as it was named to the command; ``-`` for standard input.
+        file: what was to be checked, as the command named it; ``-`` for standard input.
         valid: null, as it is not known.
         error: what is wrong, one line that names file and member.
-        at_file: the file at fault, null where no single one is.
+        at_file: the file at fault, null if no single one is.
         at_field: the member at fault, such as ``vertex_colors[3]``, or null.
         exit_code: the command's: 2 for bad input, 3 where the time limit came first.
     """

@@ -1,4 +1,4 @@
-"""Comparing values that hold arrays: what ``==`` makes of two arrays is neither true nor false."""
+"""Comparing values that contain arrays: ``==`` of two arrays is neither true nor false."""
 
 from __future__ import annotations
 

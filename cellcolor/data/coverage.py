@@ -1,4 +1,4 @@
-"""What part of a surface a solution's numbers speak about."""
+"""The part of a surface to which a solution's numbers apply."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ Share = Annotated[float, Ge(0), Le(1)]
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """How much of a surface the cells cover; the rest is painted by nobody.
+    """How much of a surface the cells cover; nobody paints the rest.
 
     Attributes:
         area_m2: the whole surface, square metres.
         unreachable: the share of its area that no color reaches, 0 to 1.
-        given_up: the share that some color reaches and that the sliver policy took away, 0 to 1;
-            not part of ``unreachable``.
+        given_up: the share that some color reaches and that was taken away on purpose, by the
+            sliver policy or as a place to leave alone, 0 to 1; not part of ``unreachable``.
     """
 
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)

@@ -1,7 +1,7 @@
-"""Graphs in the text format of IMCGS, the solver that authors of the paper have published.
+"""Graphs in the text format of IMCGS, the solver that the paper's authors published.
 
 docs/formats.md has the format. It gives each cell one cyclic list of edges and each edge the two
-cells beside it, so that every edge is told twice; the two have to agree.
+cells beside it, so every edge appears twice, and the two have to agree.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def read_imcgs(
 
     Args:
         path: the file.
-        corrections: of edges that the file gives wrongly, see :func:`parse_correction`. They are
+        corrections: of edges that the file has wrong, see :func:`parse_correction`. They are
             written into ``meta``.
         name: of the instance; None for the file's without its ending.
 
@@ -131,7 +131,7 @@ def _lines(text: str) -> Iterable[_Line]:
         words = line.split()
         for word in words:
             if not _NUMBER.fullmatch(word):
-                raise InputError(None, f"line {number}", f"{word[:40]!r} is no whole number")
+                raise InputError(None, f"line {number}", f"{word[:40]!r} is not a whole number")
         if words:
             yield _Line(number, tuple(map(int, words)))
 

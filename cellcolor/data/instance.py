@@ -154,7 +154,7 @@ class Instance:
         }
 
     def edge(self, dart: int) -> Edge:
-        """The edge that a dart is a side of."""
+        """The edge of a dart."""
         return self._edge_by_id[abs(dart)]
 
     def joinable(self, dart: int) -> tuple[int, ...]:
@@ -195,14 +195,14 @@ class Instance:
 
     @property
     def nothing_to_cover(self) -> bool:
-        """It was made of a surface no point of which has a color.
+        """Whether it was made from a surface without any colored point.
 
-        An instance without cells and without a surface asks for nothing, which takes 0 segments.
+        An instance without cells and without a surface requires nothing, which takes 0 segments.
         """
         return not self.cells and self.coverage is not None and self.coverage.covered == 0
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it: ``cellcolor.show``, which says what ``view`` can ask for."""
+        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
         import cellcolor  # the whole package's face, which only somebody who looks at it needs
 
         return cellcolor.show(self, path, **view)
@@ -248,8 +248,8 @@ class Instance:
     def sha256(self) -> str:
         """Fingerprint of what a solver reads (docs/formats.md): the graph, no names, no sizes.
 
-        The order of edges, of loops and of a loop's first dart means nothing; the ids of cells
-        and edges are in it, since a solution names them.
+        The order of edges and of loops and the choice of a loop's first dart mean nothing. The ids
+        of cells and edges are included, since a solution names them.
         """
         return sha256_of(
             {

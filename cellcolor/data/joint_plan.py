@@ -1,4 +1,4 @@
-"""What another planner hands to the oracle of a scene in joint angles, by vertex or in order."""
+"""Another planner's joint angles for the oracle of a scene, by vertex or in order."""
 
 from __future__ import annotations
 
@@ -21,14 +21,14 @@ __all__ = ["ContactPath", "JointPlan"]
 class JointPlan:
     """A configuration for each vertex of a scene's surface.
 
-    It has a name of its own because a bare array of joint angles could be a path as well.
+    It has its own type because a bare array of joint angles could also be a path.
 
     Attributes:
-        joints: (n, joints) float64, rad, modulo full circles, in m of prismatic ones; a row of NaN
+        joints: (n, joints) float64, rad, modulo full circles (m for prismatic joints); a row of NaN
             where the vertex gets no contact.
 
     Raises:
-        InputError: that is no such array, or a row has some numbers and some NaN.
+        InputError: it is not such an array, or a row has some numbers and some NaN.
     """
 
     joints: NDArray[np.float64]
@@ -51,16 +51,16 @@ class JointPlan:
 class ContactPath:
     """A tool path with the joints that drive it: samples in their order.
 
-    A stretch of samples in contact is a **stroke**; between two strokes the tool is lifted off.
+    A run of consecutive samples in contact is a **stroke**; the tool lifts off between strokes.
 
     Attributes:
-        joints: (k, joints) float64, rad, modulo full circles, in m of prismatic ones.
-        points: (k, 3) float64, where the tool's tip is, in the world, m, to be held against the
-            joints; None leaves it to them.
-        contact: (k,) whether the tool is on the surface; None for all along: one stroke.
+        joints: (k, joints) float64, rad, modulo full circles (m for prismatic joints).
+        points: (k, 3) float64, where the tool's tip is, in the world, m, to be compared with the
+            joints; None takes it from them.
+        contact: (k,) whether the tool is on the surface; None for always, one stroke.
 
     Raises:
-        InputError: these are no such arrays, or have different lengths.
+        InputError: these are not such arrays, or have different lengths.
     """
 
     joints: NDArray[np.float64]

@@ -43,7 +43,7 @@ class LowerBound:
     """No division has fewer segments.
 
     Attributes:
-        value: so many.
+        value: this many.
         kind: how it was proved, a kind of the bounds of solutions (docs/formats.md).
         verified: whether the checker verifies it by a certificate, without a solver.
         solver: what found it.
@@ -66,14 +66,14 @@ class LowerBound:
 
 @dataclass(frozen=True, slots=True)
 class UpperBound:
-    """A division has so many segments.
+    """A division has this many segments.
 
     Attributes:
-        value: so many.
+        value: this many.
         solver: what found the division.
         version: of that solver.
         date: when it was found, as 2026-11-22.
-        solution: the file with the division, seen from the index; null where it is not here.
+        solution: the file with the division, seen from the index; null if it is not here.
     """
 
     __pydantic_config__ = _STRICT
@@ -94,7 +94,7 @@ class KnownRange:
 
     Attributes:
         lower: the best lower bound.
-        upper: the best division; null where none is known.
+        upper: the best division; null if none is known.
     """
 
     __pydantic_config__ = _STRICT
@@ -122,7 +122,7 @@ class OutsideFile:
     """A file that is not here, and how it becomes the instance: ``cellcolor import``.
 
     Attributes:
-        place: where it is to be had.
+        place: where it can be found.
         corrections: of lines of the file, as ``--correct`` takes them.
     """
 
@@ -141,18 +141,18 @@ class LibraryEntry:
 
     Attributes:
         name: what it is called.
-        family: what it is one of.
-        source: where it comes from, or what makes it again.
+        family: the family that it belongs to.
+        source: where it comes from, or how to make it again.
         license: that of the graph, an SPDX identifier; null where none is stated.
         file: an instance, or a labelled surface that is decomposed into one, seen from the index;
             null where the graph is not here.
-        outside: where it is to be had then; null of a file that is here.
+        outside: where it can be found otherwise; null for a file that is here.
         sha256: of the bytes of the file, be it here or outside.
         fingerprint: of the graph: what solutions refer to it by (docs/formats.md).
         cells: how many.
         edges: how many.
-        darts: live darts of the cell that has most of them.
-        loops: loops with live darts of the cell that has most of them.
+        darts: live darts of the cell with the most of them.
+        loops: loops with live darts of the cell with the most of them.
         colors: how many.
         holes: loops beyond the first of all cells together, dead ones included.
         paper: where the minimum lies in the search space ``paper``.
@@ -200,7 +200,7 @@ class LibraryEntry:
     def beaten_by(
         self, solution: Solution, bounds: Iterable[tuple[Extent, int, bool]]
     ) -> list[str]:
-        """What a valid solution of this graph shows that the entry does not know, a line each.
+        """What a valid solution of this graph proves beyond the entry, one line each.
 
         Args:
             solution: the division, in either search space.
@@ -248,7 +248,7 @@ class LibraryIndex:
         names = Counter(entry.name for entry in self.entries)
         for place, entry in enumerate(self.entries):
             if names[entry.name] > 1:
-                raise InputError(None, f"entries[{place}].name", f"{entry.name!r} stands twice")
+                raise InputError(None, f"entries[{place}].name", f"{entry.name!r} appears twice")
 
     def __getitem__(self, name: str) -> LibraryEntry:
         """The entry of a name.

@@ -1,4 +1,4 @@
-"""A plan: what another planner hands to the oracle, one color per vertex."""
+"""A plan: another planner's one color per vertex, for the oracle to judge."""
 
 from __future__ import annotations
 

@@ -39,11 +39,11 @@ class PlanViolation:
 
 @dataclass(frozen=True, slots=True)
 class SegmentRange:
-    """Between what a number of segments lies, both ends included.
+    """The range of a number of segments, both ends included.
 
     Attributes:
         lower: there cannot be fewer.
-        upper: so many are known to be enough.
+        upper: this many are known to be enough.
     """
 
     __pydantic_config__ = _STRICT
@@ -60,8 +60,8 @@ class PlanImprovement:
         joined: two segments of the plan that can be one, numbered by their first vertices, 0 being
             that of the first vertex with a color.
         places: a vertex of each, well inside what can be joined.
-        segments: of a better painting, on the surface refined where it has to be.
-        segments_on_mesh: of what is left of that painting on the mesh as it is.
+        segments: of a better painting, on the surface refined where necessary.
+        segments_on_mesh: of that painting as far as the unrefined mesh can show it.
         vertex_colors: the better plan on the mesh as it is; null where the mesh is too coarse for
             it to have fewer segments than the plan that was judged.
     """
@@ -77,10 +77,10 @@ class PlanImprovement:
 
 @dataclass(frozen=True, slots=True)
 class PlanVerdict:
-    """What is to be said about a plan.
+    """The verdict on a plan.
 
     Attributes:
-        file: the plan as it was named to the command; ``-`` for standard input.
+        file: the plan as the command named it; ``-`` for standard input.
         valid: every reachable vertex has one of its colors, and no other vertex has one.
         text: the verdict in a sentence.
         problems: why the plan is not valid, each naming its vertex; empty when it is.

@@ -1,4 +1,4 @@
-"""Curves and points, to be drawn on two axes."""
+"""Curves and points to draw on two axes."""
 
 from __future__ import annotations
 

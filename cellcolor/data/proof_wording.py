@@ -3,51 +3,19 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
+from cellcolor.data.bounds.kinds import kind_of
 from cellcolor.data.wording import count, listed
 
 if TYPE_CHECKING:
-    from cellcolor.data.bound import Bound
-    from cellcolor.data.coverage import Coverage
     from cellcolor.data.instance import Instance
+    from cellcolor.data.solution import Solution
 
 __all__ = ["in_words", "reason_of", "witness_in_words"]
 
-_REASONS = {
-    "strangers": "that many cells cannot share a segment, no two of them",
-    "cover": "fewer color regions cannot touch every cell",
-    "conflicts": "fewer segments would have to cross each other",
-    "hubs": "more connections do not fit side by side into cells with many edges",
-    "crossings": "the full model has nothing better, and more strands would be of no use",
-}
-"""Why no division of the surface has fewer segments, for each kind of bound (docs/formats.md)."""
 
-
-class _Answer(Protocol):
-    """What of a :class:`~cellcolor.data.solution.Solution` is said in words."""
-
-    @property
-    def segments(self) -> int | None: ...
-    @property
-    def lift_offs(self) -> int | None: ...
-    @property
-    def status(self) -> str: ...
-    @property
-    def search_space(self) -> str: ...
-    @property
-    def lower_bound(self) -> int: ...
-    @property
-    def surface_lower_bound(self) -> int: ...
-    @property
-    def proved_for_surface(self) -> bool: ...
-    @property
-    def bounds(self) -> tuple[Bound, ...] | None: ...
-    @property
-    def coverage(self) -> Coverage | None: ...
-
-
-def in_words(solution: _Answer, reason: str | None = None) -> str:
+def in_words(solution: Solution, reason: str | None = None) -> str:
     """Segments, lift-offs and proof, like ``2 segments, 1 lift-off, optimal: proved for …``.
 
     Args:
@@ -73,7 +41,7 @@ def in_words(solution: _Answer, reason: str | None = None) -> str:
     )
 
 
-def reason_of(solution: _Answer) -> str | None:
+def reason_of(solution: Solution) -> str | None:
     """Why no division of the surface has fewer segments, by the kind of its greatest bound.
 
     None where nothing needs a reason (a single segment) or none is given in the solution.
@@ -82,7 +50,7 @@ def reason_of(solution: _Answer) -> str | None:
         return None
     for bound in solution.bounds or ():
         if bound.holds_for == "surface" and bound.value == solution.surface_lower_bound:
-            return _REASONS.get(bound.kind)
+            return kind_of(bound).because or None
     return None
 
 

@@ -1,13 +1,17 @@
-"""A topological graph without some of its cells: what is left out on purpose is outside."""
+"""What is left out on purpose: a graph without some cells, a surface without some colors."""
 
 from __future__ import annotations
 
 from collections.abc import Collection
 from dataclasses import replace
 
-from cellcolor.data.instance import OUTSIDE, Edge, Instance
+import numpy as np
 
-__all__ = ["without_cells"]
+from cellcolor.arrays import Mask
+from cellcolor.data.instance import OUTSIDE, Edge, Instance
+from cellcolor.data.surface import LabelledSurface
+
+__all__ = ["without_cells", "without_vertices"]
 
 
 def without_cells(instance: Instance, left_out: Collection[int]) -> tuple[Instance, list[int]]:
@@ -15,7 +19,7 @@ def without_cells(instance: Instance, left_out: Collection[int]) -> tuple[Instan
 
     Args:
         instance: the topological graph.
-        left_out: its cells that nobody covers.
+        left_out: its cells that are not to be covered.
 
     Returns:
         The graph of the other cells, which are numbered anew in the same order, without a
@@ -36,3 +40,16 @@ def without_cells(instance: Instance, left_out: Collection[int]) -> tuple[Instan
         instance, cells=cells, edges=tuple(edges), surface=None, known=None, coverage=None
     )
     return graph, kept
+
+
+def without_vertices(surface: LabelledSurface, mask: Mask) -> LabelledSurface:
+    """The surface without colors at some vertices (n,), which it gives up."""
+    out = np.flatnonzero(mask).tolist()
+    colors = list(surface.vertex_colors)
+    given_up = {*surface.given_up, *(vertex for vertex in out if colors[vertex])}
+    for vertex in out:
+        colors[vertex] = ()
+    cracks = tuple(crack for crack in surface.cracks if not (mask[crack.i] or mask[crack.j]))
+    return replace(
+        surface, vertex_colors=tuple(colors), given_up=tuple(sorted(given_up)), cracks=cracks
+    )

@@ -1,4 +1,4 @@
-"""Arrays that values hold: of one kind and shape, finite, copies that nobody can change."""
+"""Arrays in values: of one kind and shape, finite, copies that nobody can change."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The segments of a solution as rows: what every table of them says."""
+"""The segments of a solution as rows, the same for every table."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ class SegmentRow:
     Attributes:
         segment: its number.
         color: the name of its color.
-        whole: the cells that it has all of.
-        parts: the cells that it has a part of.
+        whole: the cells that it covers fully.
+        parts: the cells that it covers partly.
         share: the least and the greatest share that it can have, 0 to 1.
     """
 

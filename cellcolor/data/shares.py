@@ -1,4 +1,4 @@
-"""What share of a surface each segment of a solution has; the same numbers wherever they stand."""
+"""The share of a surface that each segment of a solution has, the same numbers everywhere."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from cellcolor.data.solution import Solution
 __all__ = ["GIVEN_UP", "UNREACHABLE", "Range", "Shares", "percent", "shares_of"]
 
 UNREACHABLE = "unreachable"
-GIVEN_UP = "given up by the sliver policy"
+GIVEN_UP = "given up"
 
 Range = tuple[float, float]
 """The least and the greatest share, 0 to 1."""
@@ -19,16 +19,17 @@ Range = tuple[float, float]
 
 @dataclass(frozen=True, slots=True)
 class Shares:
-    """How a surface falls to the segments and to nobody.
+    """How a surface is divided among the segments, and what stays unpainted.
 
     Attributes:
         of: what the shares are of: the whole ``surface``; the ``cells`` where it is not known how
             much of the surface these are; the ``number`` of cells where their areas are not known
             either.
-        segments: of each segment. How a cell that is divided between segments falls to them is
-            not known: where the cut runs is free, so each of them has from nothing to all of it.
+        segments: of each segment. A cell that is divided between segments gives a range: the cut
+            may run anywhere, so each of them has from nothing to all of it.
         unreachable: of what no color reaches; 0 where ``of`` is not the surface.
-        given_up: of what a sliver policy took away; 0 where ``of`` is not the surface.
+        given_up: of what a sliver policy took away or is left alone on purpose; 0 where ``of`` is
+            not the surface.
     """
 
     of: Literal["surface", "cells", "number"]
@@ -68,6 +69,6 @@ def shares_of(instance: Instance, solution: Solution) -> Shares:
 
 
 def percent(least: float, most: float) -> str:
-    """A share as text, a range only where one can be told."""
+    """A share as text; a range only if its ends differ visibly."""
     low, high = f"{100 * least:.1f}", f"{100 * most:.1f}"
     return f"{low} %" if low == high else f"{low}–{high} %"

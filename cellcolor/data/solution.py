@@ -1,9 +1,10 @@
-"""What a solver hands back: a division of every cell into colored sub-cells, and its proof."""
+"""A solver's answer: a division of every cell into colored sub-cells, and its proof."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from os import PathLike
 from typing import Annotated, Any, Literal
@@ -11,6 +12,7 @@ from typing import Annotated, Any, Literal
 from pydantic import ConfigDict, Field, NonNegativeFloat, NonNegativeInt, PositiveInt, TypeAdapter
 
 from cellcolor.data.bound import Bound
+from cellcolor.data.bounds.kinds import certificate_of
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.darts import DartName, twin
 from cellcolor.data.proof_wording import in_words
@@ -77,7 +79,7 @@ Division = tuple[CellDivision, ...]
 
 
 def count_segments(division: Division) -> int:
-    """How many segments a division has whose segments are numbered."""
+    """The number of segments of a division with numbered segments."""
     return len({sub.segment for cell in division for sub in cell.subcells})
 
 
@@ -85,7 +87,7 @@ SchemeKey = tuple[frozenset[tuple[int, frozenset[DartName]]], ...]
 
 
 def scheme_key(division: Division) -> SchemeKey:
-    """What two schemes have in common exactly when they are the same (states, blocks, colors)."""
+    """A key that two schemes share exactly when they are the same (states, blocks, colors)."""
     return tuple(
         frozenset((sub.color, frozenset(sub.darts)) for sub in cell.subcells) for cell in division
     )
@@ -161,7 +163,7 @@ class Solution:
             space with as few segments has fewer.
         bounds: how ``lower_bound`` and ``surface_lower_bound`` were proved, each the greatest of
             its kind in here; None where that is not said, as in files of version 1.
-        coverage: the instance's, so that shares can be told from the solution alone.
+        coverage: the instance's, so that the solution alone gives the shares.
         notes: what was left out and why, a sentence each.
     """
 
@@ -210,17 +212,17 @@ class Solution:
     def witness(self) -> tuple[int, ...]:
         """As many cells as there are segments, no two of which can be in one segment; ascending.
 
-        They come from the certificate of the bound that proves the number. There are none where the
-        number is not proved for any division, where one segment is enough or more than 12 are
-        needed, and where the certificate has other cells or there is none.
+        They come from the certificate of the bound that proves the number. There are none if the
+        number is not proved for any division, if one segment is enough or more than 12 are
+        needed, or if the certificate is missing or has other cells.
         """
         wanted = self.segments or 0
         if self.proved_for_surface and 1 < wanted <= _MOST_WITNESSES:
             for bound in self.bounds or ():
-                cells = (bound.certificate or {}).get("cells", ())
-                # So many cells that as many color regions are needed: no region touches two.
-                if bound.kind == "cover" and bound.value == wanted == len(cells):
-                    return tuple(cells)
+                with suppress(InputError):  # a certificate that says nothing
+                    certificate = certificate_of(bound) if bound.value == wanted else None
+                    if certificate is not None and (cells := certificate.witness(wanted)):
+                        return cells
         return ()
 
     def __str__(self) -> str:

@@ -20,7 +20,7 @@ _Count = Annotated[int, Field(ge=0)]
 
 @dataclass(frozen=True, slots=True)
 class CheckedBound:
-    """What came of verifying a solution's bound.
+    """The outcome of verifying a solution's bound.
 
     Attributes:
         kind: how the bound was proved.
@@ -45,10 +45,10 @@ class CheckedBound:
 
 @dataclass(frozen=True, slots=True)
 class SolutionVerdict:
-    """What is to be said about a solution.
+    """The verdict on a solution.
 
     Attributes:
-        file: the solution as it was named to the command; ``-`` for standard input.
+        file: the solution as the command named it; ``-`` for standard input.
         valid: nothing is wrong with its division, its numbers and its schemes.
         problems: what is wrong, each naming its element; empty when it is valid.
         segments: counted in its division; null when that is not legal.

@@ -151,7 +151,7 @@ class LabelledSurface:
                 if not 0 <= color < len(self.colors):
                     raise InputError(None, f"vertex_colors[{vertex}]", f"unknown color {color}")
             if len(set(colors)) != len(colors):
-                raise InputError(None, f"vertex_colors[{vertex}]", "a color stands twice")
+                raise InputError(None, f"vertex_colors[{vertex}]", "a color appears twice")
 
     def _check_cracks(self) -> None:
         seen: set[tuple[int, int]] = set()
@@ -159,12 +159,12 @@ class LabelledSurface:
             where = f"cracks[{number}]"
             pair = (min(crack.i, crack.j), max(crack.i, crack.j))
             if pair not in self.left_of and pair[::-1] not in self.left_of:
-                raise InputError(None, where, f"{crack.i}-{crack.j} is no edge of the mesh")
+                raise InputError(None, where, f"{crack.i}-{crack.j} is not an edge of the mesh")
             if pair in seen:
                 raise InputError(None, where, f"edge {crack.i}-{crack.j} has a crack already")
             seen.add(pair)
             if not crack.colors or len(set(crack.colors)) != len(crack.colors):
-                raise InputError(None, where, "needs one color or more, each once")
+                raise InputError(None, where, "needs at least one color, each once")
             shared = set(self.vertex_colors[crack.i]) & set(self.vertex_colors[crack.j])
             for color in crack.colors:
                 if not 0 <= color < len(self.colors):
@@ -184,7 +184,7 @@ class LabelledSurface:
             if self.vertex_colors[vertex]:
                 raise InputError(None, where, f"vertex {vertex} has colors")
             if vertex in self.given_up[place - 1 : place]:
-                raise InputError(None, where, f"vertex {vertex} stands twice")
+                raise InputError(None, where, f"vertex {vertex} appears twice")
 
     @cached_property
     def left_of(self) -> dict[tuple[int, int], int]:
@@ -196,7 +196,7 @@ class LabelledSurface:
 
     @cached_property
     def mesh(self) -> TriangleMesh:
-        """The mesh alone, with what follows from it."""
+        """The mesh alone, with everything computed from it."""
         return TriangleMesh(self.vertices, self.faces)
 
     @property
@@ -238,7 +238,7 @@ class LabelledSurface:
         )
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it: ``cellcolor.show``, which says what ``view`` can ask for."""
+        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
         import cellcolor  # the whole package's face, which only somebody who looks at it needs
 
         return cellcolor.show(self, path, **view)

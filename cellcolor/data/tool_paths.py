@@ -49,7 +49,7 @@ class ToolPath:
         object.__setattr__(self, "normals", rows_of_three(self.normals, "normals"))
         object.__setattr__(self, "faces", integers(self.faces, "faces"))
         if len(self.points) < 2:
-            raise InputError(None, "points", "a path needs two points or more")
+            raise InputError(None, "points", "a path needs at least two points")
         if len(self.normals) != len(self.points):
             message = f"has {len(self.normals)} entries for {len(self.points)} points"
             raise InputError(None, "normals", message)
@@ -82,7 +82,7 @@ class ToolPaths:
     Attributes:
         name: what to call it.
         pattern: how the paths were laid out, such as ``contour``.
-        spacing_m: wanted distance between neighboring passes, m.
+        spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         paths: see :class:`ToolPath`.
         surface_sha256: fingerprint of the labelled surface that they lie on.

@@ -87,7 +87,7 @@ def _parsed(name: str, text: str) -> TrajectoryTable:
             )
             _check_kinds(columns, rows[-1], line)
     except csv.Error as error:
-        raise InputError(None, f"line {reader.line_num}", f"is no CSV: {error}") from error
+        raise InputError(None, f"line {reader.line_num}", f"is not CSV: {error}") from error
     table = np.array(rows, dtype=np.float64).reshape(len(rows), len(columns))
     place = {column: k for k, column in enumerate(columns)}
     return TrajectoryTable(
@@ -111,10 +111,10 @@ def _checked(columns: list[str]) -> list[str]:
     for number, column in enumerate(columns, start=1):
         field = f"line 1, column {number}"
         if column in columns[: number - 1]:
-            raise InputError(None, field, f"{column!r} stands twice")
+            raise InputError(None, field, f"{column!r} appears twice")
         if column not in _OTHERS and not re.fullmatch(r"q[1-9][0-9]?", column):
             known = ", ".join((*_OTHERS, "q1", "q2", "…"))
-            raise InputError(None, field, f"{column!r} is no known column: {known}")
+            raise InputError(None, field, f"{column!r} is not a known column: {known}")
     joints = [f"q{k}" for k in range(1, 1 + sum(column.startswith("q") for column in columns))]
     needed = ["contact", *(joints or ["q1"])]
     if set(columns) & set(_POSE):
@@ -129,7 +129,7 @@ def _number(cell: str, field: str) -> float:
     try:
         number = float(cell)
     except ValueError as error:
-        raise InputError(None, field, f"is no number: {cell.strip()[:40]!r}") from error
+        raise InputError(None, field, f"is not a number: {cell.strip()[:40]!r}") from error
     if not math.isfinite(number):
         raise InputError(None, field, "is not a finite number")
     return number

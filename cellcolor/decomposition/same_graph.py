@@ -130,7 +130,7 @@ def _shapes(
 
 
 def _walk(first: int, following: Mapping[int, int]) -> list[int]:
-    """All darts that hang together with one, in the order in which they are met from there."""
+    """All darts connected with one, in the order in which they are met from there."""
     met = {first: None}
     order = [first]
     for dart in order:  # which grows meanwhile

@@ -1,4 +1,4 @@
-"""What is claimed of a surface: a plan, a solution or a trajectory, told by its file or type."""
+"""Claims about a surface: a plan, a solution or a trajectory, identified by its file or type."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
 
 
 def format_of_claim(file: str | PathLike[str]) -> str | None:
-    """The format of what is to be checked; tables are told by their suffix, None if unreadable."""
+    """The format of a claim, None if unreadable; the suffix identifies tables."""
     if _is_table(file):
         return trajectory_file.FORMAT
     try:
@@ -37,7 +37,7 @@ def format_of_claim(file: str | PathLike[str]) -> str | None:
 
 
 def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
-    """A plan, a trajectory, or else a solution, whichever the file says it is.
+    """Read a plan, a trajectory or a solution, as the file says.
 
     Raises:
         InputError: it cannot be used; names file and member.
@@ -63,7 +63,7 @@ def _is_table(file: str | PathLike[str]) -> bool:
 
 
 def color_numbers(surface: LabelledSurface, plan: Any) -> Any:
-    """One color per vertex as a plan has them; what is no such thing is left to the plan.
+    """One color per vertex as a plan has them; anything else is left for the plan to reject.
 
     Args:
         plan: numbers, names, or None for none; in an array of integers -1 for none.
@@ -75,7 +75,7 @@ def color_numbers(surface: LabelledSurface, plan: Any) -> Any:
         return [None if color == -1 else color for color in plan.tolist()]
     if isinstance(plan, np.ndarray) and plan.ndim == 2:
         message = (
-            f"is an array {plan.shape}; joint angles are handed in as cellcolor.JointPlan, a row "
+            f"is an array {plan.shape}; pass joint angles as cellcolor.JointPlan, a row "
             "for each vertex, or as cellcolor.ContactPath, a row for each sample"
         )
         raise InputError(None, "vertex_colors", message)

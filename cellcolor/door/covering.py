@@ -40,14 +40,14 @@ def cover(
         surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.
         plan: one color for each vertex of it, or the file of that; None with a ``Painted``.
         pattern: ``contour``, ``back-and-forth`` or ``tree``, or what another package registers.
-        spacing_m: wanted distance between neighboring passes, m.
+        spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
-        time_limit: seconds, None for as long as it takes.
+        time_limit: seconds, None for no limit.
         progress: told the name of each stage as it begins.
 
     Returns:
-        The paths, with what they cover, how often they pass and what is left uncovered.
+        The paths, with the area they cover, how often they pass it and what stays uncovered.
 
     Raises:
         InputError: something cannot be used, or the plan does not fit the surface.
@@ -56,7 +56,7 @@ def cover(
     deadline = Deadline.of(time_limit)
     if isinstance(surface, Painted):
         if plan is not None:
-            raise InputError(None, "plan", "is given already by what was painted")
+            raise InputError(None, "plan", "is already set by what was painted")
         painted = surface
         surface, plan = painted.surface, painted.plan
     elif not isinstance(surface, LabelledSurface):

@@ -1,15 +1,17 @@
-"""Pictures of whatever was opened: which parts they need, and the files that they go to."""
+"""Pictures of any opened subject: the parts that they need, and the files that they go to."""
 
 from __future__ import annotations
 
 import html
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from numbers import Integral
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
@@ -22,16 +24,17 @@ from cellcolor.pictures.interface import Given
 from cellcolor.pictures.registry import make_picture
 
 if TYPE_CHECKING:
+    from cellcolor.checker.certificates import BoundVerdict
     from cellcolor.pictures.interface import Drawn, Picture, Source
 
-__all__ = ["Drawing", "View", "draw", "kind_of_picture", "picture_of"]
+__all__ = ["Drawing", "View", "draw", "kind_of_picture", "kind_of_plot", "picture_of"]
 
 _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Drawing:
-    """A picture, drawn but in no file yet; a notebook shows it, to be turned with the mouse.
+    """A picture, drawn but not saved; a notebook shows it, and the mouse turns it.
 
     Attributes:
         picture: what it consists of.
@@ -55,7 +58,7 @@ class Drawing:
             return static.render(self.picture, suffix[1:])
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write it to a file .html, .png or .svg; nothing but an older picture is overwritten.
+        """Write it to a file .html, .png or .svg; only an older picture is overwritten.
 
         Raises:
             InputError: another ending, something else is there, or it cannot be written.
@@ -108,8 +111,19 @@ def kind_of_picture(path: Path) -> FileKind:
     return kind
 
 
+def kind_of_plot(path: Path) -> FileKind:
+    """The kind of file that curves on axes go to.
+
+    Raises:
+        InputError: no such file has this ending.
+    """
+    if path.suffix not in (".png", ".svg"):
+        raise InputError(str(path), None, "must end in .png or .svg")
+    return _KINDS[path.suffix]
+
+
 def picture_of(view: View) -> Picture:
-    """The picture that a view names, which takes what the view gives and lacks nothing.
+    """The picture that a view names, if the view gives exactly what it needs.
 
     Raises:
         InputError: there is no such picture, or an option is missing or too much.
@@ -131,7 +145,7 @@ def picture_of(view: View) -> Picture:
 
 
 def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
-    """A picture, drawn of the parts that it declares.
+    """Draw a picture from the parts that it declares.
 
     Args:
         picture: what :func:`picture_of` has for the view.
@@ -156,12 +170,17 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     def branch() -> int:
         return _number(subject.reasons.branches, view.branch, file, "branch")
 
+    @cache
+    def checked() -> tuple[Solution, tuple[BoundVerdict, ...]]:
+        return _checked(subject, view.solution, on_surface="verdicts" in picture.needs)
+
     make: dict[Source, Callable[[], object]] = {
         "build": subject.build,
         "surface": lambda: subject.surface,
         "graph": subject.graph,
         "decomposition": lambda: subject.decomposition,
-        "solution": lambda: _solution(subject, view.solution),
+        "solution": lambda: checked()[0],
+        "verdicts": lambda: checked()[1],
         "plan": lambda: view.plan if isinstance(view.plan, Plan) else Plan.read(view.plan or ""),
         "reasons": lambda: subject.reasons,
         "color": color,
@@ -199,16 +218,27 @@ def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, f
     raise InputError(file, field, f"no {asked!r} among {known}")
 
 
-def _solution(subject: Subject, claim: Solution | str | PathLike[str] | None) -> Solution:
-    """A solution that has a division, and is valid for the subject."""
+def _checked(
+    subject: Subject, claim: Solution | str | PathLike[str] | None, *, on_surface: bool
+) -> tuple[Solution, tuple[BoundVerdict, ...]]:
+    """A solution that has a division and is valid for the subject, and its bounds verified.
+
+    Args:
+        subject: what it solves.
+        claim: the solution or its file.
+        on_surface: whether certificates are verified by the mesh and not by the graph.
+    """
     assert claim is not None
     file = None if isinstance(claim, Solution) else str(claim)
     solution = claim if isinstance(claim, Solution) else Solution.read(claim)
     instance = subject.graph()
-    problems = check_solution(instance, solution).problems
-    if problems:
-        message = f"no valid solution of {subject.path or instance.name}: {problems[0]}"
+    regions = None
+    if on_surface:
+        regions = regions_on_surface(subject.surface, subject.decomposition.vertex_cell)
+    report = check_solution(instance, solution, regions)
+    if report.problems:
+        message = f"no valid solution of {subject.path or instance.name}: {report.problems[0]}"
         raise InputError(file, None, message)
     if solution.cells is None:
         raise InputError(file, "cells", "no division was found")
-    return solution
+    return solution, report.bounds

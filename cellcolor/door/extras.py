@@ -1,4 +1,4 @@
-"""What needs an extra that is not installed."""
+"""Errors for extras that are not installed."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _EXTRAS = {
 
 @contextmanager
 def extras_for(path: Path | str) -> Iterator[None]:
-    """Turn the lack of an extra into a line that says what to install for a file or a purpose."""
+    """Turn a missing extra into a line that says what to install for a file or a purpose."""
     try:
         yield
     except ModuleNotFoundError as error:
@@ -42,7 +42,7 @@ def extras_for(path: Path | str) -> Iterator[None]:
 
 
 def require_motion(purpose: str, modules: Sequence[str]) -> None:
-    """Refuse at once what would end for lack of the extra ``motion`` when it first lays a path.
+    """Fail at once if the extra ``motion`` is missing, not only when the first path is laid.
 
     Args:
         purpose: what the modules are needed for.

@@ -1,4 +1,4 @@
-"""Plans in joint angles at the front door: what they come to in colors of their scene."""
+"""Plans in joint angles at the front door, converted to colors of their scene."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ _NO_COLOR = -1  # in a plan: a configuration of no color, which no vertex has
 
 @dataclass(frozen=True)
 class PathColors:
-    """What a path comes to.
+    """The coloring that a path makes.
 
     Attributes:
         path: its samples.
-        coloring: what its contacts make of the surface.
-        violations: the vertices that get no contact in a color of theirs.
+        coloring: the coloring of the surface by its contacts.
+        violations: the vertices that get no contact in one of their colors.
         problems: the same in sentences, after those about samples.
         reachable: how many vertices have colors.
     """
@@ -52,7 +52,7 @@ class PathColors:
 def colors_of_joints(
     subject: Subject, plan: JointPlan, deadline: Deadline = NEVER
 ) -> tuple[Plan, tuple[JointViolation, ...]]:
-    """The plan in colors that a configuration for each vertex comes to, and what is wrong in it.
+    """The plan in colors that one configuration per vertex gives, and what is wrong in it.
 
     In the plan -1 stands for a configuration of no color, which no vertex has.
 
@@ -72,7 +72,7 @@ def colors_of_joints(
     found = at_vertices(built, given, joints[given], deadline)
     colors: list[int | None] = [None] * len(joints)
     reasons: dict[int, str] = {
-        vertex: f"no configuration, but colors {list(own)} reach it"
+        vertex: f"no configuration, but colors {list(own)} reach this vertex"
         for vertex, own in enumerate(surface.vertex_colors)
         if own
     }
@@ -88,7 +88,7 @@ def colors_of_joints(
 
 
 def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER) -> PathColors:
-    """What a tool path comes to in colors, and which vertices it does not touch in any of theirs.
+    """The colors that a tool path gives, and the vertices that it touches in none of their colors.
 
     Raises:
         InputError: the subject is no scene, or the path is of another arm.
@@ -143,6 +143,6 @@ def _violation(
 
 def _built(subject: Subject) -> BuildResult:
     if subject.built is None:
-        message = "need the scene with its arm, and this is a labelled surface or an instance alone"
+        message = "need the scene with its arm; this is only a labelled surface or an instance"
         raise InputError(None, "joints", message)
     return subject.built

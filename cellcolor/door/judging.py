@@ -19,28 +19,40 @@ from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.claims import ReadTrajectory, format_of_claim, read_trajectory
 from cellcolor.door.extras import extras_for
+from cellcolor.door.leaving_out import left_alone as without_place
 from cellcolor.door.oracle import AnyPlan, Oracle
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_claim
 from cellcolor.door.subject import Solvable, Subject, open_subject
 from cellcolor.oracle import ProvenRange, Verdict, prove
+from cellcolor.questions.places import Place
 
 __all__ = ["check", "judge", "judge_trajectory", "proven_range"]
 
 
 @overload
-def check(instance: Solvable, solution: Solution | Result) -> Report: ...
+def check(
+    instance: Solvable, solution: Solution | Result, *, left_alone: Place | None = None
+) -> Report: ...
 
 
 @overload
 def check(
-    instance: Solvable, solution: Trajectory, *, time_limit: TimeLimit = 60.0
+    instance: Solvable,
+    solution: Trajectory,
+    *,
+    left_alone: Place | None = None,
+    time_limit: TimeLimit = 60.0,
 ) -> TrajectoryVerdict: ...
 
 
 @overload
 def check(
-    instance: Solvable, solution: str | PathLike[str], *, time_limit: TimeLimit = 60.0
+    instance: Solvable,
+    solution: str | PathLike[str],
+    *,
+    left_alone: Place | None = None,
+    time_limit: TimeLimit = 60.0,
 ) -> Any: ...
 
 
@@ -48,28 +60,32 @@ def check(
     instance: Solvable,
     solution: Solution | Result | Trajectory | str | PathLike[str],
     *,
+    left_alone: Place | None = None,
     time_limit: TimeLimit = 60.0,
 ) -> Report | TrajectoryVerdict:
     """An independent checker's opinion of a solution or of a trajectory.
 
-    Of a solution its division is checked, and every number in it. What the instance itself says is
-    known (``known``) must not be contradicted either. Lower bounds are verified by their
-    certificates; those without one are taken on trust as far as nothing contradicts them
-    (docs/semantics.md). An instance that names its surface is held against that, if it is at hand.
-    A trajectory is held against its scene, with the proven minimum of
-    lift-offs beside its own (docs/judging-trajectories.md).
+    A solution's division is checked, and every number in it. It must not contradict what the
+    instance says is known (``known``). Lower bounds are verified by their certificates; a bound
+    without one is trusted unless something contradicts it (docs/semantics.md). An instance that
+    names its surface is compared with it, if the surface is available. A trajectory is judged by
+    its scene, and its lift-offs are compared with the proven minimum
+    (docs/judging-trajectories.md).
 
     Args:
         instance: what was solved: an instance, a labelled surface or a scene; its file, its
             shipped name, the value. A scene for a trajectory.
         solution: the solution, the trajectory, or the file of one of them, of a shipped solution
             its name; tables of trajectories are told by their suffix, ``.csv``.
+        left_alone: vertices of the surface that were left out on purpose: a mask (n,), a
+            :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives up, such
+            as ``instance.surface.json`` of a plan.
         time_limit: seconds for all of it with a trajectory; None for as long as it takes.
 
     Returns:
-        Of a solution what is wrong, ``problems``, each naming its element; the segments counted;
-        and for each of the solution's bounds whether it was verified. Of a trajectory its verdict.
-        Type checkers are told ``Any`` of a file.
+        A solution's report has what is wrong (``problems``, each naming its element), the segments
+        counted, and for each bound whether it was verified. For a trajectory it is the verdict.
+        For a file the type is ``Any``.
 
     Raises:
         InputError: one of the two cannot be used.
@@ -80,11 +96,13 @@ def check(
     if isinstance(solution, Path) and format_of_claim(solution) == TRAJECTORY:
         deadline = Deadline.of(time_limit)
         read = read_trajectory(solution)
-        return judge_trajectory(open_subject(instance, deadline), read, deadline)
+        subject = without_place(open_subject(instance, deadline), left_alone)
+        return judge_trajectory(subject, read, deadline)
     if isinstance(solution, Trajectory):
         deadline = Deadline.of(time_limit)
-        return judge_trajectory(open_subject(instance, deadline), solution, deadline)
-    subject = open_subject(instance)
+        subject = without_place(open_subject(instance, deadline), left_alone)
+        return judge_trajectory(subject, solution, deadline)
+    subject = without_place(open_subject(instance), left_alone)
     subject.check_graph()
     graph = subject.graph()
     if isinstance(solution, Result):
@@ -107,7 +125,7 @@ def judge_trajectory(
     deadline: Deadline,
     progress: Callable[[str], None] | None = None,
 ) -> TrajectoryVerdict:
-    """The verdict on a trajectory for a scene, the proven minimum beside it if it is found in time.
+    """The verdict on a trajectory for a scene, with the proven minimum if it is found in time.
 
     Raises:
         InputError: the subject is no scene, or the trajectory is of another arm.
@@ -145,15 +163,15 @@ def proven_range(
     workers: int | None = None,
     seed: int = 0,
 ) -> ProvenRange:
-    """The range that the fewest segments of a labelled surface are proved to lie in.
+    """The proven range of the fewest segments of a labelled surface.
 
     Args:
         surface: a labelled surface or a scene: its file, its shipped name, the value.
         strands: corridors that may cross one topological edge, None for the usual number; more
             may lower the upper end.
-        time_limit: seconds, None for as long as it takes; both ends hold however early it ends.
+        time_limit: seconds, None for no limit; both ends hold however early it ends.
         workers: CP-SAT's search workers, None for its portfolio.
-        seed: of everything random.
+        seed: for all random choices.
 
     Raises:
         InputError: the surface or an option cannot be used.

@@ -1,4 +1,4 @@
-"""What is proved of one surface, and what that says of plans: ``cellcolor.Oracle``.
+"""What is proved about one surface, and what follows for plans: ``cellcolor.Oracle``.
 
 Test suites and ``cellcolor check`` use an oracle that keeps its proofs on disk.
 """
@@ -54,8 +54,8 @@ AnyPlan: TypeAlias = (
 class Oracle:
     """Whether plans on one surface are valid, and whether fewer lift-offs are possible.
 
-    What is proved of the surface is proved once, when it is first asked for, and serves all plans.
-    A planner's test suite keeps one for each surface::
+    The surface is proved once, when the proof is first needed, and the proof serves all plans.
+    A planner's test suite keeps one oracle for each surface::
 
         oracle = cellcolor.Oracle("part.surface.json")
         verdict = oracle.judge(colors)  # one color per vertex, None where it has none
@@ -84,7 +84,7 @@ class Oracle:
                 as it takes.
             strands: corridors that may cross one topological edge, None for the usual number.
             workers: CP-SAT's search workers, None for its portfolio.
-            seed: of everything random.
+            seed: for all random choices.
             bounds: this surface's proven range, if it is known already: then nothing is proved,
                 and no better plan is looked for.
 
@@ -108,7 +108,7 @@ class Oracle:
 
     @property
     def bounds(self) -> ProvenRange:
-        """Between what the fewest segments lie; proved when it is first asked for.
+        """The proven range of the fewest segments; computed when first used.
 
         Raises:
             InputError: a cell of the surface is not planar, or an option is out of its range.
@@ -116,10 +116,10 @@ class Oracle:
         return self.prove(Deadline.of(self._time_limit)).bounds
 
     def prove(self, deadline: Deadline) -> Proof:
-        """What is proved of the surface: now, if it has not been proved yet.
+        """The proof about the surface, made now if it has not been made yet.
 
         Args:
-            deadline: when to be content with what is proved.
+            deadline: when to stop with what is proved by then.
 
         Raises:
             InputError: a cell of the surface is not planar, or an option is out of its range.
@@ -167,8 +167,8 @@ class Oracle:
     def judge(self, plan: AnyPlan, *, deadline: Deadline | None = None) -> Verdict:
         """The verdict on a plan: is it valid, how many segments has it, can it be beaten and where?
 
-        A plan in joint angles is told by its type, because a bare array of them could be one row a
-        vertex as well as one row a sample of a path. It needs a scene.
+        A plan in joint angles is identified by its type, because a bare array could have one row
+        per vertex or one row per sample of a path. It needs a scene.
 
         Args:
             plan: one color per vertex, its number or its name, None exactly where the vertex has
@@ -182,7 +182,7 @@ class Oracle:
                 painting is finished, the verdict has no ``improvement``.
 
         Returns:
-            Of a tool path a
+            For a tool path a
             :class:`PathVerdict <cellcolor.oracle.joint_verdicts.PathVerdict>`.
 
         Raises:
@@ -216,7 +216,7 @@ class Oracle:
             report = check_solution(self._subject.graph(), plan)
             problems = report.problems
             if not problems and report.segments is None:
-                problems = ("cells: null, there is no division to judge",)
+                problems = ("cells: null, no division to judge",)
             segments = None if problems else report.segments
             found, given = PlanReport(problems, segments), None
         else:
@@ -291,7 +291,7 @@ def _in_file(file: str | None) -> Iterator[None]:
 
 
 class KeepingOracle(Oracle):
-    """An oracle that keeps what it proves on disk, and proves nothing that is kept there."""
+    """An oracle that keeps its proofs on disk, and uses those that it finds there."""
 
     def __init__(self, source: Solvable, time_limit: float, folder: Path | None) -> None:
         """Open the surface; nothing is proved yet.
@@ -311,10 +311,10 @@ class KeepingOracle(Oracle):
         self._kept: Proof | None = None
 
     def prove(self, deadline: Deadline) -> Proof:
-        """What is kept, or else what is proved now.
+        """The proof on disk, or else one made now.
 
-        Where a kept bound has no certificate the surface is proved anew. Without time for as much
-        as was kept, ``kept_lower`` says what nothing has verified.
+        If a kept bound has no certificate, the surface is proved anew. If time does not allow that,
+        ``kept_lower`` is the unverified bound.
 
         Raises:
             InputError: a cell of the surface is not planar, or the folder cannot be written to.

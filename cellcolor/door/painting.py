@@ -30,16 +30,16 @@ def paint(
         source: what was solved: a labelled surface, a scene, or an instance that names its
             surface; its file, its shipped name, the value.
         solution: its solution, or the file of one.
-        tool_radius_m: of the tool's footprint, which borders between segments leave room for; None
-            for that of the scene's setup, or else for one mean mesh edge.
-        time_limit: seconds, None for as long as it takes.
+        tool_radius_m: of the tool's footprint, for which borders between segments leave room; None
+            for the radius of the scene's setup, or else for one mean mesh edge.
+        time_limit: seconds, None for no limit.
 
     Returns:
-        A plan that the checker finds valid, on the surface refined where it had to be. It has
+        A plan that the checker finds valid, on the surface refined where necessary. It has
         exactly as many segments as the solution if these are proved to be the fewest. ``borders``
-        says what moving its borders has changed. Of a scene each new vertex is asked of the robot.
-        If it refuses one, the refined surface is solved and painted instead, with as many segments
-        as that needs (:mod:`cellcolor.motion.scene_painting`).
+        says what moving its borders has changed. For a scene the robot is asked about each new
+        vertex. If it cannot reach one, the refined surface is solved and painted instead, with as
+        many segments as that needs (:mod:`cellcolor.motion.scene_painting`).
 
     Raises:
         InputError: one of the two cannot be used, they do not belong together, or the radius is not

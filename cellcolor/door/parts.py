@@ -31,13 +31,13 @@ def inspect(
     time_limit: TimeLimit = None,
     progress: Callable[[str], None] | None = None,
 ) -> Inspection:
-    """What a part's mesh has, what is wrong with it, and what a repair would do about that.
+    """Report what a part's mesh has, what is wrong with it, and what a repair would change.
 
     Args:
         part: a mesh file (STL, OBJ, PLY), a ``trimesh.Trimesh``, or vertices (n, 3) and faces
             (m, 3).
-        unit: ``m`` or ``mm``; without it the likely one is taken, and said.
-        time_limit: seconds, None for as long as it takes.
+        unit: ``m`` or ``mm``; without it the likely unit is taken and reported.
+        time_limit: seconds, None for no limit.
         progress: told what is being done.
 
     Raises:
@@ -75,7 +75,7 @@ def repair(
         least_component: components with less than this share of the largest one's area are
             dropped; a hundredth if it is not given.
         edge_length_m: remesh to edges of about that length; needs the extra ``parts``.
-        time_limit: seconds, None for as long as it takes.
+        time_limit: seconds, None for no limit.
         progress: told what is being done.
 
     Raises:
@@ -109,7 +109,7 @@ def draw_inspection(inspection: Inspection) -> Drawing:
 
 
 def _nobody(_: str) -> None:
-    """Is told what is being done where nobody asked."""
+    """Ignores progress when the caller gave no function for it."""
 
 
 def _name(part: Any) -> tuple[str, str | None]:

@@ -94,7 +94,7 @@ def save(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
     """
     for name in KINDS.keys() - files.keys():
         if (folder / name).exists():
-            message = "is of a plan that came farther, and files of two plans are not mixed"
+            message = "belongs to a plan that got further; files of two plans are not mixed"
             raise InputError(str(folder / name), None, message)
     with make_folder(folder):
         write([Output(folder / name, KINDS[name], [files[name]]) for name in files])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
@@ -14,19 +14,24 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
+from cellcolor.door.asking import asked_besides, check_questions
 from cellcolor.door.extras import require_motion
+from cellcolor.door.leaving_out import Wanted, rest_of
 from cellcolor.door.result import Result
 from cellcolor.door.solving import solve
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedPlan
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
+from cellcolor.questions.places import Place
+from cellcolor.solvers.interface import Options
 
 if TYPE_CHECKING:
     from cellcolor.data.trajectory_verdict import TrajectoryVerdict
     from cellcolor.frontend import BuildResult, Scene
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.stage_clock import StageClock
+    from cellcolor.pictures.report_page.content import Answered
     from cellcolor.tool_paths.measures import PathMeasures
 
 __all__ = ["PlannedScene", "plan"]
@@ -37,7 +42,7 @@ _FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
 
 @dataclass(frozen=True, repr=False, eq=False)
 class PlannedScene:
-    """A scene with its fewest lift-offs, a motion that has them, and what a judge says of it.
+    """A scene with its fewest lift-offs, a motion that has them, and the judge's verdict on it.
 
     Attributes:
         subject: the scene, built and decomposed.
@@ -48,6 +53,7 @@ class PlannedScene:
         trajectory: how the arm moves.
         verdict: an independent judge's.
         seconds: wall time of each stage.
+        answered: what was asked besides, for the page; None if nothing was.
     """
 
     subject: Subject
@@ -58,6 +64,7 @@ class PlannedScene:
     trajectory: Trajectory
     verdict: TrajectoryVerdict
     seconds: Mapping[str, float]
+    answered: Answered | None = None
 
     @property
     def built(self) -> BuildResult:
@@ -88,6 +95,7 @@ class PlannedScene:
                 self.trajectory,
                 self.measures,
                 self.verdict,
+                answered=self.answered,
             )
         )
 
@@ -115,9 +123,11 @@ class PlannedScene:
             said.append(f"{moves} between strokes not planned: the arm must not drive there")
         covered = self.verdict.covered
         said.append(f"judge: {self.verdict}" + ("" if covered is None else f"; {covered}"))
+        said += [str(answer) for answer in (self.answered.answers if self.answered else ())]
         coverage = self.instance.coverage
         if coverage is not None and coverage.given_up:
-            said.append(f"slivers: {coverage}")
+            left_out = "slivers" if self.built.left_alone is None else "left out on purpose"
+            said.append(f"{left_out}: {coverage}")
         return "\n".join(said)
 
     def __repr__(self) -> str:
@@ -128,6 +138,10 @@ def plan(
     scene: str | PathLike[str] | Scene,
     *,
     pattern: str | None = None,
+    cover: float | None = None,
+    required: Place | None = None,
+    left_alone: Place | None = None,
+    ask: Sequence[str] = (),
     time_limit: TimeLimit = None,
     progress: Callable[[str], None] | None = None,
     **motion: Any,
@@ -139,6 +153,11 @@ def plan(
     Args:
         scene: its file, its shipped name, or the value.
         pattern: how tool paths are laid out, such as ``contour``; None for the usual one.
+        cover, required, left_alone: what has to be covered, as for ``solve``; the judge does not
+            ask for what is left out.
+        ask: what the page is to tell besides, of ``tradeoff``, ``explain``, ``place`` and
+            ``setups``; it is asked of the whole scene in the time that is left. ``place`` moves the
+            part by up to 10 cm along x and y, ``setups`` turns it by quarter turns.
         time_limit: seconds for all of it, None for as long as it takes.
         progress: told the name of each stage as it begins.
         **motion: keys of the setup's table ``[motion]``, which they replace, such as
@@ -147,16 +166,17 @@ def plan(
     Raises:
         InputError: the scene or a key cannot be used, no point of the object can be covered, or
             the setup has no table ``[motion]`` and not all that is needed of it is given.
-        PlanOutOfTime: the time limit came after the topological graph was known; what there is by
+        PlanOutOfTime: the time limit came after the topological graph was known; what is ready by
             then can be saved.
         OutOfTime: it came earlier.
     """
     from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 
+    wanted = Wanted(cover, required, left_alone)
+    check_questions(ask)
     deadline = Deadline.of(time_limit)
 
     given_or_file = scene_or_file(scene)
-    path = given_or_file if isinstance(given_or_file, Path) else None
     require_motion("planning a motion", _NEEDED)
     find_pattern(pattern or DEFAULT_PATTERN)
     from cellcolor.frontend.prepared import prepare
@@ -169,14 +189,15 @@ def plan(
     from cellcolor.trajectory_checker.check import check_trajectory
 
     clock = StageClock(deadline, progress)
-    given = Scene.read(path) if path is not None else given_or_file
+    given = Scene.read(given_or_file) if isinstance(given_or_file, Path) else given_or_file
+    path = given.file
     with clock.timed("preparation"):
-        prepared = prepare(_with_motion(given, motion), deadline)  # type: ignore[arg-type]
+        prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
         check_home(prepared, motion_of(prepared))
     with clock.timed("colors"):
         subject = _built(prepared, path, StageClock(deadline, progress))
-    so_far = UnfinishedPlan(subject)
+    so_far, whole = UnfinishedPlan(subject), subject
 
     def has(**more: Any) -> None:
         nonlocal so_far
@@ -184,10 +205,13 @@ def plan(
 
     try:
         with clock.timed("fewest segments"):
+            subject, notes, share = rest_of(subject, wanted, Options(deadline=deadline))
+            has(subject=subject)
             result = solve(subject, time_limit=deadline.share(_FOR_SOLVING))
+            result = _with_notes(result, notes, share)
             has(result=result)
             if result.solution.cells is None:
-                raise OutOfTime("the time limit came before any division was known")
+                raise OutOfTime("the time limit came before any division was found")
         with clock.timed("painting"):
             painting = paint_scene(
                 subject.build(),
@@ -198,7 +222,7 @@ def plan(
             )
         if len(painting.painted.minima) > 1:  # the surface was refined and solved again
             subject = Subject(path, painting.built, painting.built.surface)
-            result = Result(painting.solution, subject)
+            result = _with_notes(Result(painting.solution, subject), notes, share)
         has(subject=subject, result=result, painted=painting.painted)
         built = painting.built
         with clock.timed("motion"):
@@ -222,6 +246,10 @@ def plan(
             )
     except OutOfTime as error:
         raise PlanOutOfTime(so_far) from error
+    answered = None
+    if ask:
+        with clock.timed("questions"):
+            answered = asked_besides(ask, whole, deadline, progress)
     return PlannedScene(
         subject,
         result,
@@ -231,7 +259,14 @@ def plan(
         planned.trajectory,
         verdict,
         clock.seconds,
+        answered,
     )
+
+
+def _with_notes(result: Result, notes: tuple[str, ...], share: float) -> Result:
+    """The result with what is said of what was left out on purpose."""
+    solution = replace(result.solution, notes=(*notes, *result.solution.notes))
+    return replace(result, solution=solution, covered_share=share)
 
 
 def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:

@@ -1,4 +1,4 @@
-"""``cellcolor.read``: the value in a file, whatever kind of file of ours it is."""
+"""``cellcolor.read``: the value in a file of any cellcolor format."""
 
 from __future__ import annotations
 
@@ -61,16 +61,16 @@ _SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
 def read(source: str | PathLike[str]) -> Any:
     """The value in a file: scene, setup, surface, solution, plan, tool paths, trajectory, …
 
-    Scenes and setups are told by their suffix, ``.toml``, all else by its ``format``. Of a file of
-    optimal schemes it is the solution in the first line. Type checkers are told ``Any``: whoever
-    names the file knows what is in it, and would have to rule out all others every time.
+    The suffix ``.toml`` identifies scenes and setups, ``format`` all other files. For a file of
+    optimal schemes it is the solution in the first line. The type is ``Any``: the caller knows
+    what the file contains, and would otherwise have to rule out all other types every time.
 
     Args:
         source: the file, as a text or a path, or as a text the name of a shipped one
             (``cellcolor.library``); a file of that name goes first.
 
     Raises:
-        InputError: the file cannot be read, or holds something that its format forbids.
+        InputError: the file cannot be read, or contains something that its format forbids.
     """
     path = find_file(source)
     if is_scene(path):

@@ -1,4 +1,4 @@
-"""What ``cellcolor.solve`` returns: the answer, what it is an answer to, and how to look at it."""
+"""The result of ``cellcolor.solve``: the answer, its subject, and ways to look at both."""
 
 from __future__ import annotations
 
@@ -21,6 +21,7 @@ from cellcolor.files.writing import Output, kind_of_format, write
 
 if TYPE_CHECKING:
     from cellcolor.door.drawing import Drawing
+    from cellcolor.questions.refinement import Refinement
 
 __all__ = ["Result"]
 
@@ -32,10 +33,15 @@ class Result:
     Attributes:
         solution: the solver's answer, which the checker has passed.
         subject: what was solved, opened.
+        covered_share: what was solved, as a share of the area that can be covered and is not left
+            alone, 0 to 1.
+        refinement: the steps to the mesh that was solved, where ``refine_until_stable`` was asked.
     """
 
     solution: Solution
     subject: Subject = field(hash=False)
+    covered_share: float = 1.0
+    refinement: Refinement | None = None
 
     @property
     def instance(self) -> Instance:
@@ -44,7 +50,7 @@ class Result:
 
     @property
     def surface(self) -> LabelledSurface | None:
-        """The labelled surface; None for an instance that comes without one.
+        """The labelled surface; None for an instance without one.
 
         Raises:
             InputError: the file that the instance names cannot be read, or is another surface.
@@ -67,7 +73,7 @@ class Result:
         return self.solution.status == "optimal"
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Write the solution to a file; nothing but an older solution is overwritten.
+        """Write the solution to a file; only an older solution is overwritten.
 
         Raises:
             InputError: there is something else, or it cannot be written.

@@ -25,7 +25,7 @@ _INDEX = "index.json"
 
 
 class Library(dict[str, str]):
-    """What each shipped name stands for, a line each; printed as a table."""
+    """What each shipped name stands for, one line each; printed as a table."""
 
     def __str__(self) -> str:
         width = max(map(len, self), default=0)
@@ -40,7 +40,7 @@ class Library(dict[str, str]):
 
 
 def library() -> Library:
-    """The names that can be given wherever a file can: ``cellcolor.solve("wok")``.
+    """The names that can replace a file anywhere: ``cellcolor.solve("wok")``.
 
     The file that a name stands for is a scene if there is one, else a graph (an instance), else a
     labelled surface. The others have their ending added: ``wok.json`` is the graph of the scene
@@ -59,7 +59,7 @@ def index_file() -> Path:
 
 
 def find_file(source: str | os.PathLike[str]) -> Path:
-    """The file that is meant: one that is there goes before a shipped one of the same name.
+    """The file for a name: an existing file takes precedence over a shipped one.
 
     Only a text can be a shipped name; a path is a path, whether the file is there or not.
 
@@ -86,12 +86,12 @@ def find_file(source: str | os.PathLike[str]) -> Path:
     from difflib import get_close_matches
 
     close = get_close_matches(source, files, n=1)
-    hint = f"; is {close[0]!r} meant?" if close else ""
-    raise InputError(source, None, f"is no file, and nothing of that name is shipped{hint}")
+    hint = f"; did you mean {close[0]!r}?" if close else ""
+    raise InputError(source, None, f"is not a file, and nothing of that name is shipped{hint}")
 
 
 def find_claim(source: str | os.PathLike[str]) -> Path:
-    """The file of what is to be checked; of shipped ones solutions only, by their whole name.
+    """The file of a claim; of shipped files only solutions, by their whole name.
 
     Raises:
         InputError: it is no path.

@@ -3,32 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from math import degrees
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace, Solution
-from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
+from cellcolor.decomposition import decomposition_of
+from cellcolor.door.leaving_out import Wanted, rest_of
 from cellcolor.door.result import Result
 from cellcolor.door.subject import (
     Solvable,
+    Subject,
     build_scene,
     open_subject,
     scene_or_file,
 )
 from cellcolor.errors import InputError
+from cellcolor.questions.places import Place
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options, Start
+from cellcolor.solvers.registry import DEFAULT
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
-from dataclasses import replace
-
-from cellcolor.deadline import OutOfTime
-from cellcolor.decomposition import decomposition_of
-from cellcolor.door.subject import Subject
-from cellcolor.solvers.registry import DEFAULT
+    from cellcolor.questions.refinement import Refinement
 
 __all__ = ["build", "decompose", "solve", "start_from"]
 
@@ -48,7 +50,7 @@ def build(
 
     Args:
         scene: its file, its shipped name, or the value.
-        time_limit: seconds, None for as long as it takes.
+        time_limit: seconds, None for no limit.
         progress: told the name of each stage as it begins.
 
     Returns:
@@ -67,7 +69,7 @@ def decompose(source: Solvable, *, time_limit: TimeLimit = None) -> Instance:
 
     Args:
         source: its file, its shipped name, or the value; an instance is returned as it is.
-        time_limit: seconds, None for as long as it takes.
+        time_limit: seconds, None for no limit.
 
     Raises:
         InputError: it cannot be used; a cell of the surface is not planar.
@@ -88,12 +90,17 @@ def solve(
     seed: int = 0,
     fewest_cuts: bool = False,
     start: Solution | Result | str | PathLike[str] | None = None,
+    cover: float | None = None,
+    required: Place | None = None,
+    left_alone: Place | None = None,
+    refine_until_stable: bool = False,
     progress: Callable[[int | None, int], None] | None = None,
 ) -> Result:
     """Find the fewest segments of a scene, a labelled surface or an instance.
 
     A scene is built and a surface decomposed on the way; the checker sees every result. Where a
-    scene's slivers were given up, a note says how many segments there are with them.
+    scene's slivers were given up, a note says how many segments there are with them. Where
+    something is left out on purpose, the result is of the rest, and so is its ``subject``.
 
     Args:
         source: what to solve: its file, its shipped name (``cellcolor.library``), the value.
@@ -101,21 +108,36 @@ def solve(
         search_space: ``paper`` for no more than one corridor of a color across an edge, ``surface``
             for several.
         strands: how many, in the search space ``surface``; None for 2.
-        time_limit: seconds for all of it, None for as long as it takes.
+        time_limit: seconds for all of it, None for no limit.
         workers: CP-SAT's search workers, None for its portfolio.
-        seed: of everything random.
+        seed: for all random choices.
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
             paths.
         start: a solution to start from, or its file.
+        cover: the share of the area that can be covered and is not left alone which has to be, 0
+            to 1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
+        required: with ``cover``, vertices that have to be covered whatever is left out: a mask
+            (n,), a :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives
+            up.
+        left_alone: vertices that must not be covered, the same kinds.
+        refine_until_stable: solve a scene on finer meshes until minimum and graph stay the same
+            twice in a row, or the time limit or memory ends that. The result is of the finest mesh
+            that was solved, and its ``refinement`` has all of them.
         progress: called with the segments of the best division so far, None before there is one,
             and the lower bound.
 
     Raises:
         InputError: what is to be solved, or an option, cannot be used.
-        OutOfTime: the time limit came before any division was known.
+        OutOfTime: the time limit came before any division was found.
     """
+    wanted = Wanted(cover, required, left_alone)
+    if refine_until_stable and not (wanted.everything and start is None):
+        message = "goes without cover, left_alone and start: they are of a single mesh"
+        raise InputError(None, "refine_until_stable", message)
     deadline = Deadline.of(time_limit)
     subject = open_subject(source, deadline)
+    choosing = Options(deadline=deadline, workers=workers, seed=seed)
+    subject, left_out, share = rest_of(subject, wanted, choosing)
     instance = subject.graph(deadline)
     given: dict[str, Any] = {} if strands is None else {"strands": strands}
     options = Options(
@@ -127,15 +149,39 @@ def solve(
         start=None if start is None else start_from(start, instance, strands),
         fewest_cuts=fewest_cuts,
     )
-    solution = checked.solve(instance, options, solver, progress)
+    refinement = None
+    if refine_until_stable:
+        subject, refinement = _refined(
+            subject, lambda graph: checked.solve(graph, options, solver, progress), deadline
+        )
+        solution = refinement.steps[-1].solution
+        left_out = (*left_out, refinement.verdict)
+    else:
+        solution = checked.solve(instance, options, solver, progress)
     solution = _with_raw_minimum(solution, subject, options)
-    return Result(solution, subject)
+    notes = (*_tolerance_in_words(subject), *left_out)
+    solution = replace(solution, notes=(*notes, *solution.notes))
+    return Result(solution, subject, share, refinement)
+
+
+def _refined(
+    subject: Subject, solve_graph: Callable[[Instance], Solution], deadline: Deadline
+) -> tuple[Subject, Refinement]:
+    """A scene on the finest mesh that was solved, and the steps to it."""
+    built, file = subject.built, None if subject.path is None else str(subject.path)
+    if built is None or built.left_alone is not None:
+        message = "takes a whole scene: a labelled surface or a graph has nothing to refine"
+        raise InputError(file, "refine_until_stable", message)
+    from cellcolor.questions.refining import refined_until_stable  # needs the front end
+
+    built, refinement = refined_until_stable(built, solve_graph, deadline)
+    return Subject(subject.path, built, built.surface), refinement
 
 
 def start_from(
     source: Solution | Result | str | PathLike[str], instance: Instance, strands: int | None
 ) -> Start:
-    """A solution as what a solver starts from.
+    """Turn a solution into a solver's starting point.
 
     Args:
         source: the solution, or its file.
@@ -155,10 +201,22 @@ def start_from(
     if problems:
         raise InputError(file, None if file else "start", f"is not valid: {problems[0]}")
     if solution.cells is None:
-        raise InputError(file, "cells", "holds no division to start from")
+        raise InputError(file, "cells", "contains no division to start from")
     if strands is not None and solution.strands != strands:
         raise InputError(file, "strands", f"is {solution.strands}, wanted are {strands}")
     return Start(solution.cells, solution.seams)
+
+
+def _tolerance_in_words(subject: Subject) -> tuple[str, ...]:
+    """What colors hold at, where the scene's part may stand off."""
+    tolerance = None if subject.built is None else subject.built.scene.tolerance
+    if tolerance is None:
+        return ()
+    return (
+        f"Colors hold where the part should stand and at a sample of {tolerance.samples} "
+        f"displacements by {1e3 * tolerance.position_m:g} mm and "
+        f"{degrees(tolerance.rotation_rad):g} degrees; between them nothing was asked.",
+    )
 
 
 def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) -> Solution:
@@ -169,10 +227,12 @@ def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) ->
         subject: what was solved.
         options: how; the raw surface gets ten seconds of the time that is left.
     """
-    raw = None if subject.built is None else subject.built.raw_surface
-    coverage = subject.graph().coverage
-    if raw is None or coverage is None:
+    built = subject.built
+    raw = None if built is None else built.raw_surface
+    if built is None or raw is None:
         return solution
+    areas = raw.vertex_areas
+    slivers = areas[built.slivers].sum() / areas.sum()
     deadline = Deadline(min(options.deadline.moment, Deadline.after(_RAW_SECONDS).moment))
     asked = replace(options, deadline=deadline, start=None, fewest_cuts=False)
     try:
@@ -182,8 +242,5 @@ def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) ->
         found = "no division was found in time"
     except InputError as error:
         found = f"it cannot be solved, {error}"
-    note = (
-        f"{coverage.given_up:.1%} of the area was given up as slivers; with nothing given up: "
-        f"{found}"
-    )
+    note = f"{slivers:.1%} of the area was given up as slivers; with nothing given up: {found}"
     return replace(solution, notes=(*solution.notes, note))

@@ -1,4 +1,4 @@
-"""``cellcolor.new``: a scene and a setup to begin with, from a part's mesh and an arm's URDF."""
+"""``cellcolor.new``: a first scene and setup, from a part's mesh and an arm's URDF."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import json
 import os
 import re
 import tomllib
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from itertools import product
@@ -30,7 +31,7 @@ if TYPE_CHECKING:
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.setup import Setup
 
-__all__ = ["Started", "new"]
+__all__ = ["FoundArm", "Started", "arm_of", "best_place", "new", "part_keys_of"]
 
 _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
 _FAMILIES = ("ur", "eaik")
@@ -47,7 +48,7 @@ _TOOL_FILE = FileKind("a tool begun by cellcolor new", re.compile(rb"<!-- begun 
 
 @dataclass(frozen=True)
 class Started:
-    """What was written, and how far one gets with it.
+    """What was written, and what it can do.
 
     Attributes:
         scene: its file; beside it are ``setup.toml`` and, if none was given, ``tool.urdf``.
@@ -73,18 +74,18 @@ def new(
 ) -> Started:
     """Write a scene and its setup, with every key explained, ready for ``cellcolor plan``.
 
-    The arm has six turning joints. Its family, its flange and what overlaps always are found out;
-    the part is put where most of it can be reached, of nine places before the robot; and a home
-    position that is free is proposed.
+    The arm has six turning joints. The function finds its family, its flange and the links that
+    always overlap. It puts the part where most of it can be reached, of nine places in front of the
+    robot, and proposes a free home position.
 
     Args:
         part: a mesh file (STL, OBJ, PLY).
         arm: a URDF.
-        folder: for the files; it is made if it does not exist.
+        folder: for the files; it is created if it does not exist.
         tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
         tip_link: of the tool.
         unit: ``m`` or ``mm``, of the mesh; without it the likely one.
-        time_limit: seconds, None for as long as it takes.
+        time_limit: seconds, None for no limit.
         progress: told what is being done.
 
     Raises:
@@ -103,11 +104,11 @@ def new(
     tip = "tip" if tool is None else tip_link
 
     tell("the arm")
-    robot = _arm(urdf, None if tool is None else path_of(tool), tip, place)
+    robot = arm_of(urdf, None if tool is None else path_of(tool), tip, place)
     tell("the part")
-    part_keys = _part(mesh, place, inspect(mesh, unit=unit, time_limit=deadline))
+    part_keys = part_keys_of(mesh, place, inspect(mesh, unit=unit, time_limit=deadline))
     tell("where the part can stand")
-    best, share = _best_place(robot, mesh, part_keys, deadline)
+    best, share = best_place(robot, mesh, part_keys, deadline)
     home = _home(best)
     robot.keys.update(_found(best, home))
     part_keys["position"] = json.dumps(list(best.scene.placement.position_m))
@@ -118,11 +119,13 @@ def new(
     }
     place.mkdir(parents=True, exist_ok=True)
     write([Output(place / name, kinds[name], [content[name].encode()]) for name in names])
-    return Started(place / "scene.toml", share, tuple(_notes(best, home, tool is None)))
+    return Started(
+        place / "scene.toml", share, tuple(_notes(best, robot.touching, home, tool is None))
+    )
 
 
 @dataclass(frozen=True)
-class _Arm:
+class FoundArm:
     """An arm of a family that was found out.
 
     Attributes:
@@ -130,12 +133,14 @@ class _Arm:
         tool: the tool's; None for the one that is written beside the setup.
         keys: what is filled into the setup's text.
         reach: of the arm, m.
+        touching: pairs of its links that overlap in every posture.
     """
 
     urdf: Path
     tool: Path | None
     keys: dict[str, str]
     reach: float = 0.0
+    touching: tuple[tuple[str, str], ...] = ()
 
     @property
     def setup(self) -> Setup:
@@ -148,13 +153,14 @@ class _Arm:
         return Setup(**table)
 
 
-def _arm(urdf: Path, tool: Path | None, tip: str, folder: Path) -> _Arm:
+def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
     """The arm with the first family that fits it; its setup will be in the folder.
 
     Raises:
         InputError: none does.
     """
     from cellcolor.frontend.arm.urdf import load_urdf
+    from cellcolor.frontend.reach.always_touching import always_touching
     from cellcolor.frontend.reach.prepared_arm import prepare_arm
 
     arm = load_urdf(urdf)
@@ -179,12 +185,17 @@ def _arm(urdf: Path, tool: Path | None, tip: str, folder: Path) -> _Arm:
     }
     fault: InputError | None = None
     for family in _FAMILIES:
-        found = _Arm(urdf, tool, keys | {"family": json.dumps(family)})
+        found = FoundArm(urdf, tool, keys | {"family": json.dumps(family)})
         try:
-            setup = found.setup
-            return replace(found, reach=prepare_arm(setup).kinematics.reach)
+            prepared = prepare_arm(found.setup)
+            reach = prepared.kinematics.reach
+            # Before a place is sought: with such a pair tested, the arm could stand nowhere.
+            pairs = always_touching(prepared.near_itself)
         except InputError as error:
             fault = error
+            continue
+        touching = json.dumps([list(pair) for pair in pairs])
+        return replace(found, keys=found.keys | {"touching": touching}, reach=reach, touching=pairs)
     assert fault is not None
     raise fault if fault.file else fault.in_file(str(urdf))
 
@@ -207,7 +218,7 @@ def _last_link(parent: dict[str, str]) -> str:
     return max(parent, key=depth)
 
 
-def _part(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]:
+def part_keys_of(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]:
     """What is filled into the scene's text.
 
     Raises:
@@ -223,8 +234,8 @@ def _part(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]:
     }
 
 
-def _best_place(
-    arm: _Arm, mesh: Path, part_keys: dict[str, str], deadline: Deadline
+def best_place(
+    arm: FoundArm, mesh: Path, part_keys: dict[str, str], deadline: Deadline
 ) -> tuple[PreparedScene, float]:
     """The scene where most of the part can be reached, and the share of it.
 
@@ -248,6 +259,7 @@ def _best_place(
     best: tuple[PreparedScene, float] | None = None
     prepared: PreparedScene | None = None
     fault: InputError | None = None
+    failed: Counter[str] = Counter()
     for far, raised in product(_FARTHER, _HIGHER):
         position = far * arm.reach - middle[0], -middle[1], raised * arm.reach - low[2]
         try:
@@ -264,6 +276,7 @@ def _best_place(
         found = prepared.arm.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
         verdicts = prepared.judge(found.reshape(-1, prepared.robot.joints), deadline)
         valid = (verdicts.reasons == VALID).reshape(found.shape[:2]).any(axis=1)
+        failed.update(prepared.judge.reason_names[code] for code in verdicts.reasons.tolist())
         share = float(valid.mean())
         if best is None or share > best[1]:
             best = prepared, share
@@ -272,8 +285,9 @@ def _best_place(
         raise fault
     if best[1] == 0:
         message = (
-            "nothing of the part can be reached at any of nine places before the robot: does its "
-            "outside face the robot, and is its size one for this arm?"
+            "nothing of the part can be reached at any of nine places before the robot; most often "
+            f"a posture fails by {failed.most_common(1)[0][0]!r}: does the part's outside face the "
+            "robot, and is its size one for this arm?"
         )
         raise InputError(str(mesh), None, message)
     return best
@@ -294,12 +308,8 @@ def _home(prepared: PreparedScene) -> list[float] | None:
 
 def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
     """What of the setup's file only the prepared scene tells."""
-    from cellcolor.frontend.reach.always_touching import always_touching
-
     robot = prepared.robot
-    touching = [list(pair) for pair in always_touching(prepared.arm.near_itself)]
     return {
-        "touching": json.dumps(touching),
         "accelerations": json.dumps([_ACCELERATION] * robot.joints),
         "velocities": _velocities(robot),
         "home": "# home_rad = []" if home is None else f"home_rad = {json.dumps(home)}",
@@ -315,14 +325,21 @@ def _velocities(robot: Robot) -> str:
     return f"{'' if lacks else '# '}{line}  # {why}"
 
 
-def _notes(prepared: PreparedScene, home: list[float] | None, own_tool: bool) -> Iterator[str]:
+def _notes(
+    prepared: PreparedScene,
+    touching: tuple[tuple[str, str], ...],
+    home: list[float] | None,
+    own_tool: bool,
+) -> Iterator[str]:
     if own_tool:
         yield "tool.urdf is a polisher of 100 mm: put your tool's shape and length into it"
+    for first, second in touching:
+        yield f"{first} and {second} overlap in every posture: setup.toml lets them touch"
     yield "setup.toml has accelerations of 5 rad/s²: take those of the arm's data sheet"
     if np.isnan(prepared.robot.velocity).any():
         yield "setup.toml has velocities of 1 rad/s, since the URDF has none"
     if not prepared.setup.constraints.force:
         yield "torques are not tested, since the URDF lacks masses or efforts"
     if home is None:
-        yield "no free home position was found: the motion begins and ends anywhere"
+        yield "no free home position was found: the motion may begin and end anywhere"
     yield from prepared.notes

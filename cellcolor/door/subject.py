@@ -1,4 +1,4 @@
-"""Whatever can be solved, checked or shown: opened once, with all that leads to it or follows."""
+"""Anything that can be solved, checked or shown: opened once, with everything derived from it."""
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ class Subject:
 
     Attributes:
         path: the file, None for a value.
-        built: what the front end made of a scene; None for all else.
-        given_surface: the labelled surface that was handed in, read or built.
-        given_instance: the instance that was handed in or read.
+        built: what the front end made of a scene; None for anything else.
+        given_surface: the labelled surface that was given, read or built.
+        given_instance: the instance that was given or read.
     """
 
     path: Path | None
@@ -53,11 +53,11 @@ class Subject:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is probably not meant in a scene, a sentence each."""
+        """Likely mistakes in a scene, one sentence each."""
         return () if self.built is None else self.built.report.warnings
 
     def graph(self, deadline: Deadline = NEVER) -> Instance:
-        """The instance; that of a file refers to the surface as if it lay beside it.
+        """The instance; an instance from a file refers to the surface as if it lay beside the file.
 
         Args:
             deadline: when the decomposition has to end.
@@ -102,14 +102,16 @@ class Subject:
 
     @cached_property
     def reasons(self) -> CandidateTable:
-        """What became of the candidates of a scene, or of the one that the surface was built from.
+        """The fate of the candidates of a scene, or of the scene that the surface was built from.
 
         Raises:
             InputError: it is a value that no front end has built, or there is no file of them.
         """
         if self.built is None:
             if self.surface_path is None:
-                raise InputError(None, "reasons", "are known of a scene, or of a surface's file")
+                raise InputError(
+                    None, "reasons", "are known only for a scene, or for a surface's file"
+                )
             return CandidateTable.beside(self.surface, self.surface_path)
         return self.built.candidates
 
@@ -120,7 +122,7 @@ class Subject:
             InputError: this is no scene.
         """
         if self.built is None:
-            raise InputError(self._file, "format", "the arm is in a scene (.toml)")
+            raise InputError(self._file, "format", "only a scene (.toml) has an arm")
         return self.built
 
     @cached_property
@@ -150,7 +152,7 @@ class Subject:
 
     @property
     def names_surface(self) -> bool:
-        """Whether there is a surface, or a file is named that should have it."""
+        """Whether there is a surface, or the name of a file that should have it."""
         if self.given_instance is None:
             return True
         return self.path is not None and self.given_instance.surface is not None
@@ -167,10 +169,10 @@ class Subject:
         )
 
     def check_graph(self, deadline: Deadline = NEVER) -> str | None:
-        """Hold an instance that names its surface against that surface, if it is at hand.
+        """Compare an instance that names its surface with that surface, if it is available.
 
         Returns:
-            The path of a surface that is not at hand, so that the graph is taken on trust.
+            The path of a surface that is not available, so the graph is trusted.
 
         Raises:
             InputError: the surface cannot be used, or has another graph.
@@ -224,7 +226,7 @@ class Subject:
 def open_subject(
     source: Solvable, deadline: Deadline = NEVER, progress: Callable[[str], None] | None = None
 ) -> Subject:
-    """Read, and where it is a scene build, what is to be solved, checked or shown.
+    """Read what is to be solved, checked or shown; build it if it is a scene.
 
     Args:
         source: a scene, a labelled surface or an instance: its file, its shipped name, the value.
@@ -260,13 +262,13 @@ def open_subject(
 
 
 def is_made_by(value: object, module: str, name: str) -> bool:
-    """Whether a value is of a class, without importing the class: its values have done so."""
+    """Whether a value is of a class, without importing the class: any value has imported it."""
     kind = getattr(sys.modules.get(module), name, None)
     return isinstance(kind, type) and isinstance(value, kind)
 
 
 def is_scene(path: Path) -> bool:
-    """Scenes are told by their suffix, everything else by its ``format``."""
+    """The suffix identifies scenes, ``format`` everything else."""
     return path.suffix == ".toml"
 
 
@@ -301,12 +303,18 @@ def build_scene(
     return build_surface(scene, deadline, progress)
 
 
+_MESHES = (".stl", ".obj", ".ply")
+
+
 def read_graph(path: Path) -> Instance | LabelledSurface:
-    """An instance or a labelled surface, whichever the file says it is.
+    """Read an instance or a labelled surface, as the file says.
 
     Raises:
         InputError: the file cannot be read, is neither, or holds something forbidden.
     """
+    if path.suffix.lower() in _MESHES and path.is_file():
+        message = "is a mesh, which has no colors: cellcolor new makes a scene of it and an arm"
+        raise InputError(str(path), None, message)
     document = read_document(path)
     try:
         match document.get("format"):

@@ -1,4 +1,4 @@
-"""Plans that do not end in a motion: what there is of them, and why there is no more."""
+"""Plans that stop before a motion: what is ready, and why there is no more."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["NothingCovered", "PlanOutOfTime", "UnfinishedPlan"]
 
 @dataclass(frozen=True, repr=False, eq=False)
 class UnfinishedPlan:
-    """A scene on its way to a motion, as far as the time limit let it come.
+    """A scene on its way to a motion, as far as it got within the time limit.
 
     A trajectory is not part of it: none leaves the program without having been judged.
 
@@ -91,7 +91,7 @@ class UnfinishedPlan:
         )
 
     def save(self, folder: str | PathLike[str]) -> tuple[str, ...]:
-        """Write what there is to a folder: the names of the files, as those of a whole plan.
+        """Write what is ready to a folder, under the file names of a whole plan.
 
         Raises:
             InputError: a whole plan is there, which is better; or something else that is not

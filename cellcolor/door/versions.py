@@ -1,4 +1,4 @@
-"""``cellcolor.show_versions``: what a report of a problem should say."""
+"""``cellcolor.show_versions``: what a problem report should include."""
 
 from __future__ import annotations
 

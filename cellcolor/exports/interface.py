@@ -38,7 +38,7 @@ class Export:
     """A file that another program reads.
 
     Attributes:
-        kind: how it is told from files of other programs, which are not overwritten.
+        kind: how it is distinguished from files of other programs, which are not overwritten.
         content: makes its bytes.
     """
 

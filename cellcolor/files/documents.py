@@ -24,7 +24,7 @@ def _no_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
     if len(document) != len(pairs):
         names = [name for name, _ in pairs]
         repeated = next(name for name in names if names.count(name) > 1)
-        raise InputError(None, repeated, "member stands twice in one object")
+        raise InputError(None, repeated, "member appears twice in one object")
     return document
 
 
@@ -82,7 +82,7 @@ def read_text(path: str | PathLike[str]) -> str:
     except OSError as error:
         raise InputError(str(path), None, error.strerror or "cannot be read") from error
     except ValueError as error:  # a name with a zero character
-        raise InputError(str(path), None, "is no name of a file") from error
+        raise InputError(str(path), None, "is not a file name") from error
 
 
 def read_document(path: str | PathLike[str]) -> dict[str, Any]:
@@ -137,7 +137,7 @@ def take_body(
         for part in outer:
             holder = holder.get(part) if isinstance(holder, dict) else None
         if isinstance(holder, dict) and last in holder:
-            raise InputError(None, name, "is a member of version 2, the file says version 1")
+            raise InputError(None, name, "is a member of version 2, but the file says version 1")
     return body
 
 
@@ -149,8 +149,35 @@ def validate(adapter: TypeAdapter[T], body: dict[str, Any]) -> T:
     except RecursionError as error:
         raise InputError(None, None, "not usable JSON: nested too deeply") from error
     except ValidationError as error:
-        fault = error.errors(include_url=False)[0]
-        raise InputError(None, field_name(fault["loc"]), fault["msg"]) from error
+        place, message = first_fault(error)
+        raise InputError(None, field_name(place), message) from error
+
+
+def first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
+    """Where a schema is broken first, and how.
+
+    A name that is not known goes before one that is missing: of a misspelt name it is the cause.
+    """
+    faults = error.errors(include_url=False)
+    unknown = (fault for fault in faults if fault["type"] in _UNKNOWN)
+    first = next(unknown, faults[0])
+    place = first["loc"]
+    if first["type"] == "missing":
+        return place, "is missing"
+    if first["type"] not in _UNKNOWN:
+        return place, first["msg"].removeprefix("Value error, ")  # pydantic's for a ValueError
+    from difflib import get_close_matches
+
+    missing = [
+        str(fault["loc"][-1])
+        for fault in faults
+        if fault["type"] == "missing" and fault["loc"][:-1] == place[:-1]
+    ]
+    close = get_close_matches(str(place[-1]), missing, n=1)
+    return place, f"unknown key; is {close[0]!r} meant?" if close else "unknown key"
+
+
+_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 
 
 def field_name(location: tuple[int | str, ...]) -> str:

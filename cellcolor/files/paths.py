@@ -21,4 +21,4 @@ def path_of(name: str | PathLike[str]) -> Path:
             raise TypeError  # pathlib would take it for the folder that one is in
         return Path(name)
     except TypeError as error:
-        raise InputError(None, None, f"{name!r:.100} is no name of a file") from error
+        raise InputError(None, None, f"{name!r:.100} is not a file name") from error

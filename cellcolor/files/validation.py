@@ -1,4 +1,4 @@
-"""Values made in Python: held to the same types as values read from JSON."""
+"""Values made in Python: checked for the same types as values read from JSON."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from cellcolor.errors import InputError
-from cellcolor.files.documents import field_name
+from cellcolor.files.documents import field_name, first_fault
 
 __all__ = ["json_content", "plain", "settle", "validate_python"]
 
@@ -67,10 +67,9 @@ def validate_python(adapter: TypeAdapter[T], content: Any, member: str) -> T:
 
 
 def _first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
-    fault = error.errors(include_url=False)[0]
+    place, message = first_fault(error)
     # Lists and arrays are taken as well, and JSON's sentence is the one that says so.
-    message = re.sub("valid (tuple|list)$", "valid array", fault["msg"])
-    return fault["loc"], message
+    return place, re.sub("valid (tuple|list)$", "valid array", message)
 
 
 def plain(content: Any) -> Any:

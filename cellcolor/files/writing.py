@@ -129,10 +129,10 @@ def check_output(path: Path, kind: FileKind, inputs: Iterable[Path] = ()) -> Non
         place = _place(path)
         if is_stream(path):
             if stat.S_ISBLK(path.stat().st_mode):
-                raise InputError(str(path), None, "is a disk, not a file to write")
+                raise InputError(str(path), None, "is a disk, not a file")
             return
         if place.is_dir():
-            raise InputError(str(path), None, "is a folder, not a file to write")
+            raise InputError(str(path), None, "is a folder, not a file")
         if not place.parent.is_dir():
             raise InputError(str(path), None, "its folder does not exist")
         if not place.exists():
@@ -143,7 +143,7 @@ def check_output(path: Path, kind: FileKind, inputs: Iterable[Path] = ()) -> Non
             message = f"exists and is not {kind.name}; it is not overwritten"
             raise InputError(str(path), None, message)
         if not os.access(place, os.W_OK):
-            raise InputError(str(path), None, "exists and is write-protected")
+            raise InputError(str(path), None, "is write-protected")
     except (OSError, ValueError) as error:
         raise _unwritable(path, error) from error
 
@@ -170,7 +170,7 @@ def is_folder_or_nothing(path: Path) -> bool:
         return True
     nearest = next(place for place in (path, *path.parents) if os.path.lexists(place))
     if not nearest.is_dir():
-        raise InputError(str(nearest), None, "must be a folder, is none")
+        raise InputError(str(nearest), None, "must be a folder")
     return False
 
 
@@ -194,7 +194,7 @@ def write(outputs: Sequence[Output], inputs: Sequence[Path] = ()) -> None:
     places = [_place(o.path) for o in outputs if not is_stream(o.path)]
     if len(set(places)) < len(places):
         twice = next(place for place in places if places.count(place) > 1)
-        raise InputError(str(twice), None, "two files would be written to it")
+        raise InputError(str(twice), None, "two files would be written there")
     for folder in {place.parent for place in places}:
         remove_strays(folder)
     staged: list[Temporary] = []

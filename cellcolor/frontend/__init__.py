@@ -1,7 +1,7 @@
 """The kinematic front end: from a robot scene to a labelled surface.
 
-Needs the extra ``frontend`` (Pinocchio, trimesh, python-fcl). Nothing outside this package
-imports those.
+Needs the extra ``frontend`` (Pinocchio, trimesh, python-fcl). Only this package
+imports them.
 """
 
 from cellcolor.frontend.build import BuildResult, build_surface

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.comparing import same_members
+from cellcolor.data.restricted import without_vertices
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
@@ -37,26 +38,29 @@ if TYPE_CHECKING:
 __all__ = ["BuildResult", "build_surface", "labelled", "result_of"]
 
 _INJECTIVE = (
-    "solutions have no names and are told apart by continuity; a color with two configurations on "
-    "one vertex: none found on this part"
+    "solutions have no names and are distinguished by continuity; a color with two configurations "
+    "on one vertex: none found on this part"
 )
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class BuildResult:
-    """A labelled surface and all that was found on the way to it.
+    """A labelled surface and everything found on the way to it.
 
     Attributes:
-        surface: what the decomposition takes.
-        report: the same in numbers for people.
-        stages: what each stage of the build has made.
+        surface: the input of the decomposition.
+        report: a summary in numbers for people.
+        stages: the result of each stage of the build.
         prepared: the scene in place, with the surface that was labelled.
+        left_alone: (n,) the vertices that are not to be covered on purpose, see :meth:`without`;
+            None for none.
     """
 
     surface: LabelledSurface
     report: BuildReport
     stages: Stages
     prepared: PreparedScene
+    left_alone: Mask | None = None
 
     @property
     def scene(self) -> Scene:
@@ -95,7 +99,7 @@ class BuildResult:
     def node_color(self) -> NDArray[np.int64]:
         """(n, branches) the color of each valid candidate, -1 for the others.
 
-        Those that a sliver policy took away have -1 as well.
+        Candidates that a sliver policy removed also have -1.
         """
         return self.stages.cleaned.coloring.node_color
 
@@ -112,18 +116,38 @@ class BuildResult:
         )
 
     @property
+    def slivers(self) -> Mask:
+        """(n,) the vertices that the sliver policy gave up."""
+        given_up = np.zeros(len(self.surface.vertices), dtype=bool)
+        given_up[list(self.surface.given_up)] = True
+        return given_up if self.left_alone is None else given_up & ~self.left_alone
+
+    @property
     def raw_surface(self) -> LabelledSurface | None:
         """The surface with its slivers, where the sliver policy has given some up; else None."""
-        if not self.surface.given_up:
+        if not self.slivers.any():
             return None
         stages = self.stages
-        return replace(
+        raw = replace(
             self.surface,
             colors=stages.coloring.names,
             vertex_colors=_vertex_colors(stages.coloring),
             cracks=find_cracks(stages.links.edges, stages.links.linked, stages.coloring),
             given_up=(),
         )
+        return raw if self.left_alone is None else without_vertices(raw, self.left_alone)
+
+    def without(self, mask: Mask) -> BuildResult:
+        """The same scene with some vertices (n,) that are not to be covered, on purpose."""
+        if self.left_alone is not None:
+            mask = mask | self.left_alone
+        cleaned = self.stages.cleaned
+        node_color = np.where(mask[:, None], -1, cleaned.coloring.node_color)
+        surface = without_vertices(self.surface, mask)
+        coloring = replace(cleaned.coloring, node_color=node_color)
+        cleaned = replace(cleaned, coloring=coloring, cracks=surface.cracks)
+        stages = replace(self.stages, cleaned=cleaned)
+        return replace(self, surface=surface, stages=stages, left_alone=mask)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, BuildResult):
@@ -135,7 +159,7 @@ class BuildResult:
     __hash__ = None  # type: ignore[assignment]  # arrays that can be changed
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
-        """Draw it: ``cellcolor.show``, which says what ``view`` can ask for."""
+        """Draw it; see ``cellcolor.show`` for the options in ``view``."""
         import cellcolor  # the whole package's face, which only somebody who looks at it needs
 
         return cellcolor.show(self, path, **view)
@@ -184,7 +208,7 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
     Args:
         prepared: the scene, with the surface that the stages were asked about.
         stages: of this surface.
-        clock: what they have taken.
+        clock: the time they have taken.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -198,7 +222,7 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
 
 
 def labelled(prepared: PreparedScene, stages: Stages, seconds: dict[str, float]) -> LabelledSurface:
-    """The labelled surface of a scene whose stages took so many seconds each."""
+    """The labelled surface of a scene, with the seconds that each stage took."""
     coloring = stages.cleaned.coloring
     return LabelledSurface(
         name=prepared.scene.name,
@@ -241,7 +265,7 @@ def _rounding_in_words(surface: Surface, task: Task) -> str:
         return text
     return (
         f"{text}; triangles beside sharp edges are up to {1e3 * longest:.2g} mm long, and the tool "
-        "turns over the whole of them: on smaller triangles the minimum may be another"
+        "turns over the whole of them: on smaller triangles the minimum may differ"
     )
 
 

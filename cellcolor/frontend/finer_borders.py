@@ -1,9 +1,8 @@
 """Borders of colors found more exactly: the mesh edges that cross them are bisected, on request.
 
-What a color reaches ends somewhere on the mesh edge between a vertex that has it and one that has
-not. A vertex in the middle of that edge is asked like any other, inverse kinematics, tests and
-continuity, and tells in which half. The finer surface is the one that is solved, so whatever is
-proved is proved for it.
+A color ends somewhere on the mesh edge between a vertex that has it and one that does not. A vertex
+in the middle of that edge is tested like any other (inverse kinematics, tests, continuity), and
+tells in which half. The finer surface is then solved, so proofs are about that surface.
 """
 
 from __future__ import annotations
@@ -13,11 +12,12 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Mask
+from cellcolor.frontend.displaced import judged
 from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Judged, Links, Stages, judged
+from cellcolor.frontend.stages import Judged, Links, Stages
 
 __all__ = ["with_finer_borders"]
 
@@ -27,7 +27,7 @@ _WITH_SLIVERS = 4  # times as long are mesh edges at borders that the sliver pol
 def with_finer_borders(
     prepared: PreparedScene, clock: StageClock, found: Judged | None = None
 ) -> tuple[PreparedScene, Stages]:
-    """The stages of a build, on a surface refined at borders as far as the setup asks for.
+    """The stages of a build, on a surface refined at borders as the setup says.
 
     Args:
         prepared: the scene.
@@ -35,7 +35,7 @@ def with_finer_borders(
         found: its stages on this surface, where they are known.
 
     Returns:
-        The scene with the surface that was used last, and what the stages have made of that.
+        The scene with the last surface, and the results of the stages on it.
 
     Raises:
         InputError: there would be too many vertices, or as the stages do.
@@ -57,7 +57,7 @@ def with_finer_borders(
 def _too_long(stages: Stages, longest: float) -> Mask:
     """The mesh edges (k,) at borders that are longer than they may be, in m.
 
-    Which cells a sliver policy takes away hangs on areas and neighbors, so on borders that are gone
+    Which cells a sliver policy removes depends on areas and neighbors, so on borders that are gone
     afterwards. These have to be known as well, but only so well as areas ask for.
     """
     lengths, cleaned = stages.surface.lengths(stages.links.edges), stages.cleaned

@@ -1,4 +1,4 @@
-"""Millimeters taken for meters: found by holding lengths against the arm and the part.
+"""Millimeters taken for meters: found by comparing lengths with the arm and the part.
 
 Every length of a scene and its setup is in meters. One that only makes sense in millimeters is
 refused, with the value that was probably meant, before anything is computed with it. Angles in
@@ -25,7 +25,7 @@ _PLAUSIBLE = 0.2  # of the reach: a tool of that radius is a large one
 
 
 def check_part(part: Surface, scene: Scene, reach: float, key: str = "object") -> None:
-    """Refuse a part that is far too large for an arm, or far too far away.
+    """Reject a part that is far too large for an arm, or far too distant.
 
     Args:
         part: in the world, m.
@@ -70,7 +70,7 @@ def _unit_of(scene: Scene, key: str) -> tuple[str, str]:
 
 
 def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None:
-    """Refuse lengths of a setup that are larger than the part, or margins beyond the arm's reach.
+    """Reject lengths of a setup that are larger than the part, or margins beyond the arm's reach.
 
     Raises:
         InputError: names the key, and what was probably meant.
@@ -91,7 +91,7 @@ def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None
 
 
 def check_motion(motion: Motion, part: Surface, scene: Scene, reach: float) -> None:
-    """Refuse lengths of the table ``[motion]`` in the same way.
+    """Reject lengths of the table ``[motion]`` in the same way.
 
     Raises:
         InputError: names the key, and what was probably meant.
@@ -131,7 +131,7 @@ def _within_reach(lengths: dict[str, float], reach: float) -> None:
 
 
 def notes_on_units(scene: Scene, reach: float) -> tuple[str, ...]:
-    """What stands so far away that it may have been given in millimeters, a sentence each."""
+    """Things so far away that they may have been given in millimeters, one sentence each."""
     return tuple(_far_things(scene, reach))
 
 

@@ -1,6 +1,6 @@
-"""An arm whose solutions have no names: continuity tells them apart, and makes sheets of them.
+"""An arm whose solutions have no names: continuity distinguishes them and arranges them in sheets.
 
-From here on a sheet is what a branch is for other arms: the stages that follow know no difference.
+From here on a sheet serves as a branch: later stages see no difference.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.between import Test
-from cellcolor.frontend.reach.sheets import Sheets, edges_at_once, linked_pairs, sheets_of
+from cellcolor.frontend.reach.sheets import Linking, Sheets, edges_at_once, sheets_of
 from cellcolor.frontend.reach.tracking import Solutions, Tracker
 from cellcolor.frontend.reach.validity import NO_SOLUTION, Candidates
 
@@ -23,7 +23,7 @@ __all__ = ["Nameless", "arranged_in_sheets"]
 
 @dataclass(frozen=True)
 class Nameless:
-    """What continuity has made of solutions without names.
+    """Solutions without names, arranged by continuity.
 
     Attributes:
         prepared: the scene.
@@ -44,7 +44,7 @@ class Nameless:
     def test_on(self, edges: Index, sheets: Index) -> Test:
         """A test of sheets (k,) on mesh edges (k, 2), for :mod:`cellcolor.frontend.reach.between`.
 
-        A configuration on the way is found by following the sheet from the nearer end.
+        It finds a configuration on the way by following the sheet from the nearer end.
         """
         surface = self.prepared.surface
 
@@ -78,14 +78,14 @@ def arranged_in_sheets(
     edges, nodes = surface.edges(), candidates.valid
     limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
     solutions = tracker.described(candidates.configurations)
-    pairs = [np.empty((0, 3), dtype=np.int64)]
+    linking = Linking(surface, nodes, solutions, tracker, limits)
+    links = [np.empty((0, 3), dtype=np.int64)]
     together = edges_at_once(nodes.shape[1], robot.joints)
     for first in range(0, len(edges), together):
         deadline.check()
-        part = edges[first : first + together]
-        found = linked_pairs(surface, part, nodes, solutions, tracker, prepared.arm.measure, limits)
-        pairs.append(found + np.array([first, 0, 0]))
-    sheets = sheets_of(surface, edges, np.concatenate(pairs), nodes, solutions)
+        found = linking.links(edges[first : first + together])
+        links.append(found + np.array([first, 0, 0]))
+    sheets = sheets_of(surface, np.concatenate(links), nodes, solutions)
     by_sheet = Candidates(
         sheets.arranged(candidates.configurations, np.nan),
         sheets.arranged(candidates.reasons, NO_SOLUTION),

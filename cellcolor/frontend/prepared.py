@@ -1,8 +1,8 @@
-"""A scene prepared: all that it names read and put in place, arm, part, obstacles, tests.
+"""A prepared scene: arm, part, obstacles and tests, read and put in place.
 
-What is read is kept apart by what it belongs to: the arm (`PreparedArm`), what stands around
-it, and the part, which is kept in its own frame. So the same part can be asked about elsewhere
-(:meth:`PreparedScene.at`), and nothing is read or built again.
+The arm (`PreparedArm`), its surroundings and the part are kept separately, the part in its own
+frame. So the same part can be tested in another place (:meth:`PreparedScene.at`) without reading
+or building anything again.
 """
 
 from __future__ import annotations
@@ -28,7 +28,6 @@ from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_un
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
-from cellcolor.frontend.reach.coarse import too_coarse
 from cellcolor.frontend.reach.postures import Workplace
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.validity import Judge
@@ -45,8 +44,8 @@ class PreparedPart:
     """A part in its own frame, wherever it stands.
 
     Attributes:
-        surface: what has to be covered.
-        body: what must not be hit.
+        surface: the surface to be covered.
+        body: the shape that must not be hit.
     """
 
     surface: Surface
@@ -58,11 +57,11 @@ class PreparedScene:
     """A scene, ready for questions about configurations.
 
     Attributes:
-        workplace: the arm, and what stands around it.
+        workplace: the arm and its surroundings.
         part: in its own frame.
-        surface: what has to be covered, in the world.
+        surface: the surface to be covered, in the world.
         judge: the tests.
-        notes: what is probably not meant of robot and mesh, a sentence each.
+        notes: likely mistakes in robot and mesh, one sentence each.
     """
 
     scene: Scene
@@ -83,7 +82,7 @@ class PreparedScene:
 
     @property
     def arm(self) -> PreparedArm:
-        """The arm and its task, without what stands around it."""
+        """The arm and its task, without its surroundings."""
         return self.workplace.arm
 
     @property
@@ -102,11 +101,43 @@ class PreparedScene:
         Raises:
             InputError: the part stands in a link that cannot move, or much too far away.
         """
-        scene = self.scene.varied(placement=placement)
-        surface, workplace = _in_place(scene, self.part, self.workplace)
+        return self._standing(self.scene.varied(placement=placement), self.workplace)
+
+    def amid(self, scene: Scene) -> PreparedScene:
+        """The same arm and part in a scene that differs in placement, obstacles and ground only.
+
+        Raises:
+            InputError: an obstacle cannot be used, or the part stands in a link that cannot move,
+                or much too far away.
+        """
+        return self._standing(scene, _around(scene, self.arm, self.part, NEVER))
+
+    def _standing(self, scene: Scene, around: Workplace) -> PreparedScene:
+        surface, workplace = _in_place(scene, self.part, around)
         check_part(surface, scene, self.kinematics.reach)
         judge = Judge(workplace, scene.validity_test)
         return PreparedScene(scene, workplace, self.part, surface, judge, self.notes)
+
+    def displaced(self) -> list[PreparedScene]:
+        """The scene without its tolerance, with the part wherever its sample puts it.
+
+        The surface to be covered goes with the part, refined or not.
+
+        Raises:
+            InputError: the part stands in a link that cannot move.
+        """
+        tolerance = self.scene.tolerance
+        if tolerance is None:
+            return []
+        own = self.part.surface.placed(self.scene.placement).vertices
+        center = (own.min(axis=0) + own.max(axis=0)) / 2
+        exact = replace(self, scene=self.scene.varied(tolerance=None))
+        found = []
+        for placement in tolerance.displaced(self.scene.placement, center):
+            there = exact.at(placement)
+            surface = self.surface.taken_along(self.scene.placement, placement)
+            found.append(replace(there, surface=surface))
+        return found
 
     def test(
         self,
@@ -152,15 +183,11 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     with in_file(setup.file):
         check_setup(setup, surface, scene, arm.kinematics.reach)
         _check_spacings(setup, lengths)
-    obstacles = [obstacle.solid(scene.folder, deadline) for obstacle in scene.obstacle]
     shape = covered
     if scene.solid_object is not None:
         shape = scene.solid_object.surface(scene.folder, deadline)
     part = PreparedPart(covered, mesh_solid(shape.vertices, shape.faces, deadline))
-    ground = None if scene.ground is None else scene.ground.half_space
-    tip = Tip(arm.robot, setup.task.contact_radius_m, obstacles, ground)
-    around = Workplace(arm, ground, tuple(obstacles), part.body, tip)
-    _, workplace = _in_place(scene, part, around)
+    _, workplace = _in_place(scene, part, _around(scene, arm, part, deadline))
     judge = Judge(workplace, scene.validity_test)
     notes = arm.robot.warnings + notes_on_units(scene, arm.kinematics.reach)
     if setup.constraints.collision:
@@ -170,6 +197,14 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
         notes += () if wide is None else (wide,)
         notes += _notes_on_contacts(workplace, float(lengths.max()))
     return PreparedScene(scene, workplace, part, surface, judge, notes)
+
+
+def _around(scene: Scene, arm: PreparedArm, part: PreparedPart, deadline: Deadline) -> Workplace:
+    """An arm with obstacles and ground; the part is in its own frame yet."""
+    obstacles = [obstacle.solid(scene.folder, deadline) for obstacle in scene.obstacle]
+    ground = None if scene.ground is None else scene.ground.half_space
+    tip = Tip(arm.robot, scene.setup.task.contact_radius_m, obstacles, ground)
+    return Workplace(arm, ground, tuple(obstacles), part.body, tip)
 
 
 def _in_place(scene: Scene, part: PreparedPart, around: Workplace) -> tuple[Surface, Workplace]:
@@ -193,9 +228,9 @@ def _prepared_on(scene: Scene, surface: Surface) -> PreparedScene:
 
 
 def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
-    """What of the collision shapes is probably not meant; ``longest`` edge of the mesh in m."""
+    """Likely mistakes in the collision shapes; ``longest`` edge of the mesh in m."""
     robot, found = place.robot, []
-    coarse = too_coarse(robot, list(place.obstacles), longest)
+    coarse = _too_coarse(robot, place.obstacles, longest)
     if coarse is not None:
         found.append(coarse)
     if robot.has_solids:
@@ -205,12 +240,32 @@ def _notes_on_contacts(place: Workplace, longest: float) -> tuple[str, ...]:
                 "so it touches the object wherever the tip does"
             )
         found += [
-            f"{first!r} and {second!r} overlap in all of 100 configurations, so nothing will be "
+            f"{first!r} and {second!r} overlap in all of 100 configurations, so none will be "
             "valid: are their shapes too large (robot.mesh_collision_of), or may they touch "
             "(robot.may_touch)?"
             for first, second in always_touching(place.arm.near_itself)
         ]
     return tuple(found)
+
+
+def _too_coarse(robot: Robot, obstacles: tuple[Solid, ...], longest: float) -> str | None:
+    """A warning where the longest mesh edge (m) is longer than the tool or an obstacle is wide.
+
+    A vertex says nothing of what is far from it.
+    """
+    widths = [
+        (2 * body.radius, f"the body of {body.link!r}")
+        for body in robot.bodies
+        if body.joint == robot.joints
+    ]
+    widths += [(solid.width, f"obstacle[{k}]") for k, solid in enumerate(obstacles)]
+    width, name = min(widths, default=(longest, ""))
+    if longest <= width:
+        return None
+    return (
+        f"the object's edges are up to {longest:.3g} m long and {name} is {width:.3g} m wide: "
+        "between vertices something can stand unnoticed (max_edge_m, target_vertices)"
+    )
 
 
 def _check_spacings(setup: Setup, lengths: Array) -> None:

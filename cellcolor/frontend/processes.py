@@ -1,9 +1,9 @@
-"""Long work in many independent parts, done by as many processes as there are cores.
+"""Long work in many independent parts, done by one process per core.
 
-Python runs one thread at a time, and fcl's binding keeps it to that. So the process is forked:
-what the work looks at is there without being copied, and what it finds it writes into arrays in
-shared memory (:func:`shared`). Whatever a child does not finish, the process itself does, errors
-and time-outs included; so the result does not depend on how many there are.
+Python runs one thread at a time, and fcl's binding does not release it. So the process is forked:
+children see the inputs without a copy, and write their results into arrays in shared memory
+(:func:`shared`). The parent does whatever a child does not finish, including errors and timeouts,
+so the result does not depend on the number of processes.
 """
 
 from __future__ import annotations
@@ -37,11 +37,11 @@ def shared(shape: tuple[int, ...], kind: DTypeLike) -> NDArray[Any]:
 def share_out(work: Callable[[int], None], parts: int, at_least: int = 1) -> int:
     """Do ``work(k)`` for every k below ``parts``; it writes into :func:`shared` arrays.
 
-    Only on Linux there are several processes: elsewhere libraries do not bear to be forked. Work
+    There are several processes only on Linux: elsewhere libraries do not survive a fork. Work
     that is itself part of such work is not shared out again.
 
     Args:
-        at_least: so many parts are worth a process of their own.
+        at_least: the number of parts that is worth a process.
 
     Returns:
         How many processes there were.

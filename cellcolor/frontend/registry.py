@@ -1,4 +1,4 @@
-"""Classes that a file names by their kind: those of this package, and those of others.
+"""Classes that files name by their kind, from this package and from others.
 
 Scenes and setups say of a part, an obstacle, a validity test or an arm which kind it is. There is a
 registry for each of the four (:mod:`cellcolor.registered`).

@@ -1,7 +1,7 @@
-"""What holds an arm back in a scene, and the scene without it: one limit, obstacle or test less.
+"""Restrictions of an arm in a scene, and the scene with one limit, obstacle or test less.
 
 Each kind of :class:`Relaxation` takes one thing out of a prepared scene. Whatever was valid before
-is valid after it, so only what the scene has refused for a reason of its own is asked again
+is valid after it, so only candidates that failed for its reason are tested again
 (:func:`~cellcolor.frontend.stages.judged_again`). :func:`relaxations_of` lists all of a scene.
 """
 
@@ -39,11 +39,11 @@ __all__ = [
 
 
 class Relaxation(ABC):
-    """One thing that a scene asks for, which can be left out or asked for less.
+    """One restriction of a scene, which can be left out or weakened.
 
     Attributes:
-        reasons: the tests that it can make a candidate fail. None where bodies are other ones
-            afterwards, so that everything has to be asked anew.
+        reasons: the tests that it can make a candidate fail. None if bodies change, so that
+            everything has to be tested anew.
         unit: of amounts, ``None`` where the thing is there or not.
     """
 
@@ -58,7 +58,7 @@ class Relaxation(ABC):
     @property
     @abstractmethod
     def key(self) -> str:
-        """Where scene, setup or URDF have it."""
+        """Where scene, setup or URDF define it."""
 
     @abstractmethod
     def applied(self, prepared: PreparedScene) -> PreparedScene:
@@ -66,7 +66,7 @@ class Relaxation(ABC):
 
     @property
     def most(self) -> float:
-        """The greatest amount worth asking about, in units."""
+        """The largest amount worth trying, in units."""
         return 0.0
 
     def by(self, amount: float) -> Relaxation:  # noqa: ARG002
@@ -74,11 +74,11 @@ class Relaxation(ABC):
         return self
 
     def said_of(self, amount: float) -> str:
-        """For people, what an amount is, as in "limits of joint_4 wider by 12°"."""
+        """An amount in words, as in "limits of joint_4 wider by 12°"."""
         return f"{self.name}: {amount:.3g} {self.unit}"
 
     def parts(self, prepared: PreparedScene) -> tuple[Relaxation, ...]:  # noqa: ARG002
-        """The things that it is made up of, where it can be told apart."""
+        """Its parts, if it can be split."""
         return ()
 
 
@@ -157,7 +157,7 @@ class LinkContact(Relaxation):
 
 @dataclass(frozen=True)
 class Torques(Relaxation):
-    """What the joints can bear: the constraint ``force``."""
+    """The efforts of the joints: the constraint ``force``."""
 
     reasons = frozenset({"torque"})
     name = "joint torques"
@@ -228,7 +228,7 @@ class GroundPlane(Relaxation):
 
     @property
     def most(self) -> float:
-        """Farther down most arms do not get."""
+        """Most arms do not reach farther down."""
         return 1.0
 
     def by(self, amount: float) -> GroundPlane:
@@ -258,7 +258,7 @@ class ObstacleBody(Relaxation):
 
     @property
     def reasons(self) -> frozenset[str] | None:  # type: ignore[override]
-        """An obstacle that stands elsewhere may be in the way of what was valid before."""
+        """A moved obstacle may block configurations that were valid before."""
         return frozenset({"obstacle collision", "tip blocked"}) if self.farther == np.inf else None
 
     @property
@@ -273,7 +273,7 @@ class ObstacleBody(Relaxation):
 
     @property
     def most(self) -> float:
-        """Farther away it might as well be gone."""
+        """Beyond that distance it might as well be gone."""
         return 0.5
 
     def by(self, amount: float) -> ObstacleBody:
@@ -305,7 +305,7 @@ class ObstacleBody(Relaxation):
 
 @dataclass(frozen=True)
 class PartBody(Relaxation):
-    """The part itself, as what links and the tool's body must not hit."""
+    """The part itself, as a body that links and tool must not hit."""
 
     reasons = frozenset({"object collision"})
     name = "contact of arm and tool with the part"
@@ -359,7 +359,7 @@ class Distance(Relaxation):
         return f"margins.{self.margin}"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """With no distance to be kept."""
+        """Without that distance."""
         setup = prepared.arm.setup.varied(margins={self.margin: 0.0})
         arm = replace(prepared.arm, setup=setup)
         return _remade(prepared, replace(prepared.workplace, arm=arm))
@@ -367,7 +367,7 @@ class Distance(Relaxation):
 
 @dataclass(frozen=True)
 class AddedTest(Relaxation):
-    """A test of validity that the scene has besides."""
+    """A test of validity that the scene adds."""
 
     test: str
 
@@ -443,7 +443,7 @@ def relaxations_of(prepared: PreparedScene) -> tuple[Relaxation, ...]:
 def without(prepared: PreparedScene, what: Iterable[Relaxation]) -> PreparedScene:
     """The scene without several things; obstacles are numbered as the scene has them."""
     # From the last obstacle to the first, so that the numbers of those left stay. The tool comes
-    # last: what stands around is told to the tip by the bodies that the tool has.
+    # last: the tip learns of its surroundings from the bodies of the tool.
     for one in sorted(what, key=lambda each: (each.reasons is None, -getattr(each, "number", 0))):
         prepared = one.applied(prepared)
     return prepared

@@ -1,4 +1,4 @@
-"""What a build found, for people: reachability by reason, colors, cracks, time."""
+"""The result of a build for people: reachability by reason, colors, cracks, time."""
 
 from __future__ import annotations
 
@@ -42,15 +42,15 @@ class BuildReport:
     Attributes:
         survey: where the object is.
         vertices: of the surface.
-        reachable: vertices with one valid configuration or more.
+        reachable: vertices with at least one valid configuration.
         area_m2: of the whole surface.
         reachable_area_m2: of the reachable vertices.
         candidates: how many of the vertex-branch candidates ended with each reason.
         unreachable: how many unreachable vertices have each reason; counted for the branch that
-            came farthest through the tests.
+            passed the most tests.
         colors: see :class:`ColorReport`.
         cracks: number of mesh edges with a crack.
-        notes: of robot and mesh, what is probably not meant, a sentence each.
+        notes: likely mistakes in robot and mesh, one sentence each.
         stand_ins: what collides in the place of the meshes of links, and how far off it is.
         slivers: what the sliver policy did, None without one.
         injectivity: of an arm whose solutions have no names, what was found; None for others.
@@ -76,7 +76,7 @@ class BuildReport:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is probably not meant, a sentence each."""
+        """Likely mistakes, one sentence each."""
         hulls = (stand_in.warning for stand_in in self.stand_ins)
         return self.survey.warnings + self.notes + tuple(text for text in hulls if text)
 
@@ -89,10 +89,10 @@ class BuildReport:
         if self.reachable:
             return f"{why}: the sliver policy gave up all cells; lower slivers.uncover_below_share"
         if self.survey.seen_from_behind:
-            return f"{why}: the robot sees it from behind; turn its faces round in the mesh's file"
+            return f"{why}: the robot sees it from behind; reverse its faces in the mesh file"
         reason, number = max(self.unreachable.items(), key=lambda item: item[1])
         vertices = count(number, "vertex", "vertices")
-        why = f"{why}: the commonest reason is {reason!r}, at {vertices} of {self.vertices}"
+        why = f"{why}: the most common reason is {reason!r}, at {vertices} of {self.vertices}"
         remedy = _REMEDIES.get(reason)
         return f"{why}; {remedy}" if remedy else why
 
@@ -105,7 +105,9 @@ class BuildReport:
         lines += [
             f"reachable  {self.reachable} of {self.vertices} vertices, {share:.1f} % of the area"
         ]
-        lines += _table("unreachable vertices, by the branch that came farthest", self.unreachable)
+        lines += _table(
+            "unreachable vertices, by the branch that passed the most tests", self.unreachable
+        )
         lines += _table("candidates (vertex and branch)", self.candidates)
         lines += ["colors"]
         width = max((len(color.name) for color in self.colors), default=0)

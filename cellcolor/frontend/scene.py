@@ -28,9 +28,10 @@ from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.parts.arrays import ArraysObject
 from cellcolor.frontend.parts.cover import Cover
 from cellcolor.frontend.parts.part import PARTS, Part
-from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.parts.tolerance import Tolerance
 from cellcolor.frontend.reach.validity_interface import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
@@ -74,6 +75,13 @@ class Ground(Table):
         """The ground, in the world."""
         return HalfSpace.through(np.array([0.0, 0.0, self.height_m]), np.array(self.normal))
 
+    def seen_from(self, frame: Placement) -> Ground:
+        """The same ground in an upright frame that stands in the world itself."""
+        plane, normal = self.half_space, np.array(self.normal)
+        off_m = plane.offset_m - float(plane.along(np.array(frame.position_m)))
+        turned = tuple((normal @ rotation_from_rpy(*frame.rpy_rad)).tolist())
+        return Ground(height_m=off_m / plane.normal[2], normal=turned)
+
     @property
     def tilt_rad(self) -> float:
         """The angle between the normal and the world's z axis, rad."""
@@ -97,7 +105,8 @@ class Scene(FileTable):
 
     ``object`` is what has to be covered, or those of its faces that ``cover`` chooses. It is what
     must not be hit as well, unless ``collision_object`` is given, in the same frame. A
-    ``validity_test`` is made after the standard ones. A scene is a value: what varies it makes a
+    ``validity_test`` is made after the standard ones. With a ``tolerance``, colors hold wherever
+    the object may stand by it, as far as a sample tells. A scene is a value: what varies it makes a
     new one, and holds it to the same rules as a file.
     """
 
@@ -107,6 +116,7 @@ class Scene(FileTable):
     cover: Cover | None = None
     collision_object: AnyPart | None = None
     placement: Placement
+    tolerance: Tolerance | None = None
     ground: Ground | None = None
     obstacle: tuple[AnyObstacle, ...] = ()
     validity_test: tuple[AnyTest, ...] = ()
@@ -116,7 +126,7 @@ class Scene(FileTable):
     def _no_setup(cls, content: Any) -> Any:
         """Say what is wrong with a setup that is taken for a scene, not that it lacks a name."""
         if isinstance(content, dict) and "robot" in content and "setup" not in content:
-            message = "is a robot's setup, not a scene: a scene names one as its 'setup'"
+            message = "is a robot's setup, not a scene; a scene names it as its 'setup'"
             raise InputError(None, None, message)
         return content
 
@@ -124,7 +134,7 @@ class Scene(FileTable):
     def _optional_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Surfaces of before there were these keys stay the same to the byte."""
         content: dict[str, Any] = whole(self)
-        for key in ("validity_test", "cover"):
+        for key in ("validity_test", "cover", "tolerance"):
             if not getattr(self, key):
                 del content[key]
         return content
@@ -143,7 +153,7 @@ class Scene(FileTable):
         if self.cover is not None and self.cover.faces_file is not None:
             for key in ("max_edge_m", "repair"):
                 if getattr(self.object, key, None):
-                    message = f"does not go with {key}, which numbers the faces anew"
+                    message = f"cannot be combined with {key}, which numbers the faces anew"
                     raise InputError(None, "cover.faces_file", message)
         return self
 
@@ -196,6 +206,35 @@ class Scene(FileTable):
             InputError: names the key.
         """
         return self.varied(placement=placement)
+
+    def seen_from(self, base: Placement) -> Self:
+        """The scene as the arm sees it from another place: the base is moved, the world is not.
+
+        Part, obstacles and ground are given in the frame of the moved base. The arm stands in the
+        origin of every scene, so this is how its base is moved. It stays upright.
+
+        Args:
+            base: of the arm, in the world of this scene.
+
+        Raises:
+            InputError: the base is tilted, or something is bound to the world that is not moved: a
+                turn of the tool, a validity test, or a gravity that is not vertical.
+        """
+        task, bound = self.setup.task, "belongs to the world, so the arm's base cannot be moved"
+        if any(base.rpy_rad[:2]):
+            raise InputError(None, "rpy_rad", "the arm's base can be turned by its yaw only")
+        if self.validity_test:
+            raise InputError(None, "validity_test[0]", bound)
+        with in_file(self.setup.file):
+            if task.turn is not None:
+                raise InputError(None, "task.turn", bound)
+            if any(task.gravity_m_per_s2[:2]):
+                raise InputError(None, "task.gravity_m_per_s2", f"is not vertical: it {bound}")
+        obstacles = tuple(each.seen_from(base) for each in self.obstacle)
+        changes: dict[str, Any] = {"obstacle": obstacles} if obstacles else {}
+        if self.ground is not None:
+            changes["ground"] = self.ground.seen_from(base)
+        return self.varied(placement=self.placement.seen_from(base), **changes)
 
     def with_object(self, part: Any, collision_object: Any = None) -> Self:
         """Another object in the same place.

@@ -2,7 +2,7 @@
 
 Each function takes the prepared scene and what the stages before it have made.
 
-A verdict on a configuration hangs on nothing but the place and normal of its vertex, and whether a
+A verdict on a configuration depends only on the place and normal of its vertex, and whether a
 branch is continuous along a mesh edge on nothing but the edge's ends. So where a surface is judged
 and then one with all its vertices and some more, what is known is taken over.
 """
@@ -43,9 +43,9 @@ __all__ = [
     "Judged",
     "Links",
     "Stages",
-    "judged",
+    "colored_stages",
     "judged_again",
-    "run_stages",
+    "judged_in_place",
 ]
 
 TURN_NOT_DEFINED = "turn not defined"
@@ -114,30 +114,33 @@ class Judged:
     Attributes:
         stages: what they have made.
         verdicts: on all solutions of all vertices, (n * solutions,).
+        in_place: with the part where it should stand, if ``stages`` are those that hold at every
+            displacement (:mod:`cellcolor.frontend.displaced`).
+        elsewhere: at each displacement.
     """
 
     stages: Stages
     verdicts: Verdicts
+    in_place: Judged | None = None
+    elsewhere: tuple[Judged, ...] = ()
 
 
-def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
-    """All stages, one after the other.
+def judged_in_place(
+    prepared: PreparedScene, clock: StageClock, before: Judged | None = None
+) -> Judged:
+    """All stages with the part where it should stand, where something may be known already.
+
+    Args:
+        prepared: the scene.
+        clock: of the build.
+        before: of the same scene on a surface whose vertices are the first ones of this one, with
+            the same normals. Only new vertices and new mesh edges are asked about, to the same
+            result. An arm whose solutions have no names is asked about everything.
 
     Raises:
         InputError: a color has two configurations on one vertex; there are too many vertices for
             the turns of the tool.
         OutOfTime: the deadline came first.
-    """
-    return judged(prepared, clock).stages
-
-
-def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = None) -> Judged:
-    """All stages, where something may be known already; raises like :func:`run_stages`.
-
-    Args:
-        before: of the same scene on a surface whose vertices are the first ones of this one, with
-            the same normals. Only new vertices and new mesh edges are asked about, to the same
-            result. An arm whose solutions have no names is asked about everything.
     """
     deadline = clock.deadline
     names, test_on = prepared.kinematics.branches, _test_of_branches(prepared, deadline)
@@ -170,16 +173,17 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
             links = _valid_links(
                 prepared, candidates, continuous, tracked, test_on, known, deadline
             )
-    return Judged(_colored_stages(prepared, names, candidates, continuous, links, clock), verdicts)
+    return Judged(colored_stages(prepared, names, candidates, continuous, links, clock), verdicts)
 
 
 def judged_again(
     prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
 ) -> Judged:
-    """All stages of a scene that asks for less, on the same surface; raises like `run_stages`.
+    """All stages of a scene that asks for less, on the same surface; raises like
+    :func:`judged_in_place`.
 
     Only what the stricter scene has refused is asked about again. The result is the same as that of
-    :func:`judged`, but for full circles of joints without limits.
+    :func:`judged_in_place`, but for full circles of joints without limits.
 
     Args:
         prepared: the scene that asks for less: whatever was valid before is valid.
@@ -209,7 +213,7 @@ def judged_again(
                 deadline,
                 anew=continuous.linked & ~known.links.linked,
             )
-    stages = _colored_stages(prepared, known.branches, candidates, continuous, links, clock)
+    stages = colored_stages(prepared, known.branches, candidates, continuous, links, clock)
     return Judged(stages, verdicts)
 
 
@@ -229,7 +233,7 @@ def _judged_again(
     return Verdicts(**members, tracked=tracked, seconds=new.seconds)
 
 
-def _colored_stages(
+def colored_stages(
     prepared: PreparedScene,
     names: tuple[str, ...],
     candidates: Candidates,
@@ -347,7 +351,7 @@ def _valid_links(
     near_border = at_domain_border(edges, candidates.valid)
     new = np.ones(linked.shape, dtype=bool)
     if known is not None:
-        # Which points of an edge are asked hangs on the neighbors of its ends, which may be new.
+        # Which points of an edge are tested depends on the neighbors of its ends, which may be new.
         here, there = _in_both(edges, known.links.edges)
         border_before = at_domain_border(known.links.edges, known.candidates.valid)
         new[here] = near_border[here] != border_before[there]

@@ -48,11 +48,11 @@ class Survey:
 
     @property
     def warnings(self) -> tuple[str, ...]:
-        """What is probably not meant, a sentence each."""
+        """Likely mistakes, one sentence each."""
         if not self.seen_from_behind:
             return ()
         return (
-            f"the robot sees {100 * self.from_behind:.0f} % of the object from behind only: if its "
+            f"the robot sees {100 * self.from_behind:.0f} % of the object only from behind: if its "
             "faces are wound clockwise as seen from outside, the tool comes from the wrong side",
         )
 

@@ -27,7 +27,7 @@ from pydantic import (
 
 from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
-from cellcolor.files.documents import read_text
+from cellcolor.files.documents import first_fault, read_text
 from cellcolor.files.paths import path_of
 
 __all__ = [
@@ -203,11 +203,8 @@ def _settled(content: Any) -> Any:
 
 def _fault(error: ValidationError) -> InputError:
     """The first fault: ``("object", "radius_m")`` as ``object.radius_m``."""
-    first = error.errors(include_url=False)[0]
+    place, message = first_fault(error)
     key = ""
-    for part in first["loc"]:
+    for part in place:
         key += f"[{part}]" if isinstance(part, int) else f".{part}" if key else part
-    message = first["msg"].removeprefix("Value error, ")  # pydantic's words for a ValueError
-    if first["type"] == "extra_forbidden":
-        message = "unknown key"
     return InputError(None, key or None, message)

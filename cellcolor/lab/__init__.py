@@ -1,1 +1,1 @@
-"""The laboratory: random instances, solvers held to each other and compared."""
+"""The laboratory: solvers compared with each other on random instances."""

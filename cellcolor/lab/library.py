@@ -1,4 +1,4 @@
-"""The index of the instance library: made of the files beside it, and held against them.
+"""The index of the instance library: made from the files beside it, and compared with them.
 
 What the index says is known of an instance is what the stored solutions show (docs/library.md): a
 division for each upper bound, and for each lower bound the solution that claims it, with its

@@ -1,1 +1,1 @@
-"""From tool paths to a trajectory: joints over time, lift-offs planned, with a scene."""
+"""From tool paths to a trajectory for a scene: joints over time, with planned lift-offs."""

@@ -1,4 +1,4 @@
-"""Strokes and the transfers between them, timed and put together to one trajectory."""
+"""Strokes and the transfers between them, timed and assembled into one trajectory."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def assembled(
     meta: dict[str, Any],
     deadline: Deadline,
 ) -> Trajectory:
-    """The trajectory: every stroke, and every planned stretch between, from rest to rest.
+    """The trajectory: every stroke, and every planned motion in between, from rest to rest.
 
     Args:
         name: what to call it.
@@ -65,8 +65,8 @@ def assembled(
         transfers: the way to the first stroke, those between strokes, and that from the last one.
         speeds: of the joints.
         tool_speed: of the tool in contact, m/s.
-        spacing: wanted between passes, m; what is passed twice is told by it.
-        left_out: parts that the tool does not go to.
+        spacing: desired between passes, m; it decides what counts as passed twice.
+        left_out: parts that the tool does not visit.
         meta: as of the trajectory.
         deadline: when to give up.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,14 +14,16 @@ from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.mesh.small_triangles import small_triangle_at
-from cellcolor.motion.following import Followed, follow
-from cellcolor.motion.samples import Samples, sampled, with_normals_of
+from cellcolor.motion.following import Followed, bowed, follow
+from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP
 from cellcolor.tool_paths.cover import Covered
 
 __all__ = ["Course", "Courses", "laid_out"]
 
 _ROUNDS = 3  # of paths laid out; what still fails on the last ones is cut out of them
+_FARTHEST = 0.4  # rad, m; of a joint from a sample to the next
+_HALVINGS = 6  # of a step in which one goes farther, or the tool bows
 
 
 @dataclass(frozen=True)
@@ -69,7 +71,7 @@ def laid_out(
         deadline: when to give up.
 
     Returns:
-        Paths on whose samples hardly anything fails; what still does has to be cut out of them.
+        Paths on which hardly any sample fails; the caller cuts out those that still do.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -79,8 +81,8 @@ def laid_out(
         covered = lay(np.array(sorted(reasons), dtype=np.int64))
         courses, failing = [], {}
         for path in covered.paths.paths:
-            samples = with_normals_of(sampled(path), surface.mesh, normals)
-            course = Course(path, samples, follow(prepared, samples, branch, deadline))
+            course = _course(prepared, path, surface, normals, branch, deadline)
+            samples = course.samples
             courses.append(course)
             for at, why in _failures(course.followed, prepared.judge.reason_names):
                 face, point = int(samples.faces[at]), samples.points[at]
@@ -89,6 +91,35 @@ def laid_out(
             break
         reasons = failing | reasons
     return Courses(covered, tuple(courses), reasons)
+
+
+def _course(
+    prepared: PreparedScene,
+    path: ToolPath,
+    surface: LabelledSurface,
+    normals: Array,
+    branch: int,
+    deadline: Deadline,
+) -> Course:
+    """A branch along a path, with samples so close that joints may move evenly between them.
+
+    Beside a singularity a joint turns by much on a millimeter: then a trajectory does not say how
+    the joint gets there, or the tool bows off its way. A step that is still too long on the last
+    round is torn.
+    """
+    places = even_places(path)
+    for halvings in range(_HALVINGS + 1):
+        samples = with_normals_of(sampled(path, places), surface.mesh, normals)
+        followed = follow(prepared, samples, branch, deadline)
+        valid = followed.reasons == VALID
+        far = np.abs(np.diff(followed.joints, axis=0)).max(axis=1) > _FARTHEST
+        fast = far | bowed(prepared.robot, followed.joints)
+        fast &= valid[:-1] & valid[1:] & ~followed.torn
+        if not fast.any() or halvings == _HALVINGS:
+            break
+        middle = (places[:-1] + places[1:]) / 2
+        places = np.sort(np.concatenate([places, middle[fast]]))
+    return Course(path, samples, replace(followed, torn=followed.torn | fast))
 
 
 def _failures(followed: Followed, names: tuple[str, ...]) -> Iterator[tuple[int, str]]:

@@ -12,12 +12,18 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.smooth import follow_edges
-from cellcolor.motion.samples import Samples
+from cellcolor.motion.samples import Samples, angles_between
 
-__all__ = ["Followed", "follow", "joint_space", "unwound"]
+__all__ = ["Followed", "bowed", "follow", "joint_space", "unwound"]
+
+_BOW = 0.3  # of the way between two samples, for the tip: where normals turn fast, steps are short
+_BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
+_ROUNDING = 1e-6  # m
 
 
 @dataclass(frozen=True)
@@ -26,7 +32,7 @@ class Followed:
 
     Attributes:
         joints: (k, joints) in rad or m, unwound between neighbors; NaN without solution. Whole
-            turns of all of them together are still to be chosen.
+            turns of all of them together are chosen later.
         reasons: (k,) codes of the judge: the first test that each sample fails.
         torn: (k - 1,) whether the branch jumps between a sample and the next one.
     """
@@ -46,8 +52,8 @@ def follow(
 ) -> Followed:
     """Follow a branch, and judge every sample by the tests of the cells.
 
-    Whether the branch jumps between two samples is asked as it is asked of mesh edges
-    (``docs/frontend.md``, "Continuity"), so that no jump is ever smoothed over.
+    The test for jumps between two samples is that for mesh edges (``docs/frontend.md``,
+    "Continuity"), so no jump is ever smoothed over.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -72,10 +78,24 @@ def follow(
     return Followed(unwound(found, joint_space(prepared)), verdicts.reasons, torn)
 
 
+def bowed(robot: Robot, joints: Array) -> Mask:
+    """Steps (k - 1,) of samples (k, joints) in whose middle the tool is off its way.
+
+    Between two samples every joint moves evenly. Beside a singularity, where joints turn by much on
+    a millimeter, the tool bows off the way from one sample to the next.
+    """
+    ends, middle = forward(robot, joints), forward(robot, (joints[:-1] + joints[1:]) / 2)
+    off = np.linalg.norm(middle.tip - (ends.tip[:-1] + ends.tip[1:]) / 2, axis=1)
+    too_far = _BOW * np.linalg.norm(np.diff(ends.tip, axis=0), axis=1) + _ROUNDING
+    axis = ends.tool_axis[:-1] + ends.tool_axis[1:]
+    axis /= np.linalg.norm(axis, axis=1, keepdims=True)
+    return np.asarray((off > too_far) | (angles_between(middle.tool_axis, axis) > _BOW_ANGLE))
+
+
 def unwound(joints: Array, space: JointSpace) -> Array:
     """The same positions (k, joints) modulo full circles, each the nearest to the one before it.
 
-    Where there is none (NaN) the next one goes on from the last that there is.
+    After a missing position (NaN) the next one continues from the last known one.
     """
     result = joints.copy()
     there = np.flatnonzero(~np.isnan(joints[:, 0]))

@@ -20,9 +20,9 @@ __all__ = ["FreeSpace"]
 class FreeSpace:
     """Tests of configurations without contact: joint limits, ground, the arm itself, solids.
 
-    Force and conditioning are not asked. The region at the tool's tip is held against everything
-    like a body of the arm, the object included, unless ``leaving`` says that the tool is only on
-    its way off the object or to it.
+    Force and conditioning are not tested. The region at the tool's tip is tested against everything
+    like a body of the arm, including the object, unless ``leaving`` says that the tool is only
+    leaving the object or approaching it.
 
     Attributes:
         space: of the joints, with their limits.
@@ -68,7 +68,7 @@ class FreeSpace:
         return clear
 
     def touched(self, configuration: Array) -> list[str]:
-        """What is in the way in one configuration (joints,): both bodies of each contact, named."""
+        """What one configuration (joints,) touches: the names of both bodies of each contact."""
         if not self._on:
             return []
         place, found = self._place, []
@@ -131,6 +131,9 @@ def _with_tip(robot: Robot, tip: Body) -> Robot:
 
 
 def _last(robot: Robot) -> int:
-    """The last body, but for those of followers, which may stand after the tool's."""
+    """The number of the last body that the chain of joints carries.
+
+    Bodies on frames beside the chain (:attr:`Robot.followers`) may stand after the tool's.
+    """
     carried = [k for k, body in enumerate(robot.bodies) if body.joint <= robot.joints]
     return max(carried, default=len(robot.bodies) - 1)

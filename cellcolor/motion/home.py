@@ -30,7 +30,7 @@ def home_of(motion: Motion) -> Array | None:
 
 
 def check_home(prepared: PreparedScene, motion: Motion) -> None:
-    """Refuse a home position that is not free.
+    """Reject a home position that is not free.
 
     Raises:
         InputError: with the bodies that are in each other's way there, and a free position near it.
@@ -58,7 +58,7 @@ def check_home(prepared: PreparedScene, motion: Motion) -> None:
 
 
 def free_near(free: FreeSpace, home: Array) -> list[float] | None:
-    """A free configuration, the nearest of some hundred drawn around home at growing distances."""
+    """A free configuration, the nearest of many drawn around home at growing distances."""
     drawn = np.random.default_rng(0).uniform(-1.0, 1.0, (_TRIED, len(home)))
     distances = (_FIRST * _FARTHER**step for step in range(100))
     for distance in takewhile(lambda far: far < np.pi, distances):

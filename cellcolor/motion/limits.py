@@ -1,4 +1,4 @@
-"""What a setup says of motions, held against the arm."""
+"""What a setup says about motions, checked against the arm."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""In which order and direction strokes are made, so that the ways between them are short."""
+"""The order and direction of strokes, chosen so that the ways between them are short."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ def ordered(
     home: Array | None,
     deadline: Deadline,
 ) -> list[Stroke]:
-    """The strokes in order, each in its direction and from its start; turns are left to choose.
+    """The strokes in order, each in its direction and from its start; turns are chosen later.
 
-    Every order is tried of a few strokes; of more, the nearest comes next, and then strokes are
-    moved and stretches turned round as long as that helps. A way between two strokes is as long as
-    its slowest joint takes by the shorter way round.
+    For a few strokes every order is tried. For more, the nearest stroke comes next; then strokes
+    are moved and sequences reversed as long as that helps. A way between two strokes is as long as
+    its slowest joint takes in the shorter direction.
 
     Args:
         strokes: each fits into the limits.
@@ -112,7 +112,7 @@ def _nearest_next(rows: Sequence[Index], between: Array, from_home: Array) -> li
 def _improved(
     order: list[int], cost: Callable[[Sequence[int]], float], deadline: Deadline
 ) -> list[int]:
-    """Move strokes and turn stretches round as long as that helps."""
+    """Move strokes and reverse sequences as long as that helps."""
     value, better = cost(order), True
     while better:
         better = False

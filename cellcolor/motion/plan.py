@@ -80,7 +80,7 @@ def plan_motion(
         seed: of the sampling planner; the same seed gives the same motion.
         deadline: when to give up.
         progress: told the name of each stage as it begins.
-        on_paths: given the tool paths as soon as they are laid, before the arm is moved on them.
+        on_paths: called with the tool paths once they are laid, before the arm moves on them.
 
     Raises:
         InputError: the setup has no motion, or one that does not fit the arm, or the arm can
@@ -194,7 +194,7 @@ def _no_stroke(small: SmallTriangles, left_out: Sequence[LeftOut], spacing_m: fl
         areas[part.reason] += part.area_m2
     if not areas or sum(areas.values()) < whole / 2:
         return (
-            f"{why}: what it can follow is in stretches shorter than motion.spacing_m, "
+            f"{why}: it can follow only stretches shorter than motion.spacing_m, "
             f"{spacing_m:g} m; try a smaller one"
         )
     most = sorted(areas.items(), key=lambda item: -item[1])[:3]

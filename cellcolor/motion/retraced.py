@@ -1,4 +1,4 @@
-"""Where a stroke runs along another pass of its own: into a narrow place and back, or beside it."""
+"""Where a stroke runs along one of its own passes: into a narrow place and back, or beside it."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ _ALONG = 0.9  # cosine of the angle up to which two passes run along each other
 
 
 def beside_itself(points: Array, spacing: float) -> Mask:
-    """Which points (k, 3) of a stroke have another pass of it running along beside them.
+    """Which points (k, 3) of a stroke have another of its passes beside them.
 
-    Both passes are marked, so that it does not matter which of them comes first: a stroke may be
-    turned round.
+    Both passes are marked, so it does not matter which of them comes first: a stroke may be
+    reversed.
 
     Args:
         points: on the way, in their order, m.
-        spacing: wanted between passes, m.
+        spacing: desired between passes, m.
     """
     found = np.zeros(len(points), dtype=bool)
     if len(points) < 3:
@@ -51,7 +51,7 @@ def _marked(points: Array, way: Array, spacing: float) -> Mask:
 
 
 def stretches(marked: Mask) -> list[tuple[int, int]]:
-    """First and last point of each run of two marked points or more."""
+    """First and last point of each run of at least two marked points."""
     ends = np.diff(np.concatenate([[0], marked.astype(np.int8), [0]]))
     first, after = np.flatnonzero(ends > 0), np.flatnonzero(ends < 0)
     return [(a, b - 1) for a, b in zip(first.tolist(), after.tolist(), strict=True) if b - a > 1]

@@ -1,4 +1,6 @@
-"""Samples of a tool path: at most 1 mm and 1 degree apart, all alike far from each other.
+"""Samples of a tool path: evenly spaced, at most 1 mm and 1 degree apart.
+
+Where a joint is fast, beside a singularity, :mod:`~cellcolor.motion.courses` puts more between.
 
 The degree is measured with the path's own normals. With those of the surface, which the samples
 get, neighbors beside a sharp edge can be a little farther apart: 1.13 degrees at most on the parts
@@ -15,7 +17,15 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["DISTANCE", "TURN", "Samples", "angles_between", "sampled", "with_normals_of"]
+__all__ = [
+    "DISTANCE",
+    "TURN",
+    "Samples",
+    "angles_between",
+    "even_places",
+    "sampled",
+    "with_normals_of",
+]
 
 DISTANCE = 0.001  # m, at most from one sample to the next
 TURN = float(np.deg2rad(1.0))  # rad, the same for the normal
@@ -63,24 +73,36 @@ def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Sam
     return Samples(samples.points, turned, samples.faces)
 
 
-def sampled(path: ToolPath) -> Samples:
-    """Points all along a path, both ends among them.
+def even_places(path: ToolPath) -> Array:
+    """Places (k,) of samples all along a path, both ends among them.
+
+    A place is the way from the path's beginning, in shares of what samples may be apart.
 
     The way between neighbors is at most 1 mm long along the path, and the normal turns by at most
-    1 degree on it. By the larger share of the two all of them are equally far from each other.
-    Corners of the path are no samples: a chord cuts them by less than half a millimeter.
+    1 degree on it. The larger share of the two sets an equal distance for all.
+    Corners of the path are not samples: a chord cuts them by less than half a millimeter.
     """
-    lengths = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
-    turns = angles_between(path.normals[:-1], path.normals[1:])
-    # A chord between unit normals is passed fastest, as an angle, in its middle.
-    fastest = 2 * np.tan(np.minimum(turns, 0.99 * np.pi) / 2)
-    share = np.maximum(lengths / DISTANCE, fastest / TURN) / _ROOM
-    total = np.concatenate([[0.0], np.cumsum(share)])
-    count = max(int(np.ceil(total[-1])), 1)
-    place = np.linspace(0.0, total[-1], count + 1)
-    step = np.clip(np.searchsorted(total, place, side="right") - 1, 0, len(share) - 1)
-    part = ((place - total[step]) / np.where(share[step] > 0, share[step], 1.0))[:, None]
+    total = float(np.cumsum(_shares(path))[-1])
+    return np.linspace(0.0, total, max(int(np.ceil(total)), 1) + 1)
+
+
+def sampled(path: ToolPath, places: Array | None = None) -> Samples:
+    """A path at places on it; without them at the even ones."""
+    places = even_places(path) if places is None else places
+    share = _shares(path)
+    passed = np.concatenate([[0.0], np.cumsum(share)])
+    step = np.clip(np.searchsorted(passed, places, side="right") - 1, 0, len(share) - 1)
+    part = ((places - passed[step]) / np.where(share[step] > 0, share[step], 1.0))[:, None]
     points = (1 - part) * path.points[step] + part * path.points[step + 1]
     normals = (1 - part) * path.normals[step] + part * path.normals[step + 1]
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return Samples(points, normals, path.faces[step])
+
+
+def _shares(path: ToolPath) -> Array:
+    """The way between neighbors of a path, as a share of what samples may be apart."""
+    lengths = np.linalg.norm(np.diff(path.points, axis=0), axis=1)
+    turns = angles_between(path.normals[:-1], path.normals[1:])
+    # A chord between unit normals is passed fastest, as an angle, in its middle.
+    fastest = 2 * np.tan(np.minimum(turns, 0.99 * np.pi) / 2)
+    return np.asarray(np.maximum(lengths / DISTANCE, fastest / TURN) / _ROOM)

@@ -1,4 +1,4 @@
-"""Ways round what stands in between, found by sampling: RRT-Connect of OMPL.
+"""Ways around obstacles, found by sampling: RRT-Connect of OMPL.
 
 Kuffner and LaValle, RRT-Connect: an efficient approach to single-query path planning, 2000.
 """
@@ -29,15 +29,15 @@ def sampled_way(
     seed: int,
     deadline: Deadline,
 ) -> Array | None:
-    """Corners (c, joints) of a way, straight for the joints between them; None if none was found.
+    """Corners (c, joints) of a way, joined by straight joint moves; None if none was found.
 
     Args:
         start, end: (joints,) both free.
-        limits: the joints, and what they keep to.
+        limits: the joints and their limits.
         free: which of configurations (k, joints) are free, (k,).
-        step: between two tested configurations of a way a joint moves at most so far, rad or
+        step: the most that a joint moves between two tested configurations of a way, rad or
             units of a slide.
-        rounds: of the planner; a number, so that the time that they take decides nothing.
+        rounds: of the planner; a number, so that the result does not depend on the time.
         seed: the same way for the same seed.
         deadline: when to give up.
     """

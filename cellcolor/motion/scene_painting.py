@@ -1,9 +1,9 @@
-"""A solution painted with the scene at hand: what is drawn is asked of the robot as well.
+"""A solution painted with its scene: the robot is asked about everything that is drawn.
 
-A painting that had to be refined copies colors (docs/painting.md). Here each new vertex is asked
-what reaches it, and each mesh edge inside a segment whether the segment's color leads along it. If
-the scene refuses one of them, the refined surface gets the colors that it has in truth, and is
-solved and painted again; what is proved then is proved for that surface.
+A painting that had to be refined copies colors (docs/painting.md). Here the robot says what
+reaches each new vertex, and whether a segment's color leads along each mesh edge inside it. If
+it rejects one of them, the refined surface gets its true colors, and is solved and painted
+again; the proof is then for that surface.
 """
 
 from __future__ import annotations
@@ -18,10 +18,11 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult, result_of
+from cellcolor.frontend.displaced import run_stages
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.frontend.stages import Stages
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.solvers.checked import solve
@@ -108,7 +109,10 @@ def paint_scene(
             painted = replace(painted, minima=tuple(minima), refused=refused)
             return ScenePainting(painted, normals, built, decomposition, solution)
         clock.begin("solving again")
+        left_alone = built.left_alone
         built = result_of(replace(prepared, surface=finer), stages, clock)
+        if left_alone is not None:
+            built = built.without(left_alone[drawn.stands_for])
         decomposition = decomposition_of(built.surface, None, deadline)
         options = Options(solution.search_space, solution.strands, deadline=deadline)
         solution = solve(decomposition.instance, options)

@@ -1,4 +1,4 @@
-"""The strokes of one segment: one if that is possible, and why not if there are more."""
+"""The strokes of one segment: one if possible, otherwise several with the reason."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Lay = Callable[[int, Collection[tuple[int, int]], Index], Covered]
 
 @dataclass(frozen=True)
 class Ground:
-    """What the strokes of all segments are made on.
+    """What the strokes of all segments have in common.
 
     Attributes:
         prepared: the scene.
@@ -34,7 +34,7 @@ class Ground:
         small: its small triangles.
         states: what the arm does at their corners.
         lay: see :data:`Lay`.
-        shortest: stretches of a path that are shorter are left out where it is cut, m.
+        shortest: shorter pieces of a path are left out where it is cut, m.
         deadline: when to give up.
     """
 
@@ -54,7 +54,7 @@ class SegmentStrokes:
     Attributes:
         courses: its tool paths, and the arm on them.
         strokes: on these, each within the limits of the joints.
-        walls: what was put up so that the joints stay in their limits; None if they do so without.
+        walls: put up so that the joints stay in their limits; None if none were needed.
     """
 
     courses: Courses
@@ -65,7 +65,7 @@ class SegmentStrokes:
 def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> SegmentStrokes:
     """Lay out a segment's paths so that the arm can follow them, and follow them.
 
-    Walls are only put up where a joint would run out of its limits on the paths without.
+    Walls are put up only where a joint would exceed its limits without them.
 
     Args:
         ground: what they are made on.
@@ -135,9 +135,9 @@ def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
 
 def _apart(course: Course) -> Parting:
     x, y, z = course.path.points[0].tolist()
-    return Parting("trimmed", "places that no sample may touch part the segment", (x, y, z))
+    return Parting("trimmed", "places that no sample may touch divide the segment", (x, y, z))
 
 
 def _full(stroke: Stroke, joint: str) -> Parting:
     x, y, z = stroke.points[0].tolist()
-    return Parting("winding", f"{joint} does not get over all of the segment", (x, y, z))
+    return Parting("winding", f"{joint} cannot follow the whole segment", (x, y, z))

@@ -79,7 +79,7 @@ class CornerStates:
             from the first; NaN without solution or segment.
         reasons: (6 m,) codes of the judge: the first test that a corner fails.
         space: of the joints.
-        wound: (6 m,) whether the angles do not come back on the way round: the branch jumps inside.
+        wound: (6 m,) whether the angles do not return after one turn: the branch jumps inside.
     """
 
     joints: Array
@@ -130,7 +130,7 @@ def corner_states(
 
 
 def left_out_parts(small: SmallTriangles, reasons: dict[int, str]) -> tuple[LeftOut, ...]:
-    """What is left out, as parts that hang together and have one reason; large ones first.
+    """What is left out, as connected parts with one reason each; large ones first.
 
     Args:
         reasons: of each small triangle that is left out.

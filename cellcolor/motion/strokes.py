@@ -1,4 +1,4 @@
-"""Strokes: stretches in contact, as far as they can be moved along without lifting."""
+"""Strokes: continuous motions in contact, as long as possible without lifting."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _SAME = 1e-9  # m; ends of a path that are nearer are one point
 
 @dataclass(frozen=True)
 class Parting:
-    """Why a stroke is not one with another one of its segment.
+    """Why a stroke is separate from another one of its segment.
 
     Attributes:
         reason: as of :class:`~cellcolor.data.trajectory.ExtraLiftOff`.
@@ -40,9 +40,9 @@ class Stroke:
         segment: of the painting.
         branch: of the arm.
         points, normals: (k, 3) as of the samples.
-        joints: (k, joints) rad or m, unwound; whole turns of all of them together are still to be
-            chosen.
-        parting: why it is not one with an earlier stroke of its segment; None of the first one.
+        joints: (k, joints) rad or m, unwound; whole turns of all of them together are chosen
+            later.
+        parting: why it is separate from an earlier stroke of its segment; None for the first.
     """
 
     segment: int
@@ -70,7 +70,7 @@ class Stroke:
         )
 
     def reversed(self) -> Stroke:
-        """The other way round."""
+        """The same stroke in reverse."""
         return replace(
             self, points=self.points[::-1], normals=self.normals[::-1], joints=self.joints[::-1]
         )
@@ -89,7 +89,7 @@ class Stroke:
         )
 
     def turned(self, turns: Index, space: JointSpace) -> Stroke:
-        """Every joint (joints,) turned by so many periods all along."""
+        """The stroke with every joint (joints,) turned by a number of periods."""
         return replace(self, joints=self.joints + space.period * turns)
 
 
@@ -102,10 +102,10 @@ def trimmed(
     names: tuple[str, ...],
     space: JointSpace,
 ) -> list[Stroke]:
-    """The stretches of a path whose samples are all valid and none torn from the next.
+    """The pieces of a path whose samples are all valid and continuous.
 
     Args:
-        shortest: stretches that are shorter are left out, m.
+        shortest: shorter pieces are left out, m.
         names: of the codes of the judge.
         space: of the joints.
     """

@@ -1,4 +1,4 @@
-"""When the arm is where: as fast as the tool's speed and the joints' limits allow (TOPP-RA).
+"""Timing of the arm: as fast as the tool's speed and the joints' limits allow (TOPP-RA).
 
 Pham and Pham, A new approach to time-optimal path parameterization based on reachability
 analysis, 2018. Between two samples every joint moves in proportion to time, so derivatives along
@@ -50,7 +50,7 @@ def timed(
         tool_speed: the tool goes no faster, m/s.
 
     Raises:
-        RefusedResult: no times were found, which for a motion from rest to rest is a fault here.
+        RefusedResult: no times were found, which for a motion from rest to rest is a bug.
     """
     if len(joints) < 2:
         return np.zeros(len(joints))

@@ -41,7 +41,7 @@ class Transfer:
 
     Attributes:
         joints: (k, joints) rad or m, unwound.
-        gap: after which of them the way to the next one was not planned; None if all of it was.
+        gap: the configuration after which the way was not planned; None if all was planned.
     """
 
     joints: Array
@@ -74,7 +74,7 @@ class Transfers:
         self._shares: dict[bytes, float] = {}
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
-        """The strokes with their joints turned for good, and all motions without contact.
+        """The strokes with their turns fixed, and all motions without contact.
 
         These are the way to the first stroke, those between strokes, and the way from the last
         one. Without a home position the first begins, and the last ends, where the tool is

@@ -1,4 +1,4 @@
-"""By how many whole turns the joints stand on each stroke, so that moves between are short."""
+"""The whole turns of the joints on each stroke, chosen so that moves between are short."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ _CHECKS = 400  # moves that are asked about at most
 
 @dataclass(frozen=True)
 class Visit:
-    """Where a stroke is come to and left from, and all positions in between; rad or m.
+    """Where a stroke begins and ends, and all positions in between; rad or m.
 
     Attributes:
         start, end: (joints,).
@@ -40,18 +40,18 @@ def chosen_turns(
     velocities: Array,
     detour: Callable[[Array, Array], float],
 ) -> list[Index]:
-    """For each visit the full circles (joints,) by which its joints are turned.
+    """The full circles (joints,) by which the joints of each visit are turned.
 
-    The moves between the visits are to be quick. Whether a straight one is free is only asked of
-    those on the best way, and then that is looked for again.
+    The moves between the visits should be quick. Only straight moves on the best way are tested
+    for collisions; if one is blocked, the best way is computed again.
 
     Args:
         visits: in their order; each fits into the limits.
         home: (joints,) where the arm begins and ends; None if that does not matter.
         space: of the joints.
         velocities: (joints,) the greatest, rad/s or m/s.
-        detour: by how much longer than a straight move from one configuration (joints,) to
-            another the arm takes, s; 0 where that is free.
+        detour: how much longer the arm takes from one configuration (joints,) to another than
+            a straight move, s; 0 if that is free.
     """
     limits = space.limits
     lower, upper = (np.where(np.isfinite(limits).all(axis=0), own, 0.0) for own in limits)

@@ -2,7 +2,7 @@
 
 A planner that paints every vertex of a labelled surface in one of its colors cannot have fewer
 segments than the surface allows. :func:`~cellcolor.oracle.ranges.prove` says how few that is. The
-front door has an object that holds plans against it
+front door has an object that compares plans with it
 (:class:`cellcolor.Oracle <cellcolor.door.oracle.Oracle>`), and functions::
 
     import cellcolor

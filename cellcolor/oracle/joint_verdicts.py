@@ -123,7 +123,7 @@ class PathVerdict(Verdict):
             lines.append(f"its colors need {count(more, 'lift-off')} fewer than the path has")
         elif self.strokes + self.color_changes < self.segments:
             lines.append(
-                "its strokes are fewer than these segments: it leaps between vertices that are no "
+                "its strokes are fewer than these segments: it jumps between vertices that are not "
                 "neighbors, or crosses what it covered in another color"
             )
         return "\n".join(lines)
@@ -136,5 +136,5 @@ class PathVerdict(Verdict):
         if not self.untouched:
             return f"{shown}{rest}"
         vertices = count(self.reachable, "reachable vertex", "reachable vertices")
-        lacking = f"{self.untouched} of {vertices} get no contact in a color of theirs"
+        lacking = f"{self.untouched} of {vertices} get no contact in one of their colors"
         return f"{lacking}: {shown}{rest}"

@@ -91,7 +91,7 @@ def prove(
         strands: corridors that may cross one topological edge, None for the usual number; more
             may lower ``upper``.
         workers: CP-SAT's search workers, None for its portfolio.
-        seed: of everything random.
+        seed: for all random choices.
 
     Raises:
         InputError: a cell of the surface is not planar, or an option is out of its range.

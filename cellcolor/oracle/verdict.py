@@ -22,7 +22,7 @@ __all__ = ["Verdict"]
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Verdict:
-    """What is to be said about a plan.
+    """The verdict on a plan.
 
     Attributes:
         problems: why the plan is not valid, each naming its vertex; none when it is.
@@ -128,7 +128,7 @@ class Verdict:
             because = "" if self.why is None else f", because {self.why}"
             return f"{found}, optimal: no division of the surface has fewer{because}"
         if self.beatable_by:
-            where = "; which ones is not known in time" if self.late else ""
+            where = "; the time limit came before an example was found" if self.late else ""
             if self.improvement is not None:
                 where = f"; {self.improvement}"
             return f"{found}, {self.beatable_by} fewer are proved to be enough{where}"

@@ -3,7 +3,7 @@
 The **clearance** of a vertex is its distance along the surface from the nearest point of another
 segment; what no color reaches, and the rim of the surface, do not count. A footprint of radius r
 stays inside its segment where its center has a clearance of r or more. A **corridor** is a place
-where two parts of a segment hang together and have more clearance than the way between them; its
+where two parts of a segment are connected and have more clearance than the way between them; its
 width is twice the best clearance on that way.
 """
 

@@ -18,7 +18,7 @@ __all__ = ["choose_gates", "steps_by_edge", "subcells_on_surface"]
 def subcells_on_surface(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
     """The sub-cells of a cell that have a place on its border.
 
-    What hangs on seams alone is left out, unless it is all that there is.
+    Sub-cells connected only through seams are left out, unless there is nothing else.
 
     Args:
         cell: the cell's division, in the cyclic list that seams make of its loops.

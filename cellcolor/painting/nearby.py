@@ -57,9 +57,10 @@ class Nearby:
     def near(self, vertex: int) -> list[tuple[int, float, float]]:
         """The others within two mesh edges: vertex, distance in m, weight in m.
 
-        The weights of all pairs of vertices that a curve parts add up to about its length. Were
-        the vertices spread evenly and the two rings a disc of radius R, the sum over pairs of the
-        products of their areas, each by their distance, would be R² for each meter.
+        The weights of all pairs of vertices that a curve separates add up to about its length.
+        For vertices that are spread evenly, with the two rings a disc of radius R, the products of
+        the areas of two vertices, divided by their distance, add up to R² for each meter of the
+        curve. So each product is divided by R², the disc as large as :data:`_RINGS` vertices.
         """
         if vertex not in self._known:
             count = len(self.areas)

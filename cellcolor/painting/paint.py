@@ -126,7 +126,7 @@ def paint(
         RefusedResult: the checker counts other segments than the solution says.
     """
     if solution.cells is None or solution.segments is None:
-        raise InputError(None, "cells", "holds no division to paint")
+        raise InputError(None, "cells", "contains no division to paint")
     if len(decomposition.curves) < len(decomposition.instance.edges):
         raise InputError(None, "edges", "are not numbered in the order in which they lie")
     cell_of = np.array(decomposition.vertex_cell, dtype=np.int64)

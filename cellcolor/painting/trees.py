@@ -249,9 +249,9 @@ class _Trees:
         return True
 
     def _flood(self, start: int, block: int, taken: set[int], reached: dict[int, int]) -> None:
-        """Give ``start`` to all that hangs together with it once ``block`` has taken a way.
+        """Give ``start`` to all that is connected with it once ``block`` has taken a way.
 
-        The way is a wall to all but its own sub-cell. What meets one piece hangs together.
+        The way is a wall to all but its own sub-cell. Everything that meets one piece is connected.
         """
         owner, left, way_met = self.owner, [start], False
         reached[start] = start

@@ -14,9 +14,9 @@ from cellcolor.data.plot import Plot
 from cellcolor.files.writing import MARKER
 from cellcolor.pictures.palette import GREY, INK, LINES
 
-__all__ = ["render_plot"]
+__all__ = ["STYLE", "render_plot", "saved"]
 
-_STYLE = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "cellcolor"}
+STYLE = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "cellcolor"}
 _DASHES = ("-", "--", ":", "-.")
 _MARKS = "os^vD<>P"
 
@@ -28,7 +28,7 @@ def render_plot(plot: Plot, kind: str) -> bytes:
         plot: what to draw.
         kind: ``png`` or ``svg``.
     """
-    with mpl.rc_context(_STYLE):
+    with mpl.rc_context(STYLE):
         figure = Figure(figsize=(8, 5), dpi=150, layout="constrained")
         FigureCanvasAgg(figure)
         axes = figure.add_subplot()
@@ -40,9 +40,14 @@ def render_plot(plot: Plot, kind: str) -> bytes:
         figure.legend(loc="outside right upper", frameon=False, fontsize=8)
         if plot.note:
             figure.supxlabel(plot.note, fontsize=7, x=0.01, ha="left")
-        stream = io.BytesIO()
-        metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
-        figure.savefig(stream, format=kind, metadata=metadata)
+        return saved(figure, kind)
+
+
+def saved(figure: Figure, kind: str) -> bytes:
+    """A figure's file, which says by what it was made and not when."""
+    stream = io.BytesIO()
+    metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
+    figure.savefig(stream, format=kind, metadata=metadata)
     return stream.getvalue()
 
 

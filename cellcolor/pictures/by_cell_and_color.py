@@ -69,7 +69,7 @@ def by_cell(surface: LabelledSurface, decomposition: Decomposition) -> SurfaceVi
     classes += bare_classes(*share[number:])
     notes = ["Cell: {available colors}, share of the surface."]
     if number > len(AREAS):
-        notes.append("Fills repeat: the numbers tell cells apart.")
+        notes.append("Fills repeat: the numbers identify the cells.")
     cracks = surface.crack_colors
     title = f"{surface.name}: {count(number, 'cell')}"
     return SurfaceView(

@@ -61,7 +61,7 @@ def by_plan(surface: LabelledSurface, plan: Plan) -> SurfaceView:
     ]
     notes = ["A plan: one color per vertex. Shares of the surface."]
     if segments > len(AREAS):
-        notes.append("Fills repeat: the numbers tell segments apart.")
+        notes.append("Fills repeat: the numbers identify the segments.")
     lift_offs = count(max(0, segments - 1), "lift-off")
     return SurfaceView(
         f"{surface.name}: plan with {count(segments, 'segment')}, {lift_offs}",

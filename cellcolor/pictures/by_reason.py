@@ -36,7 +36,7 @@ def by_reason(
     Args:
         surface: the labelled surface.
         reasons_of: what became of its candidates.
-        branch: look at this branch alone. None: at the branch that came farthest through the
+        branch: look at this branch alone. None: at the branch that passed the most
             tests; a vertex is reachable if it has any color.
     """
     rows = slice(None) if branch is None else slice(branch, branch + 1)
@@ -61,6 +61,6 @@ def by_reason(
     who = "any branch" if branch is None else reasons_of.branches[branch]
     notes = ["Shares of the surface."]
     if branch is None:
-        notes.insert(0, "Reason of the branch that came farthest through the tests.")
+        notes.insert(0, "The reason of the branch that passed the most tests.")
     title = f"{surface.name}: reach of {who}"
     return SurfaceView(title, labels, classes, notes=tuple(notes))

@@ -79,16 +79,16 @@ def by_solution(
     classes += bare_classes(*bare)
     notes = [f"Status: {solution.status}. Shares of the surface. Black lines: borders of cells."]
     if not share.certain:
-        notes.append("Ranges: where the cut runs through a divided cell is free.")
+        notes.append("Ranges: the cut through a divided cell may run anywhere.")
     if segments > len(AREAS):
-        notes.append("Fills repeat: the numbers tell segments apart.")
+        notes.append("Fills repeat: the numbers identify the segments.")
     if divided:
         named = f"{'cell' if len(divided) == 1 else 'cells'} {listed(divided)}"
-        drawn = "One way to cut is drawn, in black as well."
+        drawn = "One possible cut is drawn, also in black."
         way = drawn if decomposition.curves else "Not painted."
         notes.append(f"Divided: {named}. {way}")
     if added := len(fine.vertices) - len(surface.vertices):
-        notes.append(f"The mesh is refined for that: {count(added, 'vertex', 'vertices')} more.")
+        notes.append(f"The mesh is refined for this: {count(added, 'vertex', 'vertices')} more.")
     lift_offs = count(solution.lift_offs or 0, "lift-off")
     title = f"{surface.name}: {count(segments, 'segment')}, {lift_offs}"
     view = SurfaceView(

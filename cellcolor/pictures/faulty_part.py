@@ -16,7 +16,7 @@ __all__ = ["faulty_part"]
 _MOST = 60_000  # faces that are drawn of a part; of a larger one evenly so many
 _MOST_MARKS = 20_000  # of one kind
 _FILLS = ("#EE6677", "#AA3377", "#4477AA", "#228833", "#CCBB44")  # of faulty faces
-_LINES = ("#D55E00", "#CC0000")  # holes, edges of three faces and more
+_LINES = ("#D55E00", "#CC0000")  # holes, edges with more than two faces
 _SHARP = "#555555"
 _WIDTH = 60  # characters of a note, which has no more room beside the picture
 
@@ -41,7 +41,7 @@ def faulty_part(inspection: Inspection) -> Picture3D:
     if len(places.sharp):
         lines.append(SpaceLines("sharp edges", _SHARP, places.sharp[:_MOST_MARKS]))
     usable = inspection.facts.refusal is None
-    text = "Usable as it is." if usable else f"Not usable as it is: {inspection.facts.refusal}"
+    text = "Usable unchanged." if usable else f"Not usable unchanged: {inspection.facts.refusal}"
     notes += textwrap.wrap(text, _WIDTH)
     eye = np.array([1.0, -1.6, 1.1])
     title = f"{inspection.name}: what is wrong with it" if not usable else inspection.name

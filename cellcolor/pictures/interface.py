@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeAlias
 from cellcolor.pictures.picture import Picture2D, Picture3D
 
 if TYPE_CHECKING:
+    from cellcolor.checker.certificates import BoundVerdict
     from cellcolor.data.candidate_table import CandidateTable
     from cellcolor.data.instance import Instance
     from cellcolor.data.plan import Plan
@@ -26,6 +27,7 @@ Source = Literal[
     "graph",
     "decomposition",
     "solution",
+    "verdicts",
     "plan",
     "reasons",
     "build",
@@ -71,6 +73,12 @@ class Given:
         """A solution of the graph with a division, which the checker has found valid."""
         solution: Solution = self._sources["solution"]
         return solution
+
+    @property
+    def verdicts(self) -> tuple[BoundVerdict, ...]:
+        """What came of verifying the bounds of this solution on the surface."""
+        verdicts: tuple[BoundVerdict, ...] = self._sources["verdicts"]
+        return verdicts
 
     @property
     def plan(self) -> Plan:

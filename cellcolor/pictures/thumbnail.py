@@ -21,7 +21,7 @@ def thumbnail(instance: Instance) -> str:
     """The text of an SVG file, the same for the same graph.
 
     A dot is a cell, larger with more live darts, painted if it has a single color. A line joins
-    cells with an edge between them, dashed where all these are dead. Places mean nothing.
+    cells with an edge between them, dashed where all these are dead. Positions mean nothing.
     """
     joined: dict[tuple[int, int], bool] = {}
     for edge in instance.edges:

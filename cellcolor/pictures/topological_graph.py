@@ -93,11 +93,11 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
     notes = [
         "Node: a cell; its rim: the colors available there.",
         "Small numbers: its darts in cyclic order, counter-clockwise",
-        "as seen from outside; black bars part the loops of a cell with holes.",
-        "Edge: one line for each joinable color. Places mean nothing.",
+        "as seen from outside; black bars separate the loops of a cell with holes.",
+        "Edge: one line for each joinable color. Positions mean nothing.",
     ]
     if len(instance.colors) > len(LINES):
-        notes.append("Line colors repeat: the numbers on the edges tell colors apart.")
+        notes.append("Line colors repeat: the numbers on the edges identify the colors.")
     cells, edges = count(len(instance.cells), "cell"), count(len(instance.edges), "edge")
     title = f"{instance.name}: {cells}, {edges}"
     return Picture2D(title, tuple(lines), tuple(outlines), tuple(texts), tuple(notes))

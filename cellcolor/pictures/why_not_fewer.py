@@ -1,26 +1,22 @@
 """Why fewer segments are not enough: what the certificate of a bound names, on the surface.
 
-Of a conflict between two segments these are its four areas, and a connection of either segment:
-the second would have to cross the first. Of a set cover, of tangles alone or of hubs they are the
-cells.
+What that is each kind of bound says (:mod:`cellcolor.data.bounds`): cells, and connections that
+cross each other.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Collection, Sequence
-from typing import Any
+from itertools import combinations, cycle
 
 import numpy as np
 
 from cellcolor.arrays import Mask
-from cellcolor.checker.certificates import verify_bound
-from cellcolor.checker.color_regions import regions_on_surface
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds.kind import Shown
+from cellcolor.data.bounds.kinds import certificate_of
 from cellcolor.data.instance import OUTSIDE
-from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.wording import count, listed
+from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
 from cellcolor.pictures.interface import Given, Source
@@ -32,12 +28,14 @@ __all__ = ["WhyNotFewerPicture"]
 
 _REST = "#F2F2F2"
 """What says nothing here but can be covered."""
+_TAKEN_AWAY = LINES[0]
+_WAYS = (LINES[0], LINES[5])
 
 
 class WhyNotFewerPicture:
     """What proves that no division of the surface has fewer segments."""
 
-    needs: tuple[Source, ...] = ("surface", "decomposition", "solution")
+    needs: tuple[Source, ...] = ("surface", "decomposition", "solution", "verdicts")
     takes: tuple[Source, ...] = ()
 
     def draw(self, given: Given) -> Picture3D:
@@ -47,136 +45,50 @@ class WhyNotFewerPicture:
             InputError: no certificate of the solution proves more than one segment.
         """
         surface, decomposition = given.surface, given.decomposition
-        bound = _proving(surface, decomposition, given.solution)
-        certificate = bound.certificate or {}
-        parts: list[dict[str, Any]] = certificate.get("parts", [certificate])
-        conflicts = [conflict for part in parts for conflict in part.get("conflicts", ())]
-        tangles = [tangle for part in parts for tangle in part.get("tangles", ())]
+        proved = [v.bound for v in given.verdicts if v.outcome == "verified" and v.bound.value > 1]
+        surface_bounds = [bound for bound in proved if bound.holds_for == "surface"]
+        bound = max(surface_bounds, key=lambda bound: bound.value, default=None)
+        certificate = None if bound is None else certificate_of(bound)
+        if bound is None or certificate is None:
+            message = "none above 1 has a certificate, so there is nothing to see"
+            raise InputError(None, "bounds", message)
         title = f"{surface.name}: why {count(bound.value, 'segment')} at least"
-        if conflicts:
-            view = _of_conflict(surface, decomposition, title, conflicts, len(tangles))
-        else:
-            cells = sorted({cell for part in parts for cell in part["cells"]})
-            hubs = sorted({cell for part in parts for cell in part.get("hubs", ())})
-            view = _of_cells(
-                surface, decomposition, title, bound, cells, hubs, tangled=bool(tangles)
-            )
-        return draw_surface(surface, view)
-
-
-def _proving(surface: LabelledSurface, decomposition: Decomposition, solution: Solution) -> Bound:
-    """The greatest bound for any division that a certificate proves.
-
-    Raises:
-        InputError: there is none above 1.
-    """
-    regions = regions_on_surface(surface, decomposition.vertex_cell)
-    bounds = [b for b in solution.bounds or () if b.holds_for == "surface" and b.value > 1]
-    for bound in sorted(bounds, key=lambda bound: -bound.value):
-        if verify_bound(decomposition.instance, bound, regions).outcome == "verified":
-            return bound
-    raise InputError(None, "bounds", "none above 1 has a certificate, so there is nothing to see")
-
-
-def _of_cells(
-    surface: LabelledSurface,
-    decomposition: Decomposition,
-    title: str,
-    bound: Bound,
-    cells: Sequence[int],
-    hubs: Sequence[int],
-    *,
-    tangled: bool,
-) -> SurfaceView:
-    """Cells that fewer color regions or segments do not touch, and hubs that save no more."""
-    instance = decomposition.instance
-    marked = [(cell, f"cell {cell}") for cell in cells] + [(cell, f"hub {cell}") for cell in hubs]
-    classes = []
-    for number, (cell, name) in enumerate(marked):
-        colors = listed([instance.colors[color] for color in instance.cells[cell].colors])
-        rgb = LINES[0] if cell in hubs else AREAS[number % len(AREAS)]
-        classes.append(VertexClass(f"{name}: {colors}", rgb, str(cell)))
-    labels = _labelled(decomposition, [[cell] for cell, _ in marked], len(marked))
-    notes: tuple[str, ...]
-    if hubs:
-        notes = (
-            "Without the hubs no two of the cells can share a segment,",
-            "and the hubs join no more.",
-        )
-    elif tangled:
-        fewer = count(bound.value - 1, "segment")
-        notes = (f"No {fewer} that touch all of these cells", "can be drawn side by side.")
-    elif len(cells) == bound.value:
-        notes = (
-            "No two of these cells can share a segment:",
-            "no color leads from one to another.",
-        )
-    else:
-        notes = (f"No {count(bound.value - 1, 'color region')} touch all of these cells.",)
-    return _view(surface, title, labels, classes, notes)
-
-
-def _of_conflict(
-    surface: LabelledSurface,
-    decomposition: Decomposition,
-    title: str,
-    conflicts: Sequence[dict[str, Any]],
-    tangles: int,
-) -> SurfaceView:
-    """One conflict: its areas, and two connections, of which the second crosses the first."""
-    shown = conflicts[0]
-    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    ways, classes = [], []
-    sides = zip(shown["colors"], (shown["one"], shown["other"]), "ab", strict=True)
-    areas = [*shown["one"], *shown["other"]]
-    for number, (color, (near, far), letter) in enumerate(sides):
-        name = surface.colors[color]
-        for place, area in enumerate((near, far), start=1):
-            which = f"{'cell' if len(area) == 1 else 'cells'} {listed(area)}"
-            text = f"{letter}{place}: {which}, to be connected in {name}"
-            classes.append(VertexClass(text, AREAS[number], f"{letter}{place}"))
-        ways.append(_way(surface, color, np.isin(cells, near), np.isin(cells, far)))
-    labels = _labelled(decomposition, areas, 7)
-    inside = labels < len(areas)
-    for number, way in enumerate(ways):
-        path = np.array(way, dtype=np.int64)
-        labels[path[~inside[path]]] = 4 + number
-    labels[sorted(set(ways[0]) & set(ways[1]))] = 6
-    for number, letter in enumerate("ab"):
-        color = surface.colors[shown["colors"][number]]
-        rgb = LINES[0] if number == 0 else LINES[5]
-        classes.append(VertexClass(f"a connection of {letter}1 and {letter}2 in {color}", rgb))
-    classes.append(VertexClass("where they cross", WARNING))
-    more = len(conflicts) - 1
-    notes = [
-        "A segment that touches a1 and a2 and one that touches b1",
-        "and b2 would cross, wherever they run. Two are drawn.",
-    ]
-    if more:
-        notes.append(f"The certificate names {count(more, 'conflict')} more.")
-    if tangles:
-        notes.append(f"It names {count(tangles, 'tangle')} of several segments, too.")
-    return _view(surface, title, labels, classes, tuple(notes))
-
-
-def _labelled(decomposition: Decomposition, areas: Sequence[Collection[int]], rest: int) -> Labels:
-    """The class of each vertex: its area's number, ``rest``, or one more without a color."""
-    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
-    labels = np.where(cells == OUTSIDE, rest + 1, rest)
-    for number, area in enumerate(areas):
-        labels[np.isin(cells, list(area))] = number
-    return labels
+        shown = certificate.shown(bound.value, decomposition.instance)
+        return draw_surface(surface, _view(surface, decomposition, title, shown))
 
 
 def _view(
-    surface: LabelledSurface,
-    title: str,
-    labels: Labels,
-    classes: Sequence[VertexClass],
-    notes: tuple[str, ...],
+    surface: LabelledSurface, decomposition: Decomposition, title: str, shown: Shown
 ) -> SurfaceView:
-    rest = [VertexClass("other cells", _REST), VertexClass("not covered", FAINT)]
-    return SurfaceView(title, labels, [*classes, *rest], cracks=surface.crack_colors, notes=notes)
+    """The marked cells, the connections, and where these cross each other."""
+    cells = np.array(decomposition.vertex_cell, dtype=np.int64)
+    marks, ways = shown.marks, shown.connections
+    rest = len(marks) + len(ways) + (1 if ways else 0)
+    labels: Labels = np.where(cells == OUTSIDE, rest + 1, rest)
+    for number, mark in enumerate(marks):
+        labels[np.isin(cells, list(mark.cells))] = number
+    drawn = [
+        set(_way(surface, way.color, np.isin(cells, list(way.near)), np.isin(cells, list(way.far))))
+        for way in ways
+    ]
+    marked = labels < len(marks)
+    for number, path in enumerate(drawn):
+        labels[[vertex for vertex in path if not marked[vertex]]] = len(marks) + number
+    for one, other in combinations(drawn, 2):
+        labels[list(one & other)] = rest - 1
+    classes = [
+        VertexClass(
+            mark.text,
+            _TAKEN_AWAY if mark.group is None else AREAS[mark.group % len(AREAS)],
+            mark.label,
+        )
+        for mark in marks
+    ]
+    classes += [VertexClass(way.text, rgb) for way, rgb in zip(ways, cycle(_WAYS))]
+    if ways:
+        classes.append(VertexClass("where they cross", WARNING))
+    classes += [VertexClass("other cells", _REST), VertexClass("not covered", FAINT)]
+    return SurfaceView(title, labels, classes, cracks=surface.crack_colors, notes=shown.notes)
 
 
 def _way(surface: LabelledSurface, color: int, near: Mask, far: Mask) -> list[int]:

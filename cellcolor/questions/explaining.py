@@ -20,11 +20,12 @@ from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
+from cellcolor.frontend.displaced import judged
 from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.relaxing import Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Judged, Stages, judged, judged_again
+from cellcolor.frontend.stages import Judged, Stages, judged_again
 from cellcolor.questions.explanation import BranchHere, Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
@@ -129,7 +130,8 @@ class _Asked:
         reasons: set[str] = set()
         for one in what:
             reasons |= one.reasons or set()
-        if known.named and all(one.reasons is not None for one in what):
+        in_place = prepared.scene.tolerance is None
+        if known.named and in_place and all(one.reasons is not None for one in what):
             found = judged_again(prepared, self._coarse, reasons, self._clock)
             if _same(found.stages, known):
                 names, keys = _in_words(what)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from cellcolor.data.wording import count
 
-__all__ = ["VARIABLES", "PlacedMinimum", "Placements", "Pose"]
+__all__ = ["VARIABLES", "Leeway", "PlacedMinimum", "PlacementMap", "Placements", "Pose"]
 
 VARIABLES = ("x", "y", "z", "roll", "pitch", "yaw")
 """Of a placement: the position in m, and extrinsic x, y, z angles in rad, as in a scene."""
@@ -19,12 +19,46 @@ Pose = tuple[float, float, float, float, float, float]
 _SAME_SHARE = 1e-9
 
 
+@dataclass(frozen=True, slots=True)
+class Leeway:
+    """How far a part may be off its placement before its lift-offs rise; sampled, not proved.
+
+    Attributes:
+        holds_m: no vertex was moved farther in the samples, nearest first, before one needed more
+            lift-offs or could not be used. Each of them covers at least ``least_share``.
+        fails_m: how far that one was off; None if there was none.
+        tried: how many samples there were up to there.
+        least_share: of the whole surface, 0 to 1.
+    """
+
+    holds_m: float
+    fails_m: float | None
+    tried: int
+    least_share: float
+
+    def __str__(self) -> str:
+        text = f"no more lift-offs up to {1e3 * self.holds_m:.2g} mm off"
+        if self.fails_m is not None:
+            text += f", more at {1e3 * self.fails_m:.2g} mm"
+        share = f"at least {100 * self.least_share:.1f} % of the area"
+        return f"{text} ({count(self.tried, 'sample')}, {share})"
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "holds_m": self.holds_m,
+            "fails_m": self.fails_m,
+            "tried": self.tried,
+            "least_share": self.least_share,
+        }
+
+
 @dataclass(frozen=True)
 class PlacedMinimum:
     """The fewest lift-offs where a part stands.
 
     Attributes:
-        pose: where it stands.
+        pose: where it stands, or the arm's base if that is moved.
         segments: the fewest that were found; None if the part cannot stand there, or none were
             found in time.
         covered_share: the area with a color, as a share of the whole surface, 0 to 1.
@@ -32,6 +66,7 @@ class PlacedMinimum:
             solved.
         vertices: of that mesh.
         refused: why the part cannot stand there, or "".
+        leeway: how far it may be off, where that was asked.
     """
 
     pose: Pose
@@ -40,23 +75,33 @@ class PlacedMinimum:
     proved_for_surface: bool
     vertices: int
     refused: str = ""
+    leeway: Leeway | None = None
 
     @property
     def lift_offs(self) -> int | None:
         """One between each two segments."""
         return None if self.segments is None else max(0, self.segments - 1)
 
-    def rank(self, cover: float) -> tuple[bool, float, bool, float]:
+    def value(self, variable: str) -> float:
+        """Of one of :data:`VARIABLES`."""
+        return self.pose[VARIABLES.index(variable)]
+
+    def rank(self, cover: float, uncovered_price: float = 0.0) -> tuple[bool, float, bool, float]:
         """What a better placement has less of.
 
-        Enough area comes first, then the number, then its proof, then the area left uncovered.
+        Enough area comes first, then the number of segments plus the price of what is left
+        uncovered, then the proof, then the area left uncovered.
         """
         enough = self.segments is not None and self.covered_share >= cover - _SAME_SHARE
-        number = float(self.segments) if enough and self.segments is not None else 0.0
-        return not enough, number, not self.proved_for_surface, 1.0 - self.covered_share
+        left = 1.0 - self.covered_share
+        cost = 0.0
+        if enough and self.segments is not None:
+            cost = self.segments + uncovered_price * left
+        return not enough, cost, not self.proved_for_surface, left
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
+        leeway = {} if self.leeway is None else {"leeway": self.leeway.to_document()}
         return {
             "position_m": list(self.pose[:3]),
             "rpy_rad": list(self.pose[3:]),
@@ -66,7 +111,7 @@ class PlacedMinimum:
             "proved_for_surface": self.proved_for_surface,
             "vertices": self.vertices,
             "refused": self.refused,
-        }
+        } | leeway
 
     def __str__(self) -> str:
         x, y, z, roll, pitch, yaw = self.pose
@@ -81,6 +126,22 @@ class PlacedMinimum:
 
 
 @dataclass(frozen=True, eq=False)
+class PlacementMap:
+    """The fewest lift-offs with the part in the middle of each tile, on the coarse mesh.
+
+    Attributes:
+        ranges: one or two, by their variables.
+        tiles: along each.
+        rows: of the tiles, row by row: the first variable goes fastest; None where the time limit
+            came first.
+    """
+
+    ranges: Mapping[str, tuple[float, float]]
+    tiles: int
+    rows: tuple[PlacedMinimum | None, ...]
+
+
+@dataclass(frozen=True, eq=False)
 class Placements:
     """Where a part may stand, with the fewest lift-offs of each place.
 
@@ -91,6 +152,9 @@ class Placements:
         best: the best placements that were found, on the scene's own mesh, the best first.
         tried: all others, most of them on a coarser mesh, in the order in which they were asked.
         complete: whether the time limit left nothing out.
+        map: where it was asked for.
+        base: whether the arm's base is moved instead of the part.
+        uncovered_price: of the whole surface, if nothing of it were covered, in lift-offs.
     """
 
     name: str
@@ -99,6 +163,9 @@ class Placements:
     best: tuple[PlacedMinimum, ...]
     tried: tuple[PlacedMinimum, ...]
     complete: bool = True
+    map: PlacementMap | None = None
+    base: bool = False
+    uncovered_price: float = 0.0
 
     def __iter__(self) -> Iterator[PlacedMinimum]:
         yield self.here
@@ -106,9 +173,13 @@ class Placements:
         yield from self.tried
 
     def __str__(self) -> str:
-        lines = [f"{self.name}: where it stands, {self.here}"]
+        stands = "where the arm's base stands" if self.base else "where it stands"
+        lines = [f"{self.name}: {stands}, {self.here}"]
         enough = [row for row in self.best if not row.rank(self.cover)[0]]
-        lines += [f"  {number}. {row}" for number, row in enumerate(enough, 1)]
+        for number, row in enumerate(enough, 1):
+            lines.append(f"  {number}. {row}")
+            if row.leeway is not None:
+                lines.append(f"     {row.leeway}")
         asked = f"{100 * self.cover:.1f} % of the area"
         if not enough:
             lines.append(f"  no placement that was tried covers {asked}")

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from cellcolor.arrays import Mask
+from cellcolor.data import surface as surface_file
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
 
-__all__ = ["Place", "WorldBox", "chosen", "left_alone", "read_place", "read_weights"]
+__all__ = ["Place", "WorldBox", "chosen", "read_place", "read_weights"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +36,9 @@ class WorldBox:
             raise InputError(None, None, "the box is empty: its first corner is the lowest one")
 
 
-Place = WorldBox | Sequence[bool] | Mask
-"""A box, or one truth value for each vertex."""
+Place = WorldBox | LabelledSurface | Sequence[bool] | Mask
+"""A box; one truth value for each vertex; or a labelled surface on the same mesh or a refinement of
+it, for the vertices that it gives up."""
 
 
 def chosen(surface: LabelledSurface, place: Place, field: str) -> Mask:
@@ -46,8 +48,11 @@ def chosen(surface: LabelledSurface, place: Place, field: str) -> Mask:
         field: what the place was given as.
 
     Raises:
-        InputError: a mask has another number of vertices, or is none of truth values.
+        InputError: a mask has another number of vertices, or is none of truth values; a surface is
+            on another mesh.
     """
+    if isinstance(place, LabelledSurface):
+        return _given_up(surface, place, field)
     if isinstance(place, WorldBox):
         inside = (surface.vertices >= place.lowest) & (surface.vertices <= place.highest)
         return np.asarray(inside.all(axis=1))
@@ -63,25 +68,23 @@ def chosen(surface: LabelledSurface, place: Place, field: str) -> Mask:
     return mask
 
 
-def left_alone(surface: LabelledSurface, mask: Mask) -> LabelledSurface:
-    """The surface without colors at some vertices (n,): nothing there is asked about."""
-    out = np.flatnonzero(mask).tolist()
-    colors = list(surface.vertex_colors)
-    given_up = {*surface.given_up, *(vertex for vertex in out if colors[vertex])}
-    for vertex in out:
-        colors[vertex] = ()
-    cracks = tuple(crack for crack in surface.cracks if not (mask[crack.i] or mask[crack.j]))
-    return replace(
-        surface, vertex_colors=tuple(colors), given_up=tuple(sorted(given_up)), cracks=cracks
-    )
+def _given_up(surface: LabelledSurface, other: LabelledSurface, field: str) -> Mask:
+    """What another surface gives up; where it was refined, its first vertices are the old ones."""
+    own = len(surface.vertices)
+    if not np.array_equal(other.vertices[:own], surface.vertices):
+        raise InputError(None, field, f"the surface {other.name!r} is on another mesh")
+    mask = np.zeros(len(other.vertices), dtype=bool)
+    mask[list(other.given_up)] = True
+    return mask[:own]
 
 
 def read_place(text: str, field: str) -> Place:
-    """A place as a command is given it: six coordinates of a box, or the file of a mask.
+    """A place as a command is given it: six coordinates of a box, or a file.
 
     Args:
         text: ``x,y,z,x,y,z`` of the lowest and the highest corner in m, or the name of a JSON file
-            whose member ``mask`` has ``true`` or ``false`` for each vertex.
+            whose member ``mask`` has ``true`` or ``false`` for each vertex, or of a labelled
+            surface.
         field: what the place is given as.
 
     Raises:
@@ -96,7 +99,10 @@ def read_place(text: str, field: str) -> Place:
             raise InputError(None, field, "a box is six numbers: x,y,z,x,y,z") from error
         except InputError as error:
             raise InputError(None, field, error.message) from error
-    content = _list_of(text, "mask")
+    document = read_document(text)
+    if document.get("format") == surface_file.FORMAT:
+        return LabelledSurface.read(text)
+    content = _list_of(text, document, "mask")
     if not all(isinstance(one, bool) for one in content):
         raise InputError(text, "mask", "must be true or false for each vertex")
     return content
@@ -108,15 +114,15 @@ def read_weights(file: str) -> list[float]:
     Raises:
         InputError: it is something else; names the file.
     """
-    content = _list_of(file, "weights")
+    content = _list_of(file, read_document(file), "weights")
     for place, one in enumerate(content):
         if isinstance(one, bool) or not isinstance(one, (int, float)):
             raise InputError(file, f"weights[{place}]", "must be a number")
     return content
 
 
-def _list_of(file: str, member: str) -> list[Any]:
-    content = read_document(file).get(member)
+def _list_of(file: str, document: Mapping[str, Any], member: str) -> list[Any]:
+    content = document.get(member)
     if not isinstance(content, list):
         raise InputError(file, member, "must be a list with an entry for each vertex")
     return content

@@ -34,9 +34,11 @@ __all__ = [
     "check_ranges",
     "coarse_scene",
     "distance",
+    "middles",
     "minima_at",
     "pose_of",
     "spread",
+    "stands_in",
 ]
 
 Ranges = Mapping[str, tuple[float, float]]
@@ -45,8 +47,8 @@ Ranges = Mapping[str, tuple[float, float]]
 _FINE_ENOUGH = 1.5  # times the vertices that are wanted; a mesh up to there is not made coarser
 
 
-def check_ranges(ranges: Ranges) -> None:
-    """Refuse ranges that are none.
+def check_ranges(ranges: Ranges, base: bool = False) -> None:
+    """Refuse ranges that are none, and those of a base that would be tilted.
 
     Raises:
         InputError: a variable is unknown, a range is empty or has no numbers, or there is none.
@@ -62,6 +64,8 @@ def check_ranges(ranges: Ranges) -> None:
             raise InputError(None, name, "its range must be two numbers")
         if low >= high:
             raise InputError(None, name, f"the range from {low:g} to {high:g} is empty")
+        if base and name in ("roll", "pitch"):
+            raise InputError(None, name, "the arm's base stays upright")
     if not ranges:
         raise InputError(None, None, f"nothing may move: give a range of {', '.join(VARIABLES)}")
 
@@ -74,6 +78,13 @@ def pose_of(placement: Placement) -> Pose:
 def spread(ranges: Ranges, start: Pose, count: int, seed: int) -> list[Pose]:
     """So many placements all over the ranges; a scrambled Sobol sequence."""
     return _scaled(ranges, start, _sobol(len(ranges), count, seed))
+
+
+def middles(ranges: Ranges, start: Pose, tiles: int) -> list[Pose]:
+    """The middles of so many tiles along each range, row by row: the first range goes fastest."""
+    steps = (np.arange(tiles) + 0.5) / tiles
+    grid = np.meshgrid(*[steps] * len(ranges), indexing="ij")
+    return _scaled(ranges, start, np.column_stack([part.ravel() for part in grid[::-1]]))
 
 
 def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> list[Pose]:
@@ -134,7 +145,12 @@ def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
 
 
 def minima_at(
-    scene: Scene, poses: Sequence[Pose], seconds: float, workers: int | None, seed: int
+    scene: Scene,
+    poses: Sequence[Pose],
+    seconds: float,
+    workers: int | None,
+    seed: int,
+    base: bool = False,
 ) -> list[PlacedMinimum]:
     """The fewest lift-offs of a scene with its part in several places, a row for each.
 
@@ -142,10 +158,11 @@ def minima_at(
 
     Args:
         scene: wherever it has its part.
-        poses: where the part is put.
+        poses: where the part is put, or the arm's base.
         seconds: after so many the rows that are left are missing; infinite for no limit.
         workers: of CP-SAT, None for its portfolio.
         seed: of everything random.
+        base: whether the arm's base is moved instead of the part.
 
     Raises:
         InputError: the scene cannot be used, wherever the part stands.
@@ -157,11 +174,12 @@ def minima_at(
     for pose in poses:
         placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
         try:
+            moved = scene.seen_from(placement) if base else scene.varied(placement=placement)
             if prepared is None:
-                prepared = there = prepare(scene.varied(placement=placement), deadline)
+                prepared = there = prepare(moved, deadline)
             else:
-                there = prepared.at(placement)
-            within = _stands_in(there)
+                there = prepared.amid(moved) if base else prepared.at(placement)
+            within = stands_in(there)
             if within is None:
                 rows.append(_minimum(there, pose, options))
             else:
@@ -175,7 +193,7 @@ def minima_at(
     return rows
 
 
-def _stands_in(prepared: PreparedScene) -> str | None:
+def stands_in(prepared: PreparedScene) -> str | None:
     """What the part is in or touches: the ground or an obstacle; None if nothing."""
     place, vertices = prepared.workplace, prepared.surface.vertices
     if place.ground is not None and (place.ground.along(vertices) < place.ground.offset_m).any():

@@ -1,1 +1,1 @@
-"""Solvers of the minimum-segment coloring, and the bounds beside them."""
+"""Solvers of the minimum-segment coloring, and lower bounds."""

@@ -1,4 +1,4 @@
-"""What a solver from outside answers, read back: joined edges, links, and what it claims."""
+"""The answer of an external solver, read back: joined edges, links, and its claims."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class OutsideAnswer:
         division: the one that it describes.
         seams: what its darts refer to.
         segments: how many the answer says there are; None if it does not.
-        claims_optimum: it says that there are no fewer. Nothing here has verified that.
+        claims_optimum: it says that there are no fewer; this has not been verified.
     """
 
     division: Division
@@ -52,7 +52,7 @@ def read_answer(instance: Instance, text: str, kind: str) -> OutsideAnswer:
 
     Raises:
         InputError: there is no solution in it, or it is not one of this instance's model.
-        TooLarge: the instance's model is too large to be held against the answer.
+        TooLarge: the instance's model is too large to be compared with the answer.
     """
     seamed = Seamed(instance)
     parsed = ANSWERS[kind](seamed.instance, text)
@@ -70,7 +70,7 @@ def _opb(instance: Instance, text: str) -> _Parsed:
     for word in words:
         found = re.fullmatch(r"(-?)x(\d+)", word)
         if not found:
-            raise InputError(None, "v", f"{word!r} is no literal such as x1 or -x1")
+            raise InputError(None, "v", f"{word!r} is not a literal such as x1 or -x1")
         values[int(found[2])] = not found[1]
     return _of_values(instance, values, _objective(text), _says_optimum(text))
 
@@ -94,7 +94,7 @@ def _sol(instance: Instance, text: str) -> _Parsed:
         try:
             value = float(number)
         except ValueError as error:
-            raise InputError(None, f"x{name}", f"{number!r} is no number") from error
+            raise InputError(None, f"x{name}", f"{number!r} is not a number") from error
         if not min(abs(value), abs(value - 1)) < 1e-4:
             raise InputError(None, f"x{name}", f"{number} is neither 0 nor 1")
         values[int(name)] = value > 0.5
@@ -104,7 +104,7 @@ def _sol(instance: Instance, text: str) -> _Parsed:
     try:
         segments = round(float(given[1])) if given else None
     except (ValueError, OverflowError) as error:
-        raise InputError(None, "objective", "is no number") from error
+        raise InputError(None, "objective", "is not a number") from error
     said = re.search(r"^(?:Model status\s*:?\s*|solution status: )optimal\b", text, re.M | re.I)
     zeros = dict.fromkeys(range(1, Coloring(instance).model.variables + 1), False)
     return _of_values(instance, zeros | values, segments, bool(said))
@@ -114,7 +114,7 @@ def _dzn(_instance: Instance, text: str) -> _Parsed:
     """What ``coloring.mzn`` prints: the last solution; ``==========`` claims the optimum."""
     solutions = re.split(r"^-{10}$", text, flags=re.MULTILINE)[:-1]
     if not solutions:
-        raise InputError(None, None, "has no solution, which a line of ten '-' ends")
+        raise InputError(None, None, "has no solution that ends with a line of ten '-'")
     last = solutions[-1]
     color = {int(e): int(c) for e, c in re.findall(r"^joined (\d+) (\d+)$", last, re.MULTILINE)}
     after = {int(a): int(b) for a, b in re.findall(r"^link (-?\d+) (-?\d+)$", last, re.MULTILINE)}

@@ -12,6 +12,8 @@ from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.data.bound import Bound, greatest
+from cellcolor.data.bounds.cells import CertifiedCells
+from cellcolor.data.bounds.kinds import kind_of
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
 from cellcolor.deadline import Deadline
@@ -33,7 +35,7 @@ FEW_STEPS = 20_000
 
 
 def check_able(name: str, options: Options, *, start: bool = False, schemes: bool = False) -> None:
-    """Refuse what a solver does not declare that it can do.
+    """Reject a task that a solver does not declare.
 
     Args:
         name: of the solver.
@@ -51,7 +53,7 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
         ("schemes", schemes, able.optimal_schemes),
     ):
         if asked and not can:
-            raise InputError(None, field, f"is more than the solver {name} is able to do")
+            raise InputError(None, field, f"is more than the solver {name} can do")
     if options.search_space not in able.search_spaces:
         spaces = " and ".join(able.search_spaces)
         message = f"is {options.search_space}, the solver {name} searches {spaces}"
@@ -59,7 +61,7 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
 
 
 def check_able_to_list(name: str, instance: Instance) -> None:
-    """Refuse an instance whose optimal schemes a solver does not list.
+    """Reject an instance whose optimal schemes a solver does not list.
 
     Raises:
         InputError: there is no such solver, or a cell has several live loops and that is more
@@ -85,7 +87,7 @@ def solve(
         progress: called with the best so far and the lower bound.
 
     Returns:
-        The solution, held against the instance by the checker.
+        The solution, checked against the instance.
 
     Raises:
         InputError: there is no such solver, or it is not able to do what is asked; or there are
@@ -179,7 +181,7 @@ def enumerate_schemes(
     check_able_to_list(solver, instance)
     chosen = make_solver(solver)
     if not isinstance(chosen, SchemeSolver):
-        message = f"{solver} declares that it lists optimal schemes, and has no way to do so"
+        message = f"{solver} declares that it lists optimal schemes, but cannot do so"
         raise InputError(None, "solver", message)
     found = False
     for division in chosen.optimal_schemes(instance, options, segments):
@@ -219,9 +221,10 @@ def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
 
 def _certified(instance: Instance, bound: Bound, deadline: Deadline) -> Bound:
     """The bound with what a checker without a solver can verify, where that is known in time."""
-    if bound.kind in ("cover", "strangers") and bound.holds_for == "surface":
+    if kind_of(bound).certificate is CertifiedCells and bound.holds_for == "surface":
         cells = hard_cells(instance, bound.value, deadline)
-        bound = bound if cells is None else replace(bound, certificate={"cells": cells})
+        if cells is not None:
+            bound = replace(bound, certificate=CertifiedCells(tuple(cells)).to_document())
     if bound.certificate is None:
         return bound
     # What a solver hands in may be true and yet not prove it: conflicts on handles, say. And what

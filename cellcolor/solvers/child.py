@@ -1,4 +1,4 @@
-"""A solver from outside in a process of its own: what it prints is read until the deadline."""
+"""An external solver in its own process; its output is read until the deadline."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ _LOOKED_AFTER = 0.1
 
 
 class Child:
-    """A program that is run once, and killed with all that it has started when it is left.
+    """A program that runs once and, on exit from the context, is killed with all its children.
 
-    Used as a context manager. Nothing that it does can overrun the deadline: it is not asked to
-    end.
+    Used as a context manager. The program cannot overrun the deadline: it is killed, not asked
+    to end.
     """
 
     def __init__(self, command: Sequence[str | Path], folder: Path) -> None:
@@ -83,7 +83,7 @@ class Child:
 
     @property
     def failure(self) -> str | None:
-        """What it complained of last if it has ended with an exit code other than 0."""
+        """Its last complaint if it has ended with an exit code other than 0."""
         if self._process.poll() in (None, 0):
             return None
         self._errors.seek(0)

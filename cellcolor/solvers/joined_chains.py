@@ -16,7 +16,7 @@ def division_of_chains(
     """A division whose sub-cells are chains of linked darts.
 
     In a model the sub-cells of a segment form a tree: it does not join an edge that would close a
-    circle of them. In a division such an edge has to be joined, because it has the same color on
+    cycle of them. In a division such an edge has to be joined, because it has the same color on
     both sides (docs/semantics.md, section 3, rule 5). So every dart that the model left unjoined is
     given to the sub-cell before it in cyclic order, and its edge is joined if the dart on the other
     side then has the same, joinable color. That makes no new segment.

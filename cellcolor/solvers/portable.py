@@ -24,7 +24,7 @@ class Portable:
 
     Attributes:
         about: what reads it.
-        kind: how such a file of ours is told from other files, which are not overwritten.
+        kind: how such a file is distinguished from other files, which are not overwritten.
         write: makes its lines; raises InputError and TooLarge for what the model cannot have.
     """
 

@@ -103,5 +103,5 @@ def _made(point: EntryPoint) -> Solver:
         reason = f"{type(error).__name__}: {error}"
         raise InputError(None, "solver", f"{where} cannot be made: {reason}") from error
     if not isinstance(getattr(solver, "abilities", None), Abilities):
-        raise InputError(None, "solver", f"{where} is no solver: it declares no abilities")
+        raise InputError(None, "solver", f"{where} is not a solver: it declares no abilities")
     return solver

@@ -46,7 +46,7 @@ class Seamed:
         self.seams = seams_of(instance, colors, once, None)
         strands = sum(seam.strands for seam in self.seams)
         if strands > MOST_STRANDS:
-            message = f"the seams need {strands} strands, {MOST_STRANDS} at most are made edges"
+            message = f"the seams need {strands} strands, {MOST_STRANDS} at most become edges"
             raise TooLarge(message)
         graph = dart_graph(instance, colors, once, self.seams)
         virtual = {seam.id for seam in self.seams}

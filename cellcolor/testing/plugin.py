@@ -34,7 +34,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.fixture(scope="session")
 def cellcolor_oracle(request: pytest.FixtureRequest) -> Callable[[Solvable], SurfaceUnderTest]:
-    """What is proved of a surface, to hold plans against: ``cellcolor_oracle("part.json")``.
+    """The proof about a surface, to judge plans: ``cellcolor_oracle("part.json")``.
 
     It takes a labelled surface, a scene, or an instance that names its surface: a file, a shipped
     name, or the value. What is proved is kept in pytest's cache, so that the next run proves

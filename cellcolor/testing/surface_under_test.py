@@ -139,9 +139,9 @@ class SurfaceUnderTest:
     def _pictures(self, verdict: Verdict, test: str) -> list[str]:
         """Draw the plan, and a better one; where they are, or why not, a line each."""
         if self._folder is None:
-            return ["no picture: pytest's cache, where it would be, is switched off"]
+            return ["no picture: it would be in pytest's cache, which is switched off"]
         if verdict.plan is None:
-            return ["no picture: what was judged is a solution"]
+            return ["no picture: a solution was judged"]
         folder = self._folder / "pictures"
         folder.mkdir(exist_ok=True)
         file = folder / f"{re.sub('[^A-Za-z0-9]+', '-', test).strip('-')[-120:]}.png"

@@ -23,7 +23,7 @@ from cellcolor.tool_paths.spurs import with_spurs
 
 __all__ = ["ASKED_FOR", "Covered", "check_spacing", "cover"]
 
-ASKED_FOR = "left out as asked for"
+ASKED_FOR = "left out on request"
 """The cause of what is uncovered because it must not be entered."""
 
 _TRIANGLES = 24  # for each square of the spacing, about
@@ -77,7 +77,7 @@ def cover(
         colors: of each segment.
         normals: (n, 3) outward unit normals at the vertices.
         pattern: the name of a registered pattern.
-        spacing_m: wanted distance between neighboring passes, m.
+        spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         walls: mesh edges that no path may cross, like cracks of whatever segment is there.
         left_out: numbers of small triangles (``region.py``) that no path may enter.
@@ -142,7 +142,7 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
     Args:
         surface: the painted surface.
         segment_of: (n,) the segment of each vertex, -1 where it has none: all segments of it.
-        spacing_m: wanted distance between neighboring passes, m.
+        spacing_m: desired distance between neighboring passes, m.
 
     Raises:
         InputError: it is larger.

@@ -213,7 +213,7 @@ def _stages(
     forward: bool,
     came: _Door | None,
 ) -> list[list[int] | tuple[int, int, int, bool, _Door | None]]:
-    """A loop from one place to another, with whatever hangs on it."""
+    """A loop from one place to another, with everything attached to it."""
     loop = loops[number]
     count = len(loop.row)
     step = 1 if forward else -1

@@ -56,6 +56,7 @@ def slice_along(mesh: Triangles, values: Array, levels: Array) -> Sliced:
     if not len(levels):
         return Sliced(mesh, values, np.full(len(mesh.points), -1, dtype=np.int64))
     values = _off(values, levels)
+    # Edges that several levels cross are halved until each is crossed by one at most.
     while True:
         at = np.sort(np.searchsorted(levels, values[mesh.edges]), axis=1)
         crossed = at[:, 1] - at[:, 0]
@@ -107,7 +108,7 @@ def _halved(mesh: Triangles, edges: Mask) -> tuple[Triangles, Index]:
 
 
 def _off(values: Array, levels: Array) -> Array:
-    """The values, those on a level moved a little above it."""
+    """The values, those on a level or just beside it moved a little above it."""
     apart = float(np.diff(levels).min()) if len(levels) > 1 else float(np.ptp(values)) or 1.0
     nearest = levels[np.abs(values[:, None] - levels).argmin(axis=1)] if len(levels) < 2 else None
     if nearest is None:

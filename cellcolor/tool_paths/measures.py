@@ -109,7 +109,7 @@ def measure(laid: Laid, segment: int, spacing: float) -> tuple[PathMeasures, lis
                 segment,
                 float(areas[members].sum()),
                 tuple(mesh.points[farthest].tolist()),
-                "a tip or core that the pattern does not go into",
+                "a tip or core that the pattern does not enter",
             )
         )
     return measures, left

@@ -36,6 +36,6 @@ def find_pattern(name: str) -> Pattern:
     """
     loaded = load(find(name, PATTERNS, _GROUP, "pattern"), "pattern")
     if not callable(loaded):
-        raise InputError(None, "pattern", f"{name!r} is no function")
+        raise InputError(None, "pattern", f"{name!r} is not a function")
     pattern: Pattern = loaded
     return pattern

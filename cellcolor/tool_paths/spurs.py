@@ -27,7 +27,7 @@ def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
 
     Args:
         laid: what a pattern has made.
-        spacing: wanted between passes, m.
+        spacing: desired between passes, m.
         deadline: when to give up.
     """
     mesh = laid.mesh

@@ -125,7 +125,7 @@ def judge_area(
     _note_uncovered(fine, areas, uncovered, missed & ~right, total, spacing, limits, faults)
     if covered.mean_visits > limits.most_mean_visits:
         text = (
-            f"a place is visited {covered.mean_visits:.3f} times on average, allowed are "
+            f"a place is visited {covered.mean_visits:.3f} times on average, allowed: "
             f"{limits.most_mean_visits:g}"
         )
         faults.add("repeated", text)
@@ -175,7 +175,7 @@ def _note_repeated(
             for row in (part[0], part[-1], stretch.earlier_first, stretch.earlier_last)
         )
         text = (
-            f"runs for {length:.4f} m along an earlier pass, samples {begin} to {end}, allowed are "
+            f"runs for {length:.4f} m along an earlier pass, samples {begin} to {end}, allowed: "
             f"{most:.4f} m unless they are stated"
         )
         faults.add("repeated", text, first, last, place=dense.tips[rows[part[0]]])

@@ -27,7 +27,7 @@ __all__ = ["AtVertices", "Touches", "at_vertices", "touches"]
 
 @dataclass(frozen=True)
 class AtVertices:
-    """Configurations, each held against one vertex.
+    """Configurations, each compared with one vertex.
 
     Attributes:
         built: the scene.
@@ -56,10 +56,10 @@ class AtVertices:
         off, tilt, apart = float(self.off[row]), float(self.tilt[row]), float(self.apart[row])
         if off > OFF_SURFACE:
             most = f"{1000 * OFF_SURFACE:g}"
-            return f"the tip is {1000 * off:.4g} mm off the vertex, allowed are {most}"
+            return f"the tip is {1000 * off:.4g} mm off the vertex, allowed: {most}"
         if tilt > TILT:
             most = f"{np.degrees(TILT):g}"
-            return f"the tool is {np.degrees(tilt):.4g} degrees off the normal, allowed are {most}"
+            return f"the tool is {np.degrees(tilt):.4g} degrees off the normal, allowed: {most}"
         if np.isinf(apart):
             return "the scene has no configuration there"
         vertex, branch = int(self.vertex[row]), int(self.branch[row])
@@ -68,16 +68,16 @@ class AtVertices:
         if apart > AT_VERTEX:
             return (
                 f"the scene's nearest configuration there, {name!r}, is {apart:.4g} rad{meters} "
-                f"off, allowed are {AT_VERTEX:g}"
+                f"off, allowed: {AT_VERTEX:g}"
             )
         turned = float(np.degrees(self.turned[row]))
         if self.turned[row] > TURN:
             most = f"{np.degrees(TURN):g}"
-            return f"the tool is {turned:.4g} degrees off its turn there, allowed are {most}"
+            return f"the tool is {turned:.4g} degrees off its turn there, allowed: {most}"
         code = int(self.built.reasons[vertex, branch])
         if code != VALID:
             return f"{name!r} fails the test {self.built.reason_names[code]!r} there"
-        return f"{name!r} was taken away there by the sliver policy"
+        return f"{name!r} was removed there by the sliver policy"
 
 
 @dataclass(frozen=True)
@@ -109,7 +109,7 @@ def at_vertices(
 
     It has to put tip and tool there as in any contact; the tool's direction counts if the task asks
     for it. Then it is of the branch of the nearest of the scene's configurations, which may be no
-    farther than ``AT_VERTEX`` in any joint modulo full circles, in m of prismatic ones. A last
+    farther than ``AT_VERTEX`` in any joint modulo full circles (m for prismatic joints). A last
     joint that only turns the tool about its axis is not compared: the scene keeps it locked, and
     the task leaves it free. If the setup gives the turn, it is compared.
 

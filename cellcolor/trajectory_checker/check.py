@@ -103,7 +103,7 @@ def check_trajectory(
     judge_cracks(built, dense, rows, located, branches, fine, faults)
     covered: CoveredArea | None = None
     if motion is None:
-        notes.append("The setup has no [motion], so area covered is not judged.")
+        notes.append("The setup has no [motion], so coverage is not judged.")
     else:
         report("area")
         deadline.check()
@@ -117,13 +117,16 @@ def check_trajectory(
 
 def _given_up(built: BuildResult) -> list[str]:
     """What the shares covered do not speak of."""
-    areas, given_up = built.surface.vertex_areas, list(built.surface.given_up)
-    share = areas[given_up].sum() / areas.sum()
-    if not share:
-        return []
+    areas, slivers = built.surface.vertex_areas, built.slivers
+    alone = [vertex for vertex in built.surface.given_up if not slivers[vertex]]
     return [
         f"Shares covered are of the area with a color; {share:.1%} of the surface has none because "
-        "the sliver policy gave it up."
+        f"{why}."
+        for where, why in (
+            (slivers, "the sliver policy gave it up"),
+            (alone, "it is left alone on purpose"),
+        )
+        if (share := areas[where].sum() / areas.sum())
     ]
 
 

@@ -25,7 +25,7 @@ def judge_lift_offs(trajectory: Trajectory, minimum: int | None, faults: FaultLi
     stated = {extra.sample for extra in trajectory.extra_lift_offs}
     for extra in trajectory.extra_lift_offs:
         if extra.sample not in ends:
-            text = "an extra lift-off is stated after this sample, and there is none"
+            text = "an extra lift-off is stated after this sample, but there is none"
             faults.add("claim", text, extra.sample, place=np.array(extra.place))
     if minimum is None:
         return
@@ -77,7 +77,7 @@ def judge_left_out(
         apart = np.linalg.norm(fine.vertices - place, axis=1)
         at = int(np.argmin(apart))
         if apart[at] > spacing:
-            text = f"segment {part.segment}: a place left out is stated that is not on the surface"
+            text = f"segment {part.segment}: a stated left-out place is not on the surface"
             faults.add("claim", text, place=place)
         elif asked[at] and not right[at] and not reached[at] and areas[at] > 0:
             text = f"segment {part.segment}: stated as left out ({part.reason}), but reachable"

@@ -93,7 +93,7 @@ def judge_joints(
         fast,
         np.abs(velocity),
         lambda k, joint: (
-            f"moves at {abs(velocity[k, joint]):.4g} {units[joint]}/s, allowed are "
+            f"moves at {abs(velocity[k, joint]):.4g} {units[joint]}/s, allowed: "
             f"{limits.velocity[joint]:.4g}"
         ),
         tips,
@@ -154,7 +154,7 @@ def _judge_tool_speed(
         "velocity",
         over,
         speed,
-        lambda k: f"the tool moves at {speed[k]:.4g} m/s in contact, allowed are {most:.4g}",
+        lambda k: f"the tool moves at {speed[k]:.4g} m/s in contact, allowed: {most:.4g}",
         tips,
     )
 
@@ -241,7 +241,7 @@ def _note_accelerations(
         excess,
         lambda k, joint: (
             f"accelerates by {excess[k, joint]:.4g} {limits.units[joint]}/s², "
-            f"allowed are {most[joint]:.4g}"
+            f"allowed: {most[joint]:.4g}"
         ),
         tips,
     )

@@ -42,7 +42,7 @@ def judge_contact(
         rows,
         1000 * apart,
         1000 * OFF_SURFACE,
-        "the tip is {:.4g} mm off the surface, allowed are {:.4g}",
+        "the tip is {:.4g} mm off the surface, allowed: {:.4g}",
         faults,
     )
     if direction:
@@ -54,7 +54,7 @@ def judge_contact(
             rows,
             np.degrees(tilt),
             float(np.degrees(TILT)),
-            "the tool is {:.4g} degrees off the surface's normal, allowed are {:.4g}",
+            "the tool is {:.4g} degrees off the surface's normal, allowed: {:.4g}",
             faults,
         )
     return np.asarray(apart <= OFF_SURFACE)

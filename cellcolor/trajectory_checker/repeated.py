@@ -117,9 +117,9 @@ def _near(tree: cKDTree, points: Array, within: float) -> Iterator[tuple[Index, 
         np.add.reduceat(counts, np.arange(0, len(counts), _TOGETHER)) if len(counts) else counts
     )
     if blocks.max(initial=0) > _MOST:
-        raise TooLarge("the trajectory comes by the same place too often to be measured")
+        raise TooLarge("the trajectory passes the same place too often to be measured")
     pairs = int(counts.sum())
-    what = f"the trajectory comes by the same place too often: {pairs:,} pairs of places"
+    what = f"the trajectory passes the same place too often: {pairs:,} pairs of places"
     check_memory(pairs * _KEPT, what)
     for part in batches(counts, _PAIR):
         near = tree.query_ball_point(points[part], within, return_sorted=False)

@@ -66,10 +66,10 @@ def judge_turn(
 
     def text(row: int) -> str:
         if np.isinf(excess[row]):
-            return f"the setup's rule for the tool's turn says nothing here{dense.where(row)}"
+            return f"the setup's rule for the tool's turn is undefined here{dense.where(row)}"
         return (
             f"the tool is {excess[row]:.4g} degrees off the turn that the setup gives it, "
-            f"allowed are {most:.4g}{dense.where(row)}"
+            f"allowed: {most:.4g}{dense.where(row)}"
         )
 
     faults.add_stretches("turned", excess > most, excess, text, dense.tips, sample_of=dense.sample)

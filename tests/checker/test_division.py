@@ -39,11 +39,11 @@ def with_cell(number: int, *subs: tuple[int, list[DartName], int]) -> Callable[[
 @pytest.mark.parametrize(
     ("division", "expected"),
     [
-        (with_cell(0), "cells[0].subcells: needs one sub-cell"),
+        (with_cell(0), "cells[0].subcells: needs at least one sub-cell"),
         (with_cell(0, (RED, [3], 0)), "cells[0].subcells[0].color: cell 0 cannot be painted"),
-        (with_cell(0, (BLUE, [1, 3], 0)), "cells[0].subcells[0].darts: 1 is no live dart"),
-        (with_cell(0, (BLUE, [3, -3], 0)), "cells[0].subcells[0].darts: -3 is no live dart"),
-        (with_cell(0, (BLUE, [3, 3], 0)), "cells[0].subcells[0].darts: 3 stands twice"),
+        (with_cell(0, (BLUE, [1, 3], 0)), "cells[0].subcells[0].darts: 1 is not a live dart"),
+        (with_cell(0, (BLUE, [3, -3], 0)), "cells[0].subcells[0].darts: -3 is not a live dart"),
+        (with_cell(0, (BLUE, [3, 3], 0)), "cells[0].subcells[0].darts: 3 appears twice"),
         (with_cell(0, (BLUE, [], 0)), "edge 3: in state 1 on one side only"),
         (
             with_cell(2, (RED, [-3, -6], 0), (RED, [11, 8], 1)),
@@ -103,7 +103,7 @@ def test_a_color_that_cannot_continue_does_not_join() -> None:
     right = divide([(RED, [2], 0)], [(RED, [-2], 0)])
     assert check_division(CRACK, right).segments == 1
     dead = divide([(RED, [1, 2], 0)], [(RED, [-1, -2], 0)])
-    assert "1 is no live dart" in check_division(CRACK, dead).problems[0]
+    assert "1 is not a live dart" in check_division(CRACK, dead).problems[0]
     partly = Instance(
         "partly",
         ("red", "blue"),

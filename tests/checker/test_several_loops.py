@@ -46,7 +46,7 @@ def test_seams_are_checked() -> None:
     assert "there is no cell 9" in problem(replace(SEAM, cell=9))
     assert "dart 3 is not in the loops of cell 1" in problem(replace(SEAM, from_=3))
     assert "are in one loop already" in problem(replace(SEAM, to=-12))
-    assert "20 strand 2 is no live dart" in problem(replace(SEAM, strands=1))
+    assert "20 strand 2 is not a live dart" in problem(replace(SEAM, strands=1))
 
 
 def test_a_seam_in_state_0_parts_nothing() -> None:

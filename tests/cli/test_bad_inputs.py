@@ -64,8 +64,14 @@ GRAPHS = {
     "no format": instance_of(drop("format"), "format"),
     "wrong version": instance_of(put("version", to=3), "version"),
     "unknown member": instance_of(put("color", to=[]), "color"),
+    "misspelt member": instance_of(
+        put("cells", 0, to={"id": 0, "colors": [0], "loop": [[1, 2]]}),
+        "cells[0].loop",
+        "unknown key; is 'loops' meant?",
+    ),
+    "a mesh": Bad("solid part\nendsolid part\n", "is a mesh, which has no colors", "", "bad.stl"),
     "edge used three times": instance_of(
-        put("cells", 0, "loops", to=[[1, 2, 1]]), "cells[0].loops[0][2]", "dart 1 stands twice"
+        put("cells", 0, "loops", to=[[1, 2, 1]]), "cells[0].loops[0][2]", "dart 1 appears twice"
     ),
     "loop that does not close": instance_of(
         put("cells", 0, "loops", to=[[1]]), "edges[1]", "do not close"
@@ -117,7 +123,7 @@ GRAPHS = {
     "colors of a vertex missing": surface_of(
         drop("vertex_colors", 0), "vertex_colors", "3 entries"
     ),
-    "crack on no edge": surface_of(put("cracks", 0, to=[1, 3, [0]]), "cracks[0]", "no edge"),
+    "crack on no edge": surface_of(put("cracks", 0, to=[1, 3, [0]]), "cracks[0]", "not an edge"),
     "crack twice": surface_of(put("cracks", to=[[0, 2, [0]], [2, 0, [1]]]), "cracks[1]", "already"),
     "crack of a color not there": surface_of(put("cracks", 0, to=[0, 2, [8]]), "cracks[0]", "8"),
     "two colors of one name in a surface": surface_of(

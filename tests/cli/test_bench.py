@@ -112,7 +112,7 @@ class TestRun:
         with table.open("ab") as file:  # as a kill leaves it
             file.write(before.splitlines()[-1][:40])
         assert run(*families, "--seeds", "0,1", "--repetitions", "1") == 0
-        assert "2 runs, 2 with a proved minimum, 2 left out or there already" in (
+        assert "2 runs, 2 with a proved minimum, 2 left out or already there" in (
             capsys.readouterr().out
         )
         assert table.read_bytes().startswith(before)
@@ -199,12 +199,12 @@ class TestRun:
     @pytest.mark.parametrize(
         ("arguments", "message"),
         [
-            (["nothing*"], "nothing*: no family and no shipped name is like this"),
-            (["library/none"], "library/none: the library has no family like this"),
+            (["nothing*"], "nothing*: matches no family and no shipped name"),
+            (["library/none"], "library/none: matches no family of the library"),
             (["small", "--solver", "nobody"], "solver: there is no 'nobody'"),
             (["small", "--solver", "dfs@0"], "dfs@0: no number of workers after @"),
-            (["small", "--seeds", "a-b"], "'a-b' is nothing like 0-9"),
-            (["small", "--seeds", "7-3"], "'7-3' has no number in it"),
+            (["small", "--seeds", "a-b"], "'a-b' is not a list like 0-9"),
+            (["small", "--seeds", "7-3"], "'7-3' contains no number"),
             (["small", "-o", "none/t.csv"], "none/t.csv: No such file or directory"),
         ],
         ids=lambda value: " ".join(value) if isinstance(value, list) else "",

@@ -117,7 +117,7 @@ def test_bad_input(scene: Path, tmp_path: Path, capsys: Capture) -> None:
 
     path = tmp_path / "t.csv"
     path.write_text("contact,q1\n1,x\n", encoding="utf-8")
-    refused(scene, path, "line 2, column q1", "is no number")
+    refused(scene, path, "line 2, column q1", "is not a number")
     path.write_text("contact,q1\n1,0\n", encoding="utf-8")
     refused(scene, path, "line 1", "there are 1 joints, the arm has 6")
     refused(scene, tmp_path / "none.csv", "No such file")
@@ -128,7 +128,7 @@ def test_bad_input(scene: Path, tmp_path: Path, capsys: Capture) -> None:
     refused(scene, other, "joints", "has 3 entries for 2 times")
     other.write_text(rasters.square()[2].to_json(), encoding="utf-8")
     assert run("check", PAPER / "ring.surface.json", other) == 2
-    assert "the arm is in a scene" in capsys.readouterr().err
+    assert "has an arm" in capsys.readouterr().err
 
 
 def test_the_time_limit(scene: Path, tmp_path: Path, capsys: Capture) -> None:

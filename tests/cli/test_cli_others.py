@@ -125,7 +125,7 @@ class TestCheck:
         lines[3] = lines[1]
         solved.write_text("\n".join(lines) + "\n", encoding="utf-8")
         assert run("check", ZEROS, solved) == 1
-        assert "scheme 3: the same scheme" in capsys.readouterr().out
+        assert "scheme 3: an earlier line has the same scheme" in capsys.readouterr().out
 
     def test_scheme_missing(self, solved: Path, capsys: Capture) -> None:
         lines = solved.read_text(encoding="utf-8").splitlines()
@@ -158,8 +158,8 @@ class TestCheck:
         plan.write_text(Plan(tuple(own[0] for own in surface.vertex_colors)).to_json())
         read_subject = cellcolor.cli.check.read_subject
 
-        def slow(path: Path, deadline: Deadline) -> Instance | LabelledSurface:
-            subject = read_subject(path, deadline)
+        def slow(path: Path, deadline: Deadline, tolerance: None) -> Instance | LabelledSurface:
+            subject = read_subject(path, deadline, tolerance)
             now = time.monotonic()
             monkeypatch.setattr(time, "monotonic", lambda: now + 60)
             return subject

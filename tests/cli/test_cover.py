@@ -91,7 +91,7 @@ def test_out_of_time_nothing_is_written(
 def test_python_refuses_what_does_not_fit() -> None:
     painting = cellcolor.paint("ring.surface.json", cellcolor.solve("ring.surface.json"))
     lengths = {"spacing_m": 0.5, "tool_radius_m": 0.5}
-    with pytest.raises(cellcolor.InputError, match="plan: is given already"):
+    with pytest.raises(cellcolor.InputError, match="plan: is already set"):
         cellcolor.cover(painting, painting.plan, **lengths)
     with pytest.raises(cellcolor.InputError, match="plan: is missing"):
         cellcolor.cover(painting.surface, **lengths)

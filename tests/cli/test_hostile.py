@@ -67,7 +67,7 @@ TOMLS = {
     "a long key": (".".join("a" * 50_000) + " = 1", "more than 50 parts"),
     "a long quoted key": (" . ".join(['"a b"'] * 60) + " = 1", "more than 50 parts"),
     "a control character in a key": (f'"\\u009b31m" = 1\n{SCENE}', r"\x9b31m"),
-    "a name with a zero": (SCENE.replace("../../models", "\\u0000"), "no name of a file"),
+    "a name with a zero": (SCENE.replace("../../models", "\\u0000"), "not a file name"),
     "a long name": (SCENE.replace("../../models", "m" * 300), "name too long"),
     "beyond the moon": (SCENE.replace("[0.465", "[1e300"), "placement.position_m[0]"),
     "smaller than dust": (SCENE.replace("radius_m = 0.20", "radius_m = 1e-300"), "radius_m"),

@@ -125,7 +125,7 @@ def test_a_scene_is_asked_what_reaches_new_vertices(
     output = tmp_path / "painted.surface.json"
     assert run("paint", file, solution, "-o", output) == 0
     said = capsys.readouterr().out
-    assert f"the scene refuses copied colors: {chance.segments} segments as solved," in said
+    assert f"the scene rejects copied colors: {chance.segments} segments as solved," in said
     assert "2 after solving again with the true colors of the refined surface" in said
     assert run("check", output, tmp_path / "painted.plan.json", "--json") == 0
     assert json_lines(capsys.readouterr().out)[0]["optimal"]

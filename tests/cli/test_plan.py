@@ -235,7 +235,7 @@ def test_a_time_limit_leaves_what_there_is(
     monkeypatch.setattr(cellcolor.motion.plan, "plan_motion", out_of_time(laid=False))
     capsys.readouterr()
     assert run("plan", scene, "-o", folder) == 3
-    assert "paths.json: is of a plan that came farther" in capsys.readouterr().err
+    assert "paths.json: belongs to a plan that got further" in capsys.readouterr().err
     assert {file: file.read_bytes() for file in folder.iterdir()} == kept
 
 
@@ -277,7 +277,7 @@ def test_a_signal_on_the_way_leaves_nothing(
     [
         ("[9.0, 0.0, 0.0]", "no solution", "move the part nearer"),
         ("[0.6, 0.0, -0.6]", "tip blocked", "below the ground"),
-        ("turned inside out", "warning", "turn its faces round"),
+        ("turned inside out", "warning", "reverse its faces"),
     ],
 )
 def test_where_nothing_can_be_covered_it_says_what_build_says(

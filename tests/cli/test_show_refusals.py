@@ -106,7 +106,7 @@ def test_solutions(tmp_path: Path, capsys: Capture) -> None:
     [
         ({"reasons": np.zeros((3, 2), np.uint8)}, "another surface"),
         ({"reasons": np.full((30, 2), 9, np.uint8)}, "unknown code 9"),
-        ({"branches": np.array([{}])}, "is no side file"),
+        ({"branches": np.array([{}])}, "is not a side file"),
     ],
     ids=["shape", "code", "pickle"],
 )
@@ -120,7 +120,7 @@ def test_side_file_that_is_none(tmp_path: Path, capsys: Capture) -> None:
     arguments = [path, "--reason", "-o", tmp_path / "x.png"]
     refused([*arguments, "--branch", "middle arm"], capsys, "branch", "'left arm'")
     (tmp_path / "side.npz").write_text("nothing")
-    refused(arguments, capsys, "side.npz", "is no side file")
+    refused(arguments, capsys, "side.npz", "is not a side file")
     (tmp_path / "side.npz").unlink()
     refused(arguments, capsys, "side.npz", "No such file")
 

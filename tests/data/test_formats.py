@@ -140,7 +140,7 @@ def test_every_format_refuses(kind: type[Kind], change: Change, field: str, tmp_
     [
         ("", "not JSON"),
         ("[]", "must be a JSON object"),
-        ('{"format": 1, "format": 1}', "member stands twice"),
+        ('{"format": 1, "format": 1}', "member appears twice"),
         ('{"format": NaN}', "NaN is not a JSON number"),
         ("[" * 100_000, "nested too deeply"),
     ],
@@ -205,7 +205,7 @@ SURFACE_FAULTS = {
     "color out of range": (put("vertex_colors", 2, to=[2]), "vertex_colors[2]", "unknown color 2"),
     "color twice": (put("vertex_colors", 2, to=[0, 0]), "vertex_colors[2]", "twice"),
     "colors of a vertex missing": (drop("vertex_colors", 3), "vertex_colors", "3 entries for 4"),
-    "crack on what is no edge": (put("cracks", 0, to=[1, 3, [0]]), "cracks[0]", "no edge"),
+    "crack on what is no edge": (put("cracks", 0, to=[1, 3, [0]]), "cracks[0]", "not an edge"),
     "crack twice": (put("cracks", to=[[0, 2, [0]], [2, 0, [1]]]), "cracks[1]", "already"),
     "crack of an unknown color": (put("cracks", 0, to=[0, 2, [7]]), "cracks[0]", "unknown color 7"),
     "crack of a color of one end": (
@@ -213,12 +213,12 @@ SURFACE_FAULTS = {
         "cracks[0]",
         "not shared",
     ),
-    "crack of no color": (put("cracks", 0, to=[0, 2, []]), "cracks[0]", "one color or more"),
+    "crack of no color": (put("cracks", 0, to=[0, 2, []]), "cracks[0]", "at least one color"),
     "crack of a color twice": (put("cracks", 0, to=[0, 2, [1, 1]]), "cracks[0]", "each once"),
     "no such vertex given up": (put("given_up", to=[4]), "given_up[0]", "no vertex 4"),
     "vertex with colors given up": (put("given_up", to=[2, 3]), "given_up[0]", "has colors"),
     "vertex given up twice": (put("given_up", to=[3, 3]), "given_up[1]", "twice"),
-    "no name": (drop("name"), "name", "required"),
+    "no name": (drop("name"), "name", "is missing"),
 }
 
 INSTANCE_FAULTS = {
@@ -281,8 +281,8 @@ INSTANCE_FAULTS = {
     ),
     "share above 1": (put("coverage", "unreachable", to=1.5), "coverage.unreachable", "less"),
     "known of what": (put("known", "else", to={"segments": 1}), "known.else", ""),
-    "known without segments": (put("known", "paper", to={}), "known.paper.segments", "required"),
-    "cells missing": (drop("cells"), "cells", "required"),
+    "known without segments": (put("known", "paper", to={}), "known.paper.segments", "is missing"),
+    "cells missing": (drop("cells"), "cells", "is missing"),
     "id as text": (put("edges", 0, "id", to="1"), "edges[0].id", "integer"),
     "id as true": (put("edges", 0, "id", to=True), "edges[0].id", "integer"),
 }
@@ -296,12 +296,12 @@ SOLUTION_FAULTS = {
     "search space": (put("search_space", to="both"), "search_space", "paper"),
     "negative segments": (put("segments", to=-1), "segments", "greater"),
     "no strands": (put("strands", to=0), "strands", "greater"),
-    "no instance": (drop("instance"), "instance", "required"),
+    "no instance": (drop("instance"), "instance", "is missing"),
     "bound of what": (put("bounds", 0, "holds_for", to="all"), "bounds[0].holds_for", "surface"),
     "bound below nothing": (put("bounds", 0, "value", to=-1), "bounds[0].value", "greater"),
     "member of a bound": (put("bounds", 0, "proof", to=1), "bounds[0].proof", ""),
-    "note that is no text": (put("notes", 0, to=1), "notes[0]", "string"),
-    "bound missing": (drop("surface_lower_bound"), "surface_lower_bound", "required"),
+    "note that is not text": (put("notes", 0, to=1), "notes[0]", "string"),
+    "bound missing": (drop("surface_lower_bound"), "surface_lower_bound", "is missing"),
     "color as text": (
         put("cells", 0, "subcells", 0, "color", to="red"),
         "cells[0].subcells[0].color",
@@ -312,7 +312,7 @@ SOLUTION_FAULTS = {
 PLAN_FAULTS = {
     "color as text": (put("vertex_colors", 1, to="red"), "vertex_colors[1]", "integer"),
     "color as true": (put("vertex_colors", 1, to=True), "vertex_colors[1]", "integer"),
-    "no colors": (drop("vertex_colors"), "vertex_colors", "required"),
+    "no colors": (drop("vertex_colors"), "vertex_colors", "is missing"),
 }
 
 
@@ -321,12 +321,16 @@ TRAJECTORY_FAULTS = {
     "joints of another arm": (put("joint_names", to=["pan"]), "joints", "needs 1 numbers"),
     "too few times": (put("times", to=[0.0, 1.0]), "joints", "has 3 entries for 2 times"),
     "endless time": (put("times", 1, to=float("inf")), "times[1]", "number"),
-    "flat points": (put("points", 0, to=[0.0, 0.0]), "points[0][2]", "required"),
+    "flat points": (put("points", 0, to=[0.0, 0.0]), "points[0][2]", "is missing"),
     "contact as a number": (put("contact", 0, to=1), "contact[0]", "boolean"),
     "half a segment": (put("segment", 0, to=0.5), "segment[0]", "integer"),
     "sample as text": (put("unplanned", 0, to="1"), "unplanned[0]", "integer"),
-    "no reason": (drop("left_out", 0, "reason"), "left_out[0].reason", "required"),
-    "unknown member": (put("extra_lift_offs", 0, "why", to=""), "extra_lift_offs[0].why", "Un"),
+    "no reason": (drop("left_out", 0, "reason"), "left_out[0].reason", "is missing"),
+    "unknown member": (
+        put("extra_lift_offs", 0, "why", to=""),
+        "extra_lift_offs[0].why",
+        "unknown key",
+    ),
 }
 
 VERDICT_FAULTS = {

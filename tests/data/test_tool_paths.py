@@ -51,8 +51,8 @@ def test_arrays_are_copies_that_nobody_can_change() -> None:
 
 
 BAD: dict[str, tuple[dict[str, Any], str]] = {
-    "one point": ({"points": [[0, 0, 0]]}, r"paths\[0\].points: a path needs two points"),
-    "no point": ({"points": []}, r"paths\[0\].points: a path needs two points"),
+    "one point": ({"points": [[0, 0, 0]]}, r"paths\[0\].points: a path needs at least two points"),
+    "no point": ({"points": []}, r"paths\[0\].points: a path needs at least two points"),
     "normals": ({"normals": [[0.0, 0.0, 1.0]]}, r"paths\[0\].normals: has 1 entries for 3 points"),
     "faces": ({"faces": [0]}, r"paths\[0\].faces: has 1 entries for 2 steps"),
     "text": ({"points": [["a", 0, 0]]}, r"paths\[0\].points\[0\]\[0\]"),

@@ -67,16 +67,16 @@ BAD = {
     "no joints": ("contact\n1\n", "line 1", "no column q1"),
     "a joint missing": ("contact,q1,q3\n1,0,0\n", "line 1", "no column q2"),
     "half a pose": ("contact,q1,x,y,z\n1,0,0,0,0\n", "line 1", "no column nx"),
-    "unknown column": ("contact,q1,speed\n1,0,0\n", "line 1, column 3", "'speed' is no known"),
-    "column twice": ("contact,q1,q1\n1,0,0\n", "line 1, column 3", "'q1' stands twice"),
+    "unknown column": ("contact,q1,speed\n1,0,0\n", "line 1, column 3", "'speed' is not a known"),
+    "column twice": ("contact,q1,q1\n1,0,0\n", "line 1, column 3", "'q1' appears twice"),
     "too few cells": ("contact,q1\n1,0\n1\n", "line 3", "1 cells, the header has 2"),
-    "text": ("contact,q1\n1,0\n1,left\n", "line 3, column q1", "is no number: 'left'"),
-    "empty cell": ("contact,q1\n1,\n", "line 2, column q1", "is no number: ''"),
+    "text": ("contact,q1\n1,0\n1,left\n", "line 3, column q1", "is not a number: 'left'"),
+    "empty cell": ("contact,q1\n1,\n", "line 2, column q1", "is not a number: ''"),
     "infinity": ("contact,q1\n1,inf\n", "line 2, column q1", "not a finite number"),
     "too large": ("contact,q1\n1,1e999\n", "line 2, column q1", "not a finite number"),
     "contact of two": ("contact,q1\n2,0\n", "line 2, column contact", "must be 0 or 1"),
     "half a segment": ("contact,segment,q1\n1,0.5,0\n", "line 2, column segment", "an integer"),
-    "open quotes": ('contact,q1\n1,"0\n', "line 2", "is no CSV"),
+    "open quotes": ('contact,q1\n1,"0\n', "line 2", "is not CSV"),
 }
 
 

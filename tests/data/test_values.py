@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import pickle
+import re
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ from library import INSTANCES, PAPER
 from meshes import surfaces
 
 from cellcolor.data.bound import Bound
+from cellcolor.data.bounds.kinds import KINDS
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
 from cellcolor.data.plan import Plan
@@ -208,7 +210,13 @@ def test_a_solution_says_no_more_than_is_proved(changes: dict[str, Any], text: s
 
 
 def test_every_kind_of_bound_for_the_surface_has_its_reason() -> None:
-    """Those that docs/formats.md lists; a kind that is not known gives no reason."""
+    """Those that the page on solutions lists; a kind that is not known gives no reason."""
+    page = (INSTANCES.parent / "docs" / "formats" / "solutions.md").read_text("utf-8")
+    listed = dict(re.findall(r"^  - `(\w+)`: (.*(?:\n    .*)*)", page, re.MULTILINE))
+    assert set(listed) == set(KINDS)
+    assert all(kind.objective for kind in KINDS.values())
+    for_strands = {kind for kind, told in listed.items() if re.search(r"these\s+strands", told)}
+    assert for_strands == {"model", "search"}
     found = replace(
         Solution.from_document(SOLUTION),
         segments=2,
@@ -218,7 +226,7 @@ def test_every_kind_of_bound_for_the_surface_has_its_reason() -> None:
         surface_lower_bound=2,
         proved_for_surface=True,
     )
-    for kind in ("strangers", "cover", "conflicts", "crossings"):
+    for kind in KINDS.keys() - for_strands:
         bounds = (Bound("other", 1, "surface"), Bound(kind, 2, "surface"))
         assert ", because " in str(replace(found, bounds=bounds))
     assert "because" not in str(replace(found, bounds=(Bound("own", 2, "surface"),)))
@@ -237,5 +245,5 @@ def test_paths_are_texts_or_paths(tmp_path: Path) -> None:
         assert kind.read(str(written)) == kind.read(written) == value
     with pytest.raises(InputError, match="no such file"):
         Instance.read("no such file")
-    with pytest.raises(InputError, match=r"^5 is no name of a file$"):
+    with pytest.raises(InputError, match=r"^5 is not a file name$"):
         Instance.read(5)  # type: ignore[arg-type]

@@ -13,6 +13,7 @@ from meshes import drawn, surfaces
 
 import cellcolor
 from cellcolor import Instance, LabelledSurface
+from cellcolor.data.bound import Bound
 from cellcolor.data.proof_wording import witness_in_words
 from examples import examples
 
@@ -54,6 +55,23 @@ def test_there_is_none_without_a_proof() -> None:
     found = cellcolor.solve(many)
     assert found.segments is not None and found.segments > 12
     assert found.solution.witness == ()
+
+
+def test_it_is_the_certificate_that_names_them() -> None:
+    """Whichever kind of bound has it; one that says nothing names none."""
+    solution = cellcolor.solve(Instance.read(PAPER / "ring.json")).solution
+    (cover,) = solution.bounds or ()
+    assert cover.certificate is not None
+    cells = tuple(cover.certificate["cells"])
+    for kind, certificate, witness in (
+        ("strangers", {"cells": cells}, cells),
+        ("cover", {"cells": cells[:1]}, ()),
+        ("cover", {"cells": 5}, ()),
+        ("cover", {"cells": ["a", "b"]}, ()),
+        ("own", {"cells": cells}, ()),
+    ):
+        bound = Bound(kind, 2, "surface", certificate)
+        assert replace(solution, bounds=(bound,)).witness == witness
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,14 @@ def test_a_picture(clone: Path) -> None:
         assert f"{size}: {count}" in drawn
 
 
+def test_a_bound(clone: Path) -> None:
+    *pieces, example, printed = blocks("add-a-bound")
+    for block in pieces:
+        follow(block, clone)
+    done = run([sys.executable, "-c", example.text], clone, clone)
+    assert (done.returncode, done.stdout) == (0, printed.text), done.stderr
+
+
 def test_a_family(clone: Path) -> None:
     chains, top, line, _ = found = blocks("add-a-family")
     for block in (chains, top, line):

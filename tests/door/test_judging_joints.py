@@ -69,7 +69,7 @@ def test_what_is_wrong_with_joints(tmp_path: Path) -> None:
     found = {violation.vertex: violation for violation in verdict.violations}
     assert sorted(found) == sorted([lacking, aside, beyond])
     colors = list(scene().surface.vertex_colors[lacking])
-    assert found[lacking].reason == f"no configuration, but colors {colors} reach it"
+    assert found[lacking].reason == f"no configuration, but colors {colors} reach this vertex"
     assert found[lacking].joints is None
     assert found[aside].reason.startswith("the tip is ")
     assert found[aside].joints == tuple(joints[aside])
@@ -77,7 +77,7 @@ def test_what_is_wrong_with_joints(tmp_path: Path) -> None:
     name = scene().reason_names[scene().reasons[beyond, branch]]
     assert found[beyond].reason == f"{scene().branches[branch]!r} fails the test {name!r} there"
     angles = ", ".join(f"{angle:.4f}" for angle in joints[aside])
-    assert str(found[aside]).endswith(f"allowed are 1; joints ({angles}) rad")
+    assert str(found[aside]).endswith(f"allowed: 1; joints ({angles}) rad")
     assert verdict.problems == tuple(map(str, verdict.violations))
     assert str(verdict.plot(tmp_path / "plan.png")).endswith("no valid plan, 3 vertices wrong")
 
@@ -152,7 +152,7 @@ def test_a_path_that_leaves_vertices_out_is_not_compared() -> None:
     assert {violation.vertex for violation in verdict.violations} == out
     assert (verdict.untouched, verdict.reachable) == (5, len(reached()))
     told = str(verdict).splitlines()[1]
-    lacking = f"5 of {len(reached())} reachable vertices get no contact in a color of theirs: "
+    lacking = f"5 of {len(reached())} reachable vertices get no contact in one of their colors: "
     assert told.startswith(f"not comparable: {lacking}vertex {min(out)} at (")
     assert told.count("no contact nearer than ") == 3 and told.endswith(", …")
     assert str(verdict.plot()).endswith("no valid plan, 5 vertices wrong")
@@ -246,9 +246,7 @@ def test_files_and_values_give_one_verdict(tmp_path: Path) -> None:
 
 def test_a_labelled_surface_alone_knows_no_joints(tmp_path: Path) -> None:
     oracle = cellcolor.Oracle(drawn("AA AA", {"A": [0]}))
-    said = (
-        "joints: need the scene with its arm, and this is a labelled surface or an instance alone"
-    )
+    said = "joints: need the scene with its arm; this is only a labelled surface or an instance"
     for plan in (cellcolor.JointPlan(np.zeros((4, 6))), cellcolor.ContactPath(np.zeros((4, 6)))):
         with pytest.raises(InputError) as found:
             oracle.judge(plan)

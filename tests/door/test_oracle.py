@@ -206,7 +206,7 @@ def test_a_plan_is_shown_from_a_shell(tmp_path: Path) -> None:
 def test_a_painting_ends_with_the_deadline_of_the_verdict(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Then it is said that it was not known in time, and other time than that is not spent."""
+    """The verdict says that the time limit came first; nothing else has time taken off."""
     given_deadlines: list[Deadline] = []
 
     def too_slow(_surface: Any, _graph: Any, _solution: Any, deadline: Deadline) -> Any:
@@ -219,7 +219,7 @@ def test_a_painting_ends_with_the_deadline_of_the_verdict(
     verdict = oracle.judge(WORSE, deadline=deadline)
     assert given_deadlines == [deadline]
     assert verdict.beatable_by == 2 and verdict.improvement is None
-    assert "not known in time" in str(verdict)
+    assert "the time limit came before an example was found" in str(verdict)
     # The next plan of a suite does not pay for the same attempt again; with more time it does.
     oracle.judge(WORSE, deadline=Deadline.after(5.0))
     assert len(given_deadlines) == 1

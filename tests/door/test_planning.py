@@ -85,3 +85,22 @@ def test_what_is_wrong_is_said_at_once() -> None:
         cellcolor.plan("wok", pattern="zigzag")
     with pytest.raises(InputError, match="time_limit"):
         cellcolor.plan("wok", time_limit=-1)
+
+
+def test_what_is_left_alone_is_not_driven_and_not_missed(tmp_path: Path) -> None:
+    """The judge asks for it unless it is told; a plan's surface tells."""
+    scene = shipped("square", 200)
+    points = cellcolor.build(scene).surface.vertices
+    middle = float(points[:, 0].mean())
+    box = cellcolor.WorldBox((middle, -9.0, -9.0), (9.0, 9.0, 9.0))
+    planned = cellcolor.plan(scene, spacing_m=0.03, left_alone=box)
+    assert planned.verdict.valid, planned.verdict.faults
+    assert any("left alone on purpose" in note for note in planned.verdict.notes)
+    trajectory = planned.trajectory
+    touched = trajectory.points[trajectory.contact]
+    assert touched[:, 0].max() < middle + 0.03
+    planned.save(tmp_path / "folder")
+    scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.03}))
+    assert "uncovered" in cellcolor.check(scene, trajectory).fault_counts
+    surface = cellcolor.LabelledSurface.read(tmp_path / "folder" / "instance.surface.json")
+    assert cellcolor.check(scene, trajectory, left_alone=surface).valid

@@ -98,12 +98,12 @@ def test_a_path_is_no_name() -> None:
 @pytest.mark.parametrize(
     ("name", "text"),
     [
-        ("wokk", "wokk: is no file, and nothing of that name is shipped; is 'wok' meant?"),
-        ("qqqqqq", "qqqqqq: is no file, and nothing of that name is shipped"),
+        ("wokk", "wokk: is not a file, and nothing of that name is shipped; did you mean 'wok'?"),
+        ("qqqqqq", "qqqqqq: is not a file, and nothing of that name is shipped"),
         ("wokk.toml", "wokk.toml: No such file or directory"),
         ("some/where", "some/where: No such file or directory"),
-        ("", "'' is no name of a file"),
-        ("a\0b", "is no file, and nothing of that name is shipped"),
+        ("", "'' is not a file name"),
+        ("a\0b", "is not a file, and nothing of that name is shipped"),
     ],
 )
 def test_unknown_names(name: str, text: str) -> None:
@@ -123,7 +123,8 @@ def test_commands_take_names(
     capsys.readouterr()
     assert main(["solve", "rimg"]) == 2
     assert capsys.readouterr().err == (
-        "cellcolor: rimg: is no file, and nothing of that name is shipped; is 'ring' meant?\n"
+        "cellcolor: rimg: is not a file, and nothing of that name is shipped; "
+        "did you mean 'ring'?\n"
     )
     assert sorted(file.name for file in tmp_path.iterdir()) == ["r.json", "s.json"]
 

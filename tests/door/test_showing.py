@@ -103,10 +103,10 @@ def test_a_notebook_shows_a_page_that_loads_nothing() -> None:
         ({"color": -1}, "no -1 among 0 'red'"),
         ({"vertex": 0, "color": 0}, "one of color, vertex, solution and plan at a time"),
         ({"view": "graph", "color": 0}, "color: the picture graph does not take it"),
-        ({"view": "reasons"}, "reasons: are known of a scene, or of a surface's file"),
+        ({"view": "reasons"}, "reasons: are known only for a scene, or for a surface's file"),
         ({"vertex": 0}, "branch: the picture arm needs it"),
         ({"view": "nonsense"}, "view: there is no 'nonsense'; there are arm, cells"),
-        ({"vertex": 0, "branch": 0}, "the arm is in a scene"),
+        ({"vertex": 0, "branch": 0}, "has an arm"),
     ],
     ids=str,
 )

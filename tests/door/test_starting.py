@@ -60,6 +60,22 @@ def test_family_flange_place_and_home_are_found(
     assert whole > 0.9
 
 
+def test_links_that_overlap_in_every_posture_are_found_before_a_place_is_sought(
+    plate: Path, tmp_path: Path
+) -> None:
+    """As of ros-industrial's IRB 2400, where the hull of the wrist's fork contains the flange."""
+    ball = '<collision><geometry><sphere radius="0.09"/></geometry></collision>'
+    arm = tmp_path / "kr6.urdf"
+    text = (ROBOTS / "kr6.urdf").read_text()
+    for link in ("link_4", "link_6"):
+        text = text.replace(f'<link name="{link}">', f'<link name="{link}">{ball}')
+    arm.write_text(text)
+    made = cellcolor.new(plate, arm, tmp_path / "new")
+    assert made.reachable_share > 0.5
+    assert ("link_4", "link_6") in Scene.read(made.scene).setup.robot.may_touch
+    assert any("link_4 and link_6 overlap" in note for note in made.notes)
+
+
 def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:
     folder = tmp_path / "new"
     assert run("new", plate, ROBOTS / "ur5.urdf", "-o", folder) == 0
@@ -100,6 +116,26 @@ def test_what_cannot_be_used_is_one_line_and_nothing_is_written(
         assert named in line
         assert not (tmp_path / "new").exists()
     assert run("new", plate, arm, "-o", tmp_path / "new", "--time-limit", "0.001") == 3
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_part_out_of_reach_is_refused_with_the_commonest_reason(tmp_path: Path) -> None:
+    """The inside of a pipe of 60 mm: the tool that is written is 100 mm long."""
+    angle, height = np.meshgrid(np.linspace(0, 2 * np.pi, 12, endpoint=False), (0.0, 0.2))
+    ring = np.column_stack(
+        [0.03 * np.cos(angle).ravel(), 0.03 * np.sin(angle).ravel(), height.ravel()]
+    )
+    low = np.arange(12)
+    onward = (low + 1) % 12
+    inward = [
+        np.column_stack(rows) for rows in ((low, 12 + low, onward), (onward, 12 + low, 12 + onward))
+    ]
+    pipe = tmp_path / "pipe.stl"
+    trimesh.Trimesh(ring, np.concatenate(inward), process=False).export(pipe)
+    message = "nothing of the part can be reached .* fails by 'object collision'"
+    with pytest.raises(InputError, match=message) as caught:
+        cellcolor.new(pipe, ROBOTS / "ur5.urdf", tmp_path / "new")
+    assert caught.value.file == str(pipe)
     assert not (tmp_path / "new").exists()
 
 

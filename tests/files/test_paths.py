@@ -42,6 +42,6 @@ def test_texts_and_paths_are_names() -> None:
 )
 @pytest.mark.parametrize("function", FUNCTIONS)
 def test_anything_else_is_refused_in_one_line(function: str, name: Any) -> None:
-    with pytest.raises(InputError, match=r"is no name of a file$") as caught:
+    with pytest.raises(InputError, match=r"is not a file name$") as caught:
         FUNCTIONS[function](name)
     assert "\n" not in str(caught.value) and len(str(caught.value)) < 150

@@ -199,7 +199,11 @@ REFUSED: dict[str, tuple[Callable[[], object], str, str]] = {
     "meta that is no JSON": (lambda: Instance("x", (), (), (), {"a": {1}}), "meta", "JSON"),
     "known below nothing": (lambda: KnownResult(-1), "segments", "greater"),
     "end of a crack as float": (lambda: Crack(1.0, 2, (0,)), "i", "integer"),
-    "share that is no number": (lambda: Coverage(1.0, float("nan"), 0.0), "unreachable", "finite"),
+    "share that is not a number": (
+        lambda: Coverage(1.0, float("nan"), 0.0),
+        "unreachable",
+        "finite",
+    ),
     "dart as float": (lambda: SubCell(0, (1.0,), 0), "darts[0]", "integer"),
     "bound as True": (lambda: Bound("cover", True, "surface"), "value", "integer"),
     "bound of what": (lambda: Bound("cover", 1, "paper"), "holds_for", "surface"),

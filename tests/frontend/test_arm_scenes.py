@@ -81,6 +81,7 @@ def check_motion(scene: Scene, **options: float) -> None:
     assert planned.verdict.lift_offs == minimum + len(planned.trajectory.extra_lift_offs)
 
 
+@pytest.mark.second
 @pytest.mark.parametrize("name", ["ur5e_half_pipe", "kr6_wok"])
 def test_a_motion_is_judged_valid(name: str) -> None:
     scene = Scene.read(FILES[name]).varied(object={"target_vertices": 150})

@@ -202,7 +202,7 @@ def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -
         remains_valid(
             surface, edges, one, np.array([10**6]), ends, np.ones(1), lambda *_: pytest.fail()
         )
-    with pytest.raises(TooLarge, match="comes by the same place too often"):
+    with pytest.raises(TooLarge, match="passes the same place too often"):
         points = np.zeros((400, 3))
         next(_near(cKDTree(points), points, 1.0))
 

@@ -27,6 +27,7 @@ def wok() -> PreparedScene:
     return prepare(shipped("wok_obstacle", 60))
 
 
+@pytest.mark.second
 @settings(max_examples=10)
 @given(shift=st.tuples(SHIFTS, SHIFTS, SHIFTS), turn=st.tuples(SHIFTS, SHIFTS, ANGLES))
 def test_a_part_elsewhere_is_the_scene_prepared_there(

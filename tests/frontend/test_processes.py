@@ -125,6 +125,7 @@ def fine_scene():
     return Scene.read(WOK).varied(object={"target_vertices": 400})
 
 
+@pytest.mark.second
 def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
     # So small that this surface has many of each kind of part.
     monkeypatch.setattr(memory, "CACHE", 300_000)

@@ -101,7 +101,7 @@ def test_report_and_commands_warn(tmp_path: Path, capsys: pytest.CaptureFixture[
     report = str(build_surface(path).report)
     first, second, *_ = report.splitlines()
     assert first.startswith("object  0.") and first.endswith("from the robot's base")
-    assert second.startswith("warning  the robot sees 100 % of the object from behind only")
+    assert second.startswith("warning  the robot sees 100 % of the object only from behind")
     main(["solve", str(path)])
     assert f"cellcolor: {path}: warning: the robot sees 100 %" in capsys.readouterr().err
     main(["build", str(path), "-o", str(tmp_path / "out.json")])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +12,9 @@ import pytest
 from commands import run
 from library import PAPER
 
+import cellcolor
 from cellcolor.errors import InputError
-from cellcolor.lab.executors.alone import Limits
+from cellcolor.lab.executors.alone import Ended, Limits
 from cellcolor.lab.executors.work import Task, as_they_end
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.table import read_table
@@ -60,6 +62,29 @@ def test_a_lost_worker_loses_nothing(address: str, tmp_path: Path) -> None:
     with ClusterWorkers(address) as workers:
         found = {name: ended.value for name, ended in as_they_end(workers, tasks)}
     assert found == {"killer": "came back", **{str(n): 2 * n for n in range(4)}}
+
+
+class Killing(ClusterWorkers):
+    """The first piece of work ends the worker that it is on, the first time."""
+
+    mark: str
+
+    def submit(self, task: Task, /) -> Future[Ended]:
+        arguments = (self.mark, task.function, task.arguments)
+        return super().submit(Task(odd_jobs.kill_the_worker_once_before, arguments, task.limits))
+
+
+def test_placements_are_the_same_with_a_worker_lost(address: str, tmp_path: Path) -> None:
+    pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+    from shipped import shipped
+
+    asked: dict[str, Any] = {"x": (0.3, 0.6), "points": 2, "best": 1, "vertices": 50}
+    scene = shipped("wok_obstacle", 60)
+    workers = Killing(address)
+    workers.mark = str(tmp_path / "mark")
+    found = cellcolor.place(scene, **asked, jobs=workers)
+    assert Path(workers.mark).exists() and found.complete
+    assert list(found) == list(cellcolor.place(scene, **asked))
 
 
 def test_leaving_ends_the_work(address: str, tmp_path: Path) -> None:

@@ -307,7 +307,7 @@ class TestReading:
     @pytest.mark.parametrize(
         ("members", "text"),
         [
-            ({"name": "cardoor"}, "entries[0].name: 'cardoor' stands twice"),
+            ({"name": "cardoor"}, "entries[0].name: 'cardoor' appears twice"),
             ({"sha256": "0"}, "entries[1].sha256"),
             ({"file": None}, "file: is either here or outside, one of the two"),
             ({"cells": -1}, "entries[1].cells"),

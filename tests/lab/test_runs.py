@@ -183,7 +183,7 @@ class TestSummary:
         assert "| Minima proved, of runs | cp-sat | x |" in text and "| f | 2/3 | 1/3 |" in text
         assert "| f | 3.0 | > 10 |" in text  # medians
         assert "| f | 8.0 | 14.0 |" in text  # 24 and 42 by three
-        assert "In no family does anybody prove more minima than cp-sat." in text
+        assert "In no family does any solver prove more minima than cp-sat." in text
         assert "Open: 1 instance" in text and "| f, seed 3 | 4 | 3 (cp-sat) | 2 (cp-sat) |" in text
 
     def test_only_what_all_have_tried_is_compared(self) -> None:

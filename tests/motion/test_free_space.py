@@ -21,6 +21,7 @@ from cellcolor.motion.free_space import FreeSpace
 CLEARANCE, CLOSE = 0.005, 0.0005  # m; what is kept, and where verdicts may differ
 
 
+@pytest.mark.second
 @pytest.mark.parametrize("kind", [*KINDS, "ground"])
 def test_what_is_clear_without_it_is_clear_with_it_where_it_is_far(
     kind: str, tmp_path: Path

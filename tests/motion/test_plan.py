@@ -144,6 +144,7 @@ def test_all_scenes_have_no_more_lift_offs_than_were_proved(name: str) -> None:
     assert (verdicts.reasons == VALID).all()
 
 
+@pytest.mark.second
 def test_the_same_scene_and_seed_give_the_same_trajectory(motion: Planned) -> None:
     again = plan_motion(motion.built, motion.painted, motion.normals)
     assert again.trajectory == motion.plan.trajectory

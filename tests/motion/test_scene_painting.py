@@ -134,3 +134,22 @@ def test_a_joint_without_limits_has_room_everywhere(wok: BuildResult) -> None:
     candidates = built.stages.candidates
     assert (color_costs(endless, candidates) == color_costs(wide, candidates)).all()
     assert np.isfinite(color_costs(endless, candidates)).all()
+
+
+def test_what_is_left_alone_stays_so_on_a_finer_surface(wok: BuildResult) -> None:
+    mask = wok.surface.vertices[:, 0] > np.median(wok.surface.vertices[:, 0])
+    found = by_chance(wok.without(mask), 0)
+    assert len(found.painted.minima) > 1
+    alone = found.built.left_alone
+    assert alone is not None and (alone[: len(mask)] == mask).all()
+    assert len(alone) == len(found.built.surface.vertices) > len(mask)
+    assert all(
+        not own for own, out in zip(found.built.surface.vertex_colors, alone, strict=True) if out
+    )
+    # A new vertex lies on a mesh edge: beyond the border by half of one at most.
+    beyond = found.built.surface.vertices[len(mask) :][~alone[len(mask) :], 0]
+    assert (
+        beyond.max()
+        < np.median(wok.surface.vertices[:, 0])
+        + wok.stages.surface.lengths(wok.stages.surface.edges()).max()
+    )

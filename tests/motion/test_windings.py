@@ -8,8 +8,12 @@ import pytest
 from motions import Planned, planned_scene
 from rings import ring_scene
 
+from cellcolor.deadline import NEVER
+from cellcolor.frontend.arm.joint_space import JointSpace
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import follow, joint_space
 from cellcolor.motion.samples import sampled
+from cellcolor.motion.windings import Parts, PartSteps, walls_of
 from cellcolor.tool_paths.cover import cover
 
 
@@ -69,3 +73,33 @@ def test_there_are_no_walls_where_the_limits_allow_the_path_as_it_is() -> None:
     assert ring.plan.walls == ()
     assert ring.plan.trajectory.lift_offs == 0
     assert np.ptp(ring.plan.trajectory.joints[:, 0]) > 2.2 * np.pi
+
+
+@pytest.mark.parametrize(
+    ("limit", "walls", "whole"),
+    [
+        (200, {(2, 3)}, True),  # from 180 degrees the joint would go on to 270
+        (100, {(1, 2), (2, 3)}, False),  # 180 degrees is out of reach
+    ],
+)
+def test_four_parts_around_the_base(limit: float, walls: set[tuple[int, int]], whole: bool) -> None:
+    """The example of the module: its mesh is a fan of four triangles about the base."""
+    around = np.deg2rad([0.0, 90.0, 180.0, 270.0])
+    places = np.column_stack([np.cos(around), np.sin(around), np.zeros(4)])
+    fan = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    mesh = TriangleMesh(np.vstack([places, np.zeros(3)]), fan)
+    ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    angles = np.deg2rad([[0.0], [90.0], [180.0], [-90.0]])
+    wide = np.deg2rad(10)
+    steps = PartSteps(
+        ends,
+        np.array([[0], [0], [1], [0]]),
+        np.array([np.flatnonzero(mesh.marked([tuple(sorted(end))]))[0] for end in ends.tolist()]),
+        np.ones(4),
+    )
+    parts = Parts(places, np.ones(4), angles - wide, angles + wide, steps)
+    limits = np.deg2rad([limit])
+    space = JointSpace.of(np.zeros(1, dtype=bool), -limits, limits, 1.0)
+    found = walls_of(parts, mesh, space, NEVER)
+    assert set(found.edges) == walls
+    assert (found.whole, found.joint) == (whole, 0)

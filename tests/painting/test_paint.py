@@ -65,7 +65,7 @@ def test_a_solution_without_a_division_is_refused() -> None:
         "none", ("a",), [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], ((),) * 3
     )
     decomposition = decomposition_of(surface)
-    with pytest.raises(InputError, match="cells: holds no division to paint"):
+    with pytest.raises(InputError, match="cells: contains no division to paint"):
         paint(surface, decomposition, solve(decomposition.instance, Options()))
 
 

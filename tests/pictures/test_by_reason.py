@@ -29,7 +29,7 @@ class TestReasons:
         assert found == {
             "reachable": valid,
             "ground": set(range(30)) - valid - {29},
-            "given up by the sliver policy": {29},
+            "given up": {29},
         }
 
     @pytest.mark.parametrize("branch", ["right arm", "1"])

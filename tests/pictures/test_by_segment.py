@@ -84,7 +84,7 @@ class TestSolution:
             while more := {b for a, b in pairs if a in reached} - reached:
                 reached |= more
             assert reached == own
-        assert "One way to cut is drawn" in (tmp_path / "x.html").read_text()
+        assert "One possible cut is drawn" in (tmp_path / "x.html").read_text()
 
     def test_strands_share_their_edge(self, tmp_path: Path) -> None:
         """Two corridors side by side cross the border between the two large cells."""

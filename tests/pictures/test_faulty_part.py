@@ -21,7 +21,7 @@ class TestFaultyPart:
             "duplicates": "faces there twice: 40",
             "mixed-winding": "faces wound against their neighbors: 683",
             "inverted": "closed components inside out: 1,280",
-            "fin": "edges of three faces and more: 1 edges",
+            "fin": "edges with more than two faces: 1 edges",
             "holes": "holes and borders: 30 edges",
         }
         for name, text in expected.items():
@@ -32,7 +32,7 @@ class TestFaultyPart:
             assert {text} <= set(marked) <= {"part", "sharp edges", text, *self.beside(name)}
             off = np.linalg.norm(marked[text][:, None] - vertices[None], axis=2).min(axis=1)
             assert off.max() < 1e-12
-            assert picture.notes[0].startswith("Not usable as it is: ")
+            assert picture.notes[0].startswith("Not usable unchanged: ")
             assert max(map(len, picture.notes)) <= 60
 
     def beside(self, name: str) -> set[str]:
@@ -48,4 +48,4 @@ class TestFaultyPart:
         monkeypatch.setattr(faulty_part, "_MOST", 100)
         picture = faulty_part.faulty_part(cellcolor.inspect(DIRTY["crossing"]()))
         assert len(picture.layers[0].triangles) == 100
-        assert picture.notes == ("100 of 832 faces are drawn.", "Usable as it is.")
+        assert picture.notes == ("100 of 832 faces are drawn.", "Usable unchanged.")

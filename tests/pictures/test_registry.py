@@ -67,7 +67,7 @@ def test_segments_by_name(tmp_path: Path) -> None:
         (["--view", "segments"], "solution: the picture segments needs it"),
         (["--view", "cells", "--color", "1"], "color: the picture cells does not take it"),
         (["--view", "cells", "--branch", "1"], "branch: the picture cells does not take it"),
-        (["--view", "cells", "--graph"], "--view goes without --reason and --graph"),
+        (["--view", "cells", "--graph"], "--view cannot be combined with --reason and --graph"),
     ],
     ids=lambda value: " ".join(value[1:]) if isinstance(value, list) else "",
 )

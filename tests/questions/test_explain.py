@@ -19,6 +19,7 @@ from shipped import SCENES, shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
+from cellcolor.frontend.displaced import judged
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import (
@@ -36,7 +37,7 @@ from cellcolor.frontend.relaxing import (
     without,
 )
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged, judged_again
+from cellcolor.frontend.stages import Stages, judged_again
 from cellcolor.questions.explanation import Explanation
 from examples import examples
 
@@ -148,6 +149,7 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
     assert changing >= 3
 
 
+@pytest.mark.second
 @examples(8)
 @given(
     name=st.sampled_from(["wok_obstacle", "hemisphere_tilted"]),
@@ -228,6 +230,7 @@ def test_where_one_is_not_enough_the_smallest_set_is_found() -> None:
     assert all(len(row.relaxed) == 2 for row in twice.sets)
 
 
+@pytest.mark.second
 def test_an_obstacle_farther_away() -> None:
     scene = shipped("wok_obstacle", 200)
     row = next(row for row in cellcolor.explain(scene).amounts if row.keys == ("obstacle[0]",))
@@ -260,6 +263,7 @@ def test_a_vertex_is_told_what_each_branch_fails(tilted: Explanation) -> None:
             assert row.ends_m == pytest.approx(away.min())
 
 
+@pytest.mark.second
 def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "wok.toml"
     text = (SCENES / "wok_obstacle.toml").read_text()

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import Future
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +20,19 @@ from shipped import SCENES, shipped
 
 import cellcolor
 from cellcolor.deadline import NEVER
+from cellcolor.door.placing import save_map
 from cellcolor.frontend import Scene
+from cellcolor.frontend.parts.placement import Placement
 from cellcolor.lab.executors.alone import Ended
 from cellcolor.lab.executors.work import Task, Workers
-from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Placements, Pose
+from cellcolor.questions.leeway import displaced
+from cellcolor.questions.placements import (
+    VARIABLES,
+    PlacedMinimum,
+    PlacementMap,
+    Placements,
+    Pose,
+)
 from cellcolor.questions.placing import around, coarse_scene, distance, minima_at, spread
 from examples import examples
 
@@ -71,8 +82,8 @@ def test_the_best_come_first_and_cover_enough(found: Placements) -> None:
     ranks = [row.rank(found.cover) for row in found.best]
     assert ranks == sorted(ranks) and len(found.best) == 2
     coarse = [row for row in found.tried if row.vertices < found.here.vertices]
-    # Where it stands, the points, and one around each of the three best, twice.
-    assert len(coarse) == 1 + 4 + 2 * 3
+    # Where it stands, the points, and one around each of the three best, in five boxes.
+    assert len(coarse) == 1 + 4 + 5 * 3
     assert coarse[0].pose == found.here.pose
     for row in (*found.best, *found.tried[1:]):
         x, y, *others = row.pose
@@ -109,6 +120,7 @@ def test_a_part_does_not_stand_in_the_ground_or_in_an_obstacle() -> None:
     assert [row.refused for row in rows] == ["stands in the ground", "stands in obstacle 1", ""]
 
 
+@pytest.mark.second
 def test_where_the_scene_has_it_in_the_base_the_share_has_to_be_said() -> None:
     scene = shipped("wok", 60).moved(position_m=(0.0, 0.0, -0.15))
     asked: dict[str, Any] = {"x": (0.3, 0.6), "z": (-0.05, 0.0), "points": 1, "best": 1}
@@ -140,10 +152,143 @@ class Losing(Workers):
         """Nothing is left to end."""
 
 
+@pytest.mark.second
 def test_a_lost_process_loses_no_placement(found: Placements) -> None:
     assert list(place(jobs=Losing(1))) == list(found)
     with pytest.raises(cellcolor.CellcolorError, match="could not be tried: killed"):
         place(jobs=Losing(10**6))
+
+
+def counted(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """How many placements are asked about from now on, in one process."""
+    asked: list[int] = []
+
+    def ask(scene: Scene, poses: Sequence[Pose], *others: Any) -> list[PlacedMinimum]:
+        asked.append(len(poses))
+        return minima_at(scene, poses, *others)
+
+    monkeypatch.setattr("cellcolor.questions.placing.minima_at", ask)
+    return asked
+
+
+@pytest.mark.second
+def test_a_search_goes_on_where_it_was_stopped(
+    found: Placements, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    table = tmp_path / "placements.csv"
+    asked = counted(monkeypatch)
+    assert list(place(table=table)) == list(found)
+    whole, lines = sum(asked), table.read_bytes().splitlines(keepends=True)
+    assert whole == len(lines) - 1
+    asked.clear()
+    assert list(place(table=table)) == list(found)
+    assert sum(asked) == 0 and table.read_bytes() == b"".join(lines)
+    # It was stopped within a line.
+    table.write_bytes(b"".join(lines[:6]) + lines[6][:10])
+    assert list(place(table=table)) == list(found)
+    assert sum(asked) == whole - 5 and len(table.read_bytes().splitlines()) == whole + 1
+
+
+@pytest.mark.second
+def test_a_table_that_cannot_be_gone_on_from_is_refused(tmp_path: Path) -> None:
+    table = tmp_path / "placements.csv"
+    place(table=table, points=1, best=1)
+    whole = table.read_text()
+    lines = whole.splitlines(keepends=True)
+    own = shipped("wok_obstacle", 80)
+    other = own.varied(ground={"height_m": -0.5})
+    for text, scene, said in (
+        (whole, other, "placements.csv: line 2: is a placement of another scene"),
+        (whole, own.moved(position_m=(0.5, 0.0, 0.0)), ""),  # the placement is what is searched
+        (whole.replace("x,y,z", "a,b,c"), own, "placements.csv: line 1: is not the header"),
+        (lines[0] + "nothing\n", own, "placements.csv: line 2: has 1 cells"),
+        ("".join(lines[:-1]) + lines[-1].replace(",true,", ",perhaps,"), own, f"line {len(lines)}"),
+        ("mine\n", own, "placements.csv: line 1"),
+    ):
+        table.write_text(text)
+        given: dict[str, Any] = {**RANGES, "points": 1, "best": 1, "vertices": 50, "cover": 0.5}
+        if not said:
+            assert cellcolor.place(scene, **given, table=table).best
+            continue
+        with pytest.raises(cellcolor.InputError) as caught:
+            cellcolor.place(scene, **given, table=table)
+        assert said in str(caught.value) and "\n" not in str(caught.value)
+        assert table.read_text() == text
+
+
+@pytest.mark.second
+def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Against the samples, each built and solved again, nearest first."""
+    monkeypatch.setattr("cellcolor.door.placing._BESIDE", 6)
+    monkeypatch.setattr("cellcolor.door.placing._TOGETHER", 4)
+    found = place(points=2, best=1, leeway=0.2, cover=0.5)
+    (row,) = found.best
+    assert row.leeway is not None and row.leeway.to_document() == row.to_document()["leeway"]
+    own = shipped("wok_obstacle", 80)
+    holds, shares = 0.0, [row.covered_share]
+    for number, each in enumerate(displaced(own.covered().vertices, row.pose, 0.2, 6, 0), 1):
+        (beside,) = minima_at(own, [each.pose], np.inf, 1, 0)
+        if beside.segments is None or row.segments is None or beside.segments > row.segments:
+            assert (row.leeway.fails_m, row.leeway.tried) == (each.off_m, number)
+            break
+        holds = each.off_m
+        shares.append(beside.covered_share)
+    else:
+        assert row.leeway.fails_m is None and row.leeway.tried == 6
+    assert row.leeway.holds_m == holds and row.leeway.least_share == min(shares)
+    assert str(row.leeway) in str(found)
+
+
+@examples(50)
+@given(
+    pose=st.tuples(*6 * [st.floats(-1, 1)]), up_to=st.floats(1e-4, 0.05), count=st.integers(1, 20)
+)
+def test_displacements_are_as_far_as_they_say(pose: Pose, up_to: float, count: int) -> None:
+    """Where the vertices stand is asked of the placement that a scene would have."""
+    vertices = np.array([[0.0, 0, 0], [0.3, 0, 0], [0, 0.1, 0], [0.1, 0.1, 0.2]])
+    start = Placement(position_m=pose[:3], rpy_rad=pose[3:]).placed(vertices)
+    found = displaced(vertices, pose, up_to, count, 0)
+    assert len(found) == count
+    for number, each in enumerate(found, 1):
+        there = Placement(position_m=each.pose[:3], rpy_rad=each.pose[3:]).placed(vertices)
+        off = np.linalg.norm(there - start, axis=1).max()
+        assert off == pytest.approx(each.off_m, abs=1e-9)
+        assert off == pytest.approx(up_to * number / count, rel=1e-3)
+
+
+@pytest.mark.second
+def test_a_map_has_the_middles_of_its_tiles(tmp_path: Path) -> None:
+    found = place(tiles=2, best=1)
+    assert found.map is not None and found.map.tiles == 2
+    middles = [(0.375, -0.2), (0.525, -0.2), (0.375, 0.0), (0.525, 0.0)]
+    coarse = coarse_scene(shipped("wok_obstacle", 80), 50, NEVER)
+    for row, place_ in zip(found.map.rows, middles, strict=True):
+        assert row is not None and row.pose[:2] == pytest.approx(place_)
+        assert row.pose[2:] == found.here.pose[2:]
+    last = found.map.rows[3]
+    assert last is not None and last.segments == by_hand(at(coarse, last.pose))[0]
+    assert set(found.map.rows) <= set(found.tried)
+    for suffix in ("png", "svg"):
+        save_map(found, tmp_path / f"map.{suffix}")
+    assert "lift-offs" in (tmp_path / "map.svg").read_text()
+    with pytest.raises(cellcolor.InputError, match=r"must end in .png or .svg"):
+        save_map(found, tmp_path / "map.html")
+    with pytest.raises(cellcolor.InputError, match="a map needs one or two ranges"):
+        place(tiles=2, z=(-0.1, 0.1))
+
+
+def test_a_map_over_one_variable_is_two_curves(tmp_path: Path) -> None:
+    rows = tuple(
+        PlacedMinimum((0, 0, 0, 0, 0, yaw), n, 0.5, n is not None, 9)
+        for yaw, n in ((-0.5, 2), (0.5, None))
+    )
+    found = Placements(
+        "yaw", 0.5, rows[0], rows[:1], rows, map=PlacementMap({"yaw": (-1, 1)}, 2, rows)
+    )
+    save_map(found, tmp_path / "map.svg")
+    assert "yaw, rad" in (tmp_path / "map.svg").read_text()
+    with pytest.raises(cellcolor.InputError, match="no map was asked for"):
+        save_map(replace(found, map=None), tmp_path / "map.svg")
 
 
 @examples(50)
@@ -188,6 +333,7 @@ def test_the_rank_is_what_is_asked_for(rows: list[tuple[int | None, float]], cov
         assert best.covered_share == max(share for _, share in rows)
 
 
+@pytest.mark.second
 def test_a_mesh_file_is_made_coarser_and_collides_as_before() -> None:
     scene = Scene.read(SCENES.parent / "parts" / "bracket.toml")
     coarse = coarse_scene(scene, 150, NEVER)
@@ -211,6 +357,8 @@ def test_a_mesh_file_is_made_coarser_and_collides_as_before() -> None:
         ({"jobs": 0}, "jobs"),
         ({"x": 0.5}, "x"),
         ({"x": ("a", "b")}, "x"),
+        ({"leeway": -1.0}, "leeway"),
+        ({"tiles": 0}, "tiles"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(changes: dict[str, Any], field: str | None) -> None:
@@ -224,6 +372,7 @@ def test_a_limit_that_ends_before_the_scene_itself_is_solved() -> None:
         place(time_limit=1e-3)
 
 
+@pytest.mark.second
 def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "wok.toml"
     text = (SCENES / "wok_obstacle.toml").read_text()
@@ -231,8 +380,10 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
     text = text.replace("../../models/robots/ur5_polishing.toml", setup)
     file.write_text(text.replace("target_vertices = 1000", "target_vertices = 80"))
     options = ("--x", "0.4,0.5", "--points", "1", "--vertices", "50", "--best", "1")
-    assert run("place", file, *options, "--json") == 0
+    extra = ("--map", tmp_path / "map.png", "--tiles", "1", "-o", tmp_path / "placements.csv")
+    assert run("place", file, *options, *extra, "--json") == 0
     rows = json_lines(capsys.readouterr().out)
+    assert (tmp_path / "map.png").is_file() and (tmp_path / "placements.csv").is_file()
     assert rows[0]["position_m"] == [0.465, -0.15, -0.04] and rows[0]["rpy_rad"] == [0, 0, 0]
     assert {"lift_offs", "covered_share", "proved_for_surface"} <= rows[1].keys()
     assert all(0.4 <= row["position_m"][0] <= 0.5 for row in rows)
@@ -243,6 +394,8 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
         ((file, "--yaw", "0,inf"), "yaw: its range must be two numbers"),
         ((tmp_path / "none.toml", "--x", "0,1"), "No such file"),
         ((SCENES.parent / "index.json", "--x", "0,1"), "is no scene"),
+        ((file, "--x", "0.4,0.5", "-o", file), "wok.toml: line 1"),
+        ((file, "--x", "0.4,0.5", "--map", tmp_path / "map.pdf"), "must end in .png or .svg"),
     ):
         assert run("place", *wrong) == 2
         assert said in capsys.readouterr().err

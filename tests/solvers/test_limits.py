@@ -327,6 +327,7 @@ def test_windows_leave_out_what_is_too_large(monkeypatch: pytest.MonkeyPatch) ->
     assert all(size <= windows.LARGEST_WINDOW for size in sizes)
 
 
+@pytest.mark.second
 def test_twenty_loops() -> None:
     """Seams of half a million strands are told by their widths; not even their darts are made."""
     instance = hub_with_loops(1, 20, 3, 3)

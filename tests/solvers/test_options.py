@@ -83,7 +83,7 @@ def test_the_oracle_refuses_before_it_searches(options: dict[str, int]) -> None:
 @pytest.mark.parametrize("options", [Options(fewest_cuts=True), Options("surface", 2)])
 def test_what_a_solver_cannot_do_is_not_done_silently(options: Options) -> None:
     if options.fewest_cuts:
-        with pytest.raises(InputError, match="fewest_cuts: is more than the solver dfs is able"):
+        with pytest.raises(InputError, match="fewest_cuts: is more than the solver dfs can do"):
             solve(RING, options, "dfs")
     else:
         for solver in ("cp-sat", "dfs"):

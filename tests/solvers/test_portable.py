@@ -171,7 +171,7 @@ def test_files_of_ours_only_are_overwritten(tmp_path: Path) -> None:
 
 def test_the_ending_says_the_format(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert run("export", FIGURES[0], "-o", tmp_path / "a.txt") == 2
-    assert "none of the endings .opb, .wcnf, .mps, .dzn, .lp" in capsys.readouterr().err
+    assert "not end in any of .opb, .wcnf, .mps, .dzn, .lp" in capsys.readouterr().err
     assert run("export", FIGURES[0], "-o", tmp_path / "a.txt", "--format", "opb") == 0
 
 
@@ -270,7 +270,7 @@ def test_there_and_back(
         given.write_text(answer(model))
         capsys.readouterr()
         assert run("answer", file, given, "--format", kind, "-o", target) == 0
-        assert "that is no proof" in capsys.readouterr().out
+        assert "this is not a proof" in capsys.readouterr().out
         assert run("check", file, target) == 0
         solution = Solution.read(target)
         assert (solution.status, solution.segments) == ("feasible", known_minimum(instance))
@@ -308,16 +308,16 @@ def test_values_that_break_a_constraint_are_refused() -> None:
     ("kind", "text", "message"),
     [
         ("opb", "s UNSATISFIABLE\n", "has no line 'v …' with values"),
-        ("opb", "v x1 y2\n", "'y2' is no literal"),
+        ("opb", "v x1 y2\n", "'y2' is not a literal"),
         ("opb", "v x1 -x2\n", "x3: has no value"),
         ("wcnf", "v 1 x 0\n", "must be bits, or literals"),
         ("wcnf", "v 0110\n", "x5: has no value"),
         ("mps", "Model status\nInfeasible\n", "has no line with a variable"),
         ("mps", "x1 0.5\n", "x1: 0.5 is neither 0 nor 1"),
-        ("mps", "x1 one\n", "x1: 'one' is no number"),
+        ("mps", "x1 one\n", "x1: 'one' is not a number"),
         ("mps", "x1 nan\n", "x1: nan is neither 0 nor 1"),
-        ("mps", "x1 1\n", "is no solution of the model"),
-        ("dzn", "joined 1 0\n", "has no solution, which a line of ten"),
+        ("mps", "x1 1\n", "is not a solution of the model"),
+        ("dzn", "joined 1 0\n", "has no solution that ends with a line of ten"),
         ("dzn", "segments 1\njoined 99 0\n----------\n", "joined 99: color 0 does not continue"),
         ("dzn", "segments 1\n----------\n", "objective: says 1, its division has 7 segments"),
         ("lp", "UNSATISFIABLE\n", "has no line 'Answer: n'"),
@@ -357,4 +357,4 @@ def test_crossing_sub_cells_are_refused(tmp_path: Path, capsys: pytest.CaptureFi
     joined = " ".join(f"joined({n},{(n + 1) % 2})" for n in (1, 2, 3, 4))
     given.write_text(f"Answer: 1\n{joined} link(1,3) link(2,4)\n")
     assert run("answer", file, given, "--format", "lp", "-o", tmp_path / "out.json") == 2
-    assert "is no legal division: " in capsys.readouterr().err
+    assert "is not a legal division: " in capsys.readouterr().err

@@ -83,7 +83,7 @@ class TestAbilities:
         if make_solver(name).abilities.start:
             assert self.found(name, options) == 2
             return
-        with pytest.raises(InputError, match=f"start: is more than the solver {name} is able"):
+        with pytest.raises(InputError, match=f"start: is more than the solver {name} can do"):
             self.found(name, options)
 
     def test_fewest_cuts(self, name: str) -> None:
@@ -91,7 +91,7 @@ class TestAbilities:
         if make_solver(name).abilities.fewest_cuts:
             assert solve(INSTANCE, options, name).cutting_paths_lower_bound == 0
             return
-        with pytest.raises(InputError, match=f"fewest_cuts: is more than the solver {name} is"):
+        with pytest.raises(InputError, match=f"fewest_cuts: is more than the solver {name} can do"):
             self.found(name, options)
 
     def test_optimal_schemes(self, name: str) -> None:
@@ -103,7 +103,7 @@ class TestAbilities:
             found = list(enumerate_schemes(INSTANCE, Options(), name, 2))
             assert len(found) == known.paper.schemes
             return
-        with pytest.raises(InputError, match=f"schemes: is more than the solver {name} is able"):
+        with pytest.raises(InputError, match=f"schemes: is more than the solver {name} can do"):
             list(enumerate_schemes(INSTANCE, Options(), name, 2))
 
     def test_schemes_of_several_loops(self, name: str) -> None:
@@ -206,7 +206,7 @@ class TestOthers:
             ("import nothing_like_it", "cannot be loaded: ModuleNotFoundError"),
             ("1 / 0", "cannot be loaded: ZeroDivisionError"),
             ("Other = 1", "cannot be loaded: AttributeError"),
-            ("class Echo: pass", "is no solver: it declares no abilities"),
+            ("class Echo: pass", "is not a solver: it declares no abilities"),
         ],
     )
     def test_faults_are_a_line(

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 _CHILD = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(600)"
 
@@ -63,6 +64,14 @@ def kill_the_worker_once(mark: str) -> str:
         os.kill(os.getppid(), signal.SIGKILL)
         time.sleep(600)
     return "came back"
+
+
+def kill_the_worker_once_before(
+    mark: str, function: Callable[..., Any], arguments: tuple[Any, ...]
+) -> Any:
+    """The first time, end the process that watches this one; the next time, do the work."""
+    kill_the_worker_once(mark)
+    return function(*arguments)
 
 
 def running(pids: Path) -> list[int]:

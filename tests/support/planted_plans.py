@@ -125,7 +125,7 @@ def wrong_length(case: Case, random: Random) -> Planted:
 
 
 def no_integer(case: Case, random: Random) -> Planted:
-    """Something at one vertex that is no number of a color: NaN, a fraction, True, a list."""
+    """Something at one vertex that is not a number of a color: NaN, a fraction, True, a list."""
     colors: list[Any] = [*_valid(case.surface, random)]
     vertex = int(random.integers(len(colors)))
     colors[vertex] = [float("nan"), 0.5, 0.0, True, [0], {}][random.integers(6)]

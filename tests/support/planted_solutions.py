@@ -83,7 +83,7 @@ def no_division(case: Case, random: Random) -> Planted:  # noqa: ARG001
         case.solution, status="unknown", segments=None, lift_offs=None, cells=None, seams=(),
         proved_for_surface=False, cutting_paths=None,
     )  # fmt: skip
-    return Planted(plan, ("cells: null, there is no division to judge",))
+    return Planted(plan, ("cells: null, no division to judge",))
 
 
 def _with_subcell(cells: Division, c: int, s: int, **changes: Any) -> Division:

@@ -270,7 +270,7 @@ def _members(kept: Kept, random: Random) -> str:
 
 
 def _twice(kept: Kept, random: Random) -> str:  # noqa: ARG001
-    """A member stands twice in one object, with other content."""
+    """A member appears twice in one object, with other content."""
     return kept.honest[2].replace('"status"', '"status": "optimal", "status"', 1)
 
 

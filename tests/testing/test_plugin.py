@@ -144,7 +144,7 @@ def test_a_verdict_asserted_by_hand_and_what_cannot_be_used(tmp_path: Path) -> N
     assert "AssertionError: <Verdict: 3 segments, 2 lift-offs, 2 fewer are proved to be" in out
     assert "E       cellcolor.errors.InputError: vertex_colors[0]: Input should be a valid" in out
     assert "InputError: none.surface.json: No such file or directory\n" in out
-    assert "no picture: what was judged is a solution" in out
+    assert "no picture: a solution was judged" in out
     assert "/cellcolor/" not in out.replace("/d/cellcolor/", "")  # no way through its own code
 
 
@@ -261,5 +261,5 @@ def test_without_a_cache_there_is_no_picture(tmp_path: Path) -> None:
     )
     assert (
         "1 failed" in out
-        and "no picture: pytest's cache, where it would be, is switched off" in out
+        and "no picture: it would be in pytest's cache, which is switched off" in out
     )

@@ -86,7 +86,7 @@ def test_why_a_configuration_has_no_color() -> None:
     other = joints + np.array([0.01, 0, 0, 0, 0, 0])
     off = math.dist(joint_paths.pose(built, other)[0], built.surface.vertices[vertex])
     assert at(built, vertex, other).why_none(0) == (
-        f"the tip is {1000 * off:.4g} mm off the vertex, allowed are 1"
+        f"the tip is {1000 * off:.4g} mm off the vertex, allowed: 1"
     )
     failed = built.reason_names.index("obstacle collision")
     vertex, branch = np.argwhere(built.reasons == failed)[0].tolist()
@@ -95,7 +95,7 @@ def test_why_a_configuration_has_no_color() -> None:
     taken = (built.reasons == 0) & (built.node_color < 0)
     vertex, branch = np.argwhere(taken)[0].tolist()
     said = at(built, vertex, built.configurations[vertex, branch]).why_none(0)
-    assert said == f"{built.branches[branch]!r} was taken away there by the sliver policy"
+    assert said == f"{built.branches[branch]!r} was removed there by the sliver policy"
 
 
 def test_a_tool_that_is_tilted() -> None:
@@ -116,7 +116,7 @@ def test_a_tool_that_is_tilted() -> None:
         held = at(built, vertex, found[branch])
         assert held.color.tolist() == [-1 if tilted else color]
         if tilted:
-            said = "the tool is 1.2 degrees off the normal, allowed are 1"
+            said = "the tool is 1.2 degrees off the normal, allowed: 1"
             assert held.why_none(0) == said
 
 
@@ -131,7 +131,7 @@ def test_a_tip_that_is_there_in_a_configuration_that_the_scene_does_not_have() -
     configurations[vertex, branch] = np.nan
     said = at(poorer, vertex, joints).why_none(0)
     assert said.startswith("the scene's nearest configuration there, ")
-    assert said.endswith(" rad off, allowed are 0.1")
+    assert said.endswith(" rad off, allowed: 0.1")
     configurations[vertex] = np.nan
     said = at(poorer, vertex, joints).why_none(0)
     assert said == "the scene has no configuration there"

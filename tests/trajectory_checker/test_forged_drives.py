@@ -84,6 +84,7 @@ def test_every_stroke_of_a_plan_is_missed(scene: str) -> None:
         assert verdict.of_kind("uncovered"), number
 
 
+@pytest.mark.second
 def test_the_campaign_says_what_was_accepted(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

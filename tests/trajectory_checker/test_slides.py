@@ -84,7 +84,7 @@ def test_a_row_doubled_at_full_speed_of_the_slide_is_refused(honest: Honest) -> 
     times[row + 1 :] += 0.1
     verdict = judged(honest.prepared, rows_of(trajectory, rows, times=times))
     faults = [fault for fault in verdict.of_kind("acceleration") if fault.joint == NAME]
-    assert faults and re.search(r"by \S+ m/s², allowed are 2$", faults[0].text)
+    assert faults and re.search(r"by \S+ m/s², allowed: 2$", faults[0].text)
 
 
 @pytest.mark.parametrize("number", [0, 1])
@@ -108,7 +108,7 @@ def test_a_slide_over_its_speed_is_refused(honest: Honest) -> None:
     fast = judged(slower, replace(trajectory, times=np.asarray(trajectory.times) / 1.2))
     assert set(fast.fault_counts) == {"velocity"}
     assert {fault.joint for fault in fast.faults} == {NAME}
-    assert re.search(r"moves at 0\.18\d* m/s, allowed are 0\.15$", fast.faults[0].text)
+    assert re.search(r"moves at 0\.18\d* m/s, allowed: 0\.15$", fast.faults[0].text)
 
 
 def test_a_slide_beyond_its_limit_is_refused(honest: Honest) -> None:

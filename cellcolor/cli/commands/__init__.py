@@ -1,6 +1,6 @@
 """The commands and their options. What they do is imported only when one of them runs."""
 
-from cellcolor.cli.commands.ask import explain, place, tradeoff
+from cellcolor.cli.commands.ask import compare, explain, place, setups, tradeoff
 from cellcolor.cli.commands.bench import bench
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.library import import_, library
@@ -15,6 +15,7 @@ __all__ = [
     "build",
     "cellcolor",
     "check",
+    "compare",
     "cover",
     "explain",
     "export",
@@ -26,6 +27,7 @@ __all__ = [
     "place",
     "plan",
     "repair",
+    "setups",
     "show",
     "solve",
     "tradeoff",

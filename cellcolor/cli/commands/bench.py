@@ -23,10 +23,10 @@ def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> t
     for part in value.split(","):
         first, dash, last = part.strip().partition("-")
         if not first.isdecimal() or (dash and not last.isdecimal()):
-            raise click.BadParameter(f"{value!r} is nothing like 0-9 or 3,7,10-12.")
+            raise click.BadParameter(f"{value!r} is not a list like 0-9 or 3,7,10-12.")
         found += range(int(first), int(last or first) + 1)
     if not found:
-        raise click.BadParameter(f"{value!r} has no number in it.")
+        raise click.BadParameter(f"{value!r} contains no number.")
     return tuple(dict.fromkeys(found))
 
 
@@ -47,7 +47,7 @@ def bench() -> None:
     multiple=True,
     default=(REFERENCE, DEFAULT),
     show_default=True,
-    help="Once for each solver.",
+    help="Solver; repeat the option for several.",
 )
 @click.option(
     "--seeds",
@@ -73,7 +73,7 @@ def bench() -> None:
     type=click.IntRange(min=1),
     default=1,
     show_default=True,
-    help="Of each run, with other random numbers in the solver.",
+    help="Repetitions of each run, with other random numbers in the solver.",
 )
 @click.option(
     "--search-space",
@@ -89,7 +89,7 @@ def bench() -> None:
     type=click.IntRange(min=1),
     default=4096,
     show_default=True,
-    help="For each run; beyond it the run is killed.",
+    help="Memory for each run; a run that needs more is killed.",
 )
 @click.option("--jobs", default=1, **JOBS)
 @CLUSTER
@@ -98,7 +98,7 @@ def bench() -> None:
     "--output",
     metavar="TABLE.csv",
     type=PATH,
-    help="A row for each run. A table that is there is continued: its runs are not made again.",
+    help="A row for each run. An existing table is continued: its runs are not repeated.",
 )
 def run(
     subjects: tuple[str, ...],
@@ -143,7 +143,7 @@ def summary(tables: tuple[Path, ...]) -> int:
     metavar="FOLDER",
     type=PATH,
     required=True,
-    help="Where the pictures are put, as PNG and SVG.",
+    help="Folder for the pictures, as PNG and SVG.",
 )
 def plots(tables: tuple[Path, ...], output: Path) -> int:
     """Draw tables: cactus, growth, scatter against the strongest rival, performance profile."""
@@ -196,7 +196,7 @@ def start_up(repetitions: int, output: Path | None) -> int:
     type=PATH,
     default=Path("disagreements"),
     show_default=True,
-    help="Where disagreements are kept.",
+    help="Folder for disagreements.",
 )
 def campaign(
     count: int, seed: int, time_limit: float, jobs: int, cluster: str | None, output: Path

@@ -13,11 +13,13 @@ __all__ = ["import_", "library"]
 
 
 @cellcolor.command()
-@click.option("--family", metavar="NAME", help="Of one family only.")
+@click.option("--family", metavar="NAME", help="Only the graphs of this family.")
 @click.option(
-    "--open", "only_open", is_flag=True, help="Only those whose minimum is open in a search space."
+    "--open", "only_open", is_flag=True, help="Only graphs whose minimum is open in a search space."
 )
-@click.option("--json", "as_json", is_flag=True, help="JSON Lines, an entry of the index a line.")
+@click.option(
+    "--json", "as_json", is_flag=True, help="Print JSON Lines, one entry of the index per line."
+)
 def library(family: str | None, only_open: bool, as_json: bool) -> int:
     """List the graphs of the instance library, with what is known of their minima.
 
@@ -38,7 +40,7 @@ def library(family: str | None, only_open: bool, as_json: bool) -> int:
     "corrections",
     metavar="EDGE=A,B",
     multiple=True,
-    help="The cells beside an edge where the file has them wrong, -1 for the outside.",
+    help="Correct cells beside an edge if the file has them wrong, -1 for the outside.",
 )
 def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> int:
     """Make an instance of a graph in the text format of IMCGS, the paper's authors' solver.

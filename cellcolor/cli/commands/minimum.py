@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING
 import click
 
 from cellcolor.cli.commands.group import cellcolor
-from cellcolor.cli.commands.options import INPUT, PATH, SECONDS, SEED
+from cellcolor.cli.commands.options import (
+    COVER,
+    INPUT,
+    LEFT_ALONE,
+    PATH,
+    REQUIRED,
+    SECONDS,
+    SEED,
+    TOLERANCE,
+)
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
 
@@ -74,9 +83,15 @@ def build(source: Path, output: Path) -> int:
     type=click.IntRange(min=1),
     help="Corridors that may cross an edge, in search space surface.  [default: 2]",
 )
+@COVER
+@REQUIRED
+@LEFT_ALONE
+@TOLERANCE
 @click.option("--all", "every", is_flag=True, help="List all optimal schemes.")
 @click.option(
-    "--fewest-cuts", is_flag=True, help="Of the best divisions one with fewest cutting paths."
+    "--fewest-cuts",
+    is_flag=True,
+    help="Find one of the best divisions with the fewest cutting paths.",
 )
 @click.option(
     "--warm-start",
@@ -88,22 +103,39 @@ def build(source: Path, output: Path) -> int:
     "--limit",
     metavar="N",
     type=click.IntRange(min=1),
-    help="With --all, no more schemes than that.  [default: 1000]",
+    help="With --all, stop after this many schemes.  [default: 1000]",
+)
+@click.option(
+    "--refine-until-stable",
+    is_flag=True,
+    help="Solve a scene on finer meshes until minimum and graph stay the same twice in a row.",
+)
+@click.option(
+    "--picture",
+    metavar="OUT.(html|png|svg)",
+    type=PATH,
+    help="With --refine-until-stable, the meshes side by side.",
 )
 @click.option("--time-limit", metavar="S", type=SECONDS, help="Seconds for each file.")
 @click.option("--workers", metavar="N", type=click.IntRange(min=1), help="CP-SAT's search workers.")
 @SEED
-@click.option("--json", "as_json", is_flag=True, help="JSON Lines, one solution a file.")
+@click.option("--json", "as_json", is_flag=True, help="Print JSON Lines, one solution per file.")
 def solve(
     files: tuple[Path, ...],
     output: Path | None,
     solver: str,
     search_space: str,
     strands: int | None,
+    cover: float | None,
+    required: str | None,
+    left_alone: str | None,
+    tolerance: str | None,
     every: bool,
     fewest_cuts: bool,
     warm_start: Path | None,
     limit: int | None,
+    refine_until_stable: bool,
+    picture: Path | None,
     time_limit: float | None,
     workers: int | None,
     seed: int,
@@ -116,15 +148,25 @@ def solve(
     """
     begun = time.monotonic()
     if strands is not None and search_space == "paper":
-        raise click.UsageError("--strands goes with --search-space surface")
+        raise click.UsageError("--strands needs --search-space surface")
     if limit is not None and not every:
-        raise click.UsageError("--limit goes with --all")
+        raise click.UsageError("--limit needs --all")
     if every and search_space == "surface":
-        raise click.UsageError("--all goes with --search-space paper: schemes are defined there")
-
+        raise click.UsageError("--all needs --search-space paper: schemes are defined only there")
+    given = (cover, required, left_alone, warm_start, every or None)
+    if refine_until_stable and any(value is not None for value in given):
+        raise click.UsageError(
+            "--refine-until-stable excludes --cover, --required, --left-alone, --warm-start "
+            "and --all: they are of a single mesh"
+        )
+    if picture is not None and not (refine_until_stable and len(files) == 1):
+        raise click.UsageError("--picture needs --refine-until-stable and a single scene")
     if warm_start is not None and len(files) > 1:
-        raise click.UsageError("--warm-start goes with a single file")
+        raise click.UsageError("--warm-start takes a single file")
+    if required is not None and cover is None:
+        raise click.UsageError("--required needs --cover: without it everything has to be")
 
+    from cellcolor.cli.inputs import read_wanted
     from cellcolor.cli.solve import Request, solve_files
     from cellcolor.solvers.interface import STRANDS, Options
 
@@ -137,7 +179,20 @@ def solve(
         fewest_cuts=fewest_cuts,
     )
     request = Request(
-        files, output, solver, options, time_limit, begun, warm_start, every, limit or 1000, as_json
+        files,
+        output,
+        solver,
+        options,
+        time_limit,
+        begun,
+        warm_start,
+        read_wanted(cover, required, left_alone),
+        tolerance,
+        every,
+        limit or 1000,
+        refine_until_stable,
+        picture,
+        as_json,
     )
     return solve_files(request)
 
@@ -151,33 +206,37 @@ def solve(
     type=SECONDS,
     default=60.0,
     show_default=True,
-    help="Seconds, reading included, for a trajectory, or for the proven range that a plan is "
+    help="Seconds, including reading, for a trajectory, or for the proven range that a plan is "
     "compared with.",
 )
+@LEFT_ALONE
+@TOLERANCE
 @click.option(
     "--cache",
     metavar="FOLDER",
     type=PATH,
-    help="Of a plan: keep the proven range there, so that the next plan on the same surface needs "
+    help="For a plan: keep the proven range there, so that the next plan on the same surface needs "
     "no proof.",
 )
 @click.option(
     "--better",
     metavar="OUT.surface.json",
     type=PATH,
-    help="Of a plan that can be beaten: write a better painting, the plan beside it as "
+    help="For a plan that can be beaten: write a better painting, and beside it the plan as "
     "OUT.plan.json.",
 )
 @click.option(
     "--require-optimal",
     is_flag=True,
-    help="Of a plan: exit code 1 if it can be beaten, 3 if that is open.",
+    help="For a plan: exit code 1 if it can be beaten, 3 if that is open.",
 )
 @click.option("--json", "as_json", is_flag=True, help="One JSON object.")
 def check(
     subject: str,
     claim: str,
     time_limit: float,
+    left_alone: str | None,
+    tolerance: str | None,
     cache: Path | None,
     better: Path | None,
     require_optimal: bool,
@@ -191,15 +250,17 @@ def check(
     """
     begun = time.monotonic()
     if subject == claim == "-":
-        raise click.UsageError("standard input (-) can be one of the two only")
+        raise click.UsageError("only one of the two can be standard input (-)")
 
     from cellcolor.cli.check import Request, check_files
     from cellcolor.cli.check_plan import PlanDemands
     from cellcolor.deadline import Deadline
+    from cellcolor.questions.places import read_place
 
     demands = PlanDemands(time_limit, cache, better, require_optimal)
     deadline = Deadline.after(time_limit, begun)
-    return check_files(Request(subject, claim, deadline, demands, as_json))
+    place = None if left_alone is None else read_place(left_alone, "--left-alone")
+    return check_files(Request(subject, claim, deadline, demands, as_json, place, tolerance))
 
 
 @cellcolor.command()
@@ -212,21 +273,26 @@ def check(
     metavar="OUT.(html|png|svg)",
     required=True,
     type=PATH,
-    help="The picture, in the format of its ending.",
+    help="The picture; the ending gives its format.",
 )
 @click.option(
     "--view",
     metavar="NAME",
     type=click.Choice(list(PICTURES)),
-    help=f"The picture: {', '.join(PICTURES)}. The options below choose one as well.",
+    help=f"The picture: {', '.join(PICTURES)}. The options below also choose one.",
 )
-@click.option("--color", metavar="NAME|ID", help="Where one color is available.")
+@click.option("--color", metavar="NAME|ID", help="Show where one color is available.")
 @click.option(
-    "--reason", is_flag=True, help="Why points are out of reach, at best or in one --branch."
+    "--reason",
+    is_flag=True,
+    help="Show why points are out of reach, in the best branch or in one --branch.",
 )
 @click.option("--graph", is_flag=True, help="The topological graph.")
 @click.option(
-    "--vertex", metavar="N", type=click.IntRange(min=0), help="The arm on a vertex, in a --branch."
+    "--vertex",
+    metavar="N",
+    type=click.IntRange(min=0),
+    help="Show the arm at a vertex, in a --branch.",
 )
 @click.option("--branch", metavar="NAME|ID", help="An inverse-kinematic branch.")
 def show(
@@ -244,7 +310,7 @@ def show(
     With a solution after what was solved, or a plan on its surface: by segment.
     """
     if len(files) > 2:
-        raise click.UsageError("one file to show, or one and its solution or plan")
+        raise click.UsageError("give one file to show, or one with its solution or plan")
     implied = {
         "color": color is not None,
         "reasons": reason,
@@ -254,10 +320,10 @@ def show(
     }
     asked = [name for name, is_asked in implied.items() if is_asked]
     if view is not None and (reason or graph):
-        raise click.UsageError("--view goes without --reason and --graph")
+        raise click.UsageError("--view cannot be combined with --reason and --graph")
     if view is None and len(asked) > 1:
         raise click.UsageError(
-            "one of --color, --reason, --graph, --vertex and a solution at a time"
+            "--color, --reason, --graph, --vertex and a solution exclude each other"
         )
 
     from cellcolor.cli.show import show_files

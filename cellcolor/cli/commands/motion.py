@@ -9,7 +9,16 @@ import click
 
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.motion_options import motion_options
-from cellcolor.cli.commands.options import INPUT, METRES, PATH, TIME_LIMIT
+from cellcolor.cli.commands.options import (
+    COVER,
+    INPUT,
+    LEFT_ALONE,
+    METRES,
+    PATH,
+    REQUIRED,
+    TIME_LIMIT,
+    TOLERANCE,
+)
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
 
 __all__ = ["cover", "paint", "plan"]
@@ -29,7 +38,7 @@ _PATTERN = click.option(
     callback=_pattern_name,
     default=DEFAULT_PATTERN,
     show_default=True,
-    help=f"Of the tool paths: {', '.join(PATTERNS)}, or what another package registers.",
+    help=f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers.",
 )
 
 
@@ -42,7 +51,7 @@ _PATTERN = click.option(
     metavar="OUT.surface.json",
     required=True,
     type=PATH,
-    help="The painted surface; the plan on it is written beside, as OUT.plan.json.",
+    help="The painted surface; its plan is written beside it as OUT.plan.json.",
 )
 @click.option(
     "--tool-radius",
@@ -79,7 +88,7 @@ def paint(
     metavar="M",
     required=True,
     type=METRES,
-    help="Wanted distance between neighboring passes.",
+    help="Desired distance between neighboring passes.",
 )
 @click.option(
     "--tool-radius-m", metavar="M", required=True, type=METRES, help="Of the tool's footprint."
@@ -116,13 +125,33 @@ def cover(
     metavar="FOLDER",
     required=True,
     type=PATH,
-    help="For all files; it is made if it does not exist.",
+    help="Folder for all files; it is created if it does not exist.",
 )
 @_PATTERN
+@COVER
+@REQUIRED
+@LEFT_ALONE
+@TOLERANCE
+@click.option(
+    "--ask",
+    metavar="QUESTION",
+    multiple=True,
+    help="What report.html is to tell besides: tradeoff, explain, place or setups. May be given "
+    "several times.",
+)
 @TIME_LIMIT
 @motion_options
 def plan(
-    scene: Path, output: Path, pattern: str, time_limit: float | None, **motion: object
+    scene: Path,
+    output: Path,
+    pattern: str,
+    cover: float | None,
+    required: str | None,
+    left_alone: str | None,
+    tolerance: str | None,
+    ask: tuple[str, ...],
+    time_limit: float | None,
+    **motion: object,
 ) -> int:
     """Plan a motion over a scene's object with the fewest lift-offs, and have it judged.
 
@@ -132,8 +161,14 @@ def plan(
     """
     begun = time.monotonic()
 
+    if required is not None and cover is None:
+        raise click.UsageError("--required needs --cover: without it everything has to be")
+
+    from cellcolor.cli.inputs import read_wanted
     from cellcolor.cli.plan import plan_scene
     from cellcolor.deadline import Deadline
 
     given = {key: value for key, value in motion.items() if value is not None}
-    return plan_scene(scene, output, pattern, given, Deadline.after(time_limit, begun))
+    wanted = read_wanted(cover, required, left_alone)
+    deadline = Deadline.after(time_limit, begun)
+    return plan_scene(scene, output, pattern, wanted, tolerance, ask, given, deadline)

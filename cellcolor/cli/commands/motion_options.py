@@ -24,7 +24,7 @@ class _Number(click.ParamType):  # type: ignore[type-arg]
         except ValueError:
             number = math.nan
         if not math.isfinite(number):
-            self.fail(f"{value!r} is no number.", param, ctx)
+            self.fail(f"{value!r} is not a number.", param, ctx)
         return number
 
 
@@ -43,11 +43,11 @@ _KEYS = {
     "tool_radius_m": "Of the tool's footprint, m.",
     "spacing_m": "Between neighboring passes, m.",
     "speed_m_per_s": "Of the tool on the surface, m/s; slower where joints limit it.",
-    "joint_velocities_rad_per_s": "Where they are to be below the URDF's, rad/s (slides m/s).",
-    "joint_accelerations_rad_per_s2": "What a URDF does not have, rad/s² (slides m/s²).",
+    "joint_velocities_rad_per_s": "Lower limits than the URDF's, rad/s (m/s for sliding joints).",
+    "joint_accelerations_rad_per_s2": "A URDF has none; rad/s² (m/s² for sliding joints).",
     "retract_m": "Along the normal, before a move to another stroke, m.",
-    "clearance_m": "To everything, between strokes, m.",
-    "home_rad": "Where the arm begins and ends, rad (slides m).",
+    "clearance_m": "Distance from everything between strokes, m.",
+    "home_rad": "Where the arm begins and ends, rad (m for sliding joints).",
 }
 """What each key means. The setup says what may be left out, and checks the numbers."""
 

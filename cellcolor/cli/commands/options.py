@@ -1,4 +1,4 @@
-"""What options are held to, and the options that several commands have."""
+"""Types of options, and the options that several commands share."""
 
 from __future__ import annotations
 
@@ -8,7 +8,20 @@ from typing import Any
 
 import click
 
-__all__ = ["CLUSTER", "INPUT", "JOBS", "METRES", "PATH", "SECONDS", "SEED", "TIME_LIMIT"]
+__all__ = [
+    "CLUSTER",
+    "COVER",
+    "INPUT",
+    "JOBS",
+    "LEFT_ALONE",
+    "METRES",
+    "PATH",
+    "REQUIRED",
+    "SECONDS",
+    "SEED",
+    "TIME_LIMIT",
+    "TOLERANCE",
+]
 
 
 class _Positive(click.FloatRange):
@@ -52,13 +65,33 @@ TIME_LIMIT = click.option(
     "--time-limit",
     metavar="S",
     type=SECONDS,
-    help="Seconds, reading included.  [default: as long as it takes]",
+    help="Seconds, including reading.  [default: no limit]",
+)
+_PLACE = (
+    "a box x,y,z,x,y,z (lowest and highest corner, m), a JSON file with a mask, or a labelled "
+    "surface, for what it gives up."
+)
+COVER = click.option(
+    "--cover",
+    metavar="S",
+    type=click.FloatRange(0, 1),
+    help="Cover only this share of the area, 0 to 1, with the fewest lift-offs that do.",
+)
+REQUIRED = click.option("--required", metavar="PLACE", help=f"What has to be covered: {_PLACE}")
+LEFT_ALONE = click.option(
+    "--left-alone", metavar="PLACE", help=f"What must not be covered: {_PLACE}"
+)
+TOLERANCE = click.option(
+    "--tolerance",
+    metavar="D,A",
+    help="How far a scene's part may stand off and be turned, such as 2mm,0.5deg: colors hold at a "
+    "sample of such displacements.",
 )
 JOBS: dict[str, Any] = {
     "metavar": "N",
     "type": click.IntRange(min=1),
     "show_default": True,
-    "help": "Processes at a time.",
+    "help": "Number of processes at a time.",
 }
 CLUSTER = click.option(
     "--cluster",

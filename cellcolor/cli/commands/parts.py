@@ -16,7 +16,7 @@ _PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
 _UNIT = click.option(
     "--unit",
     type=click.Choice(["m", "mm"]),
-    help="Of the coordinates.  [default: what is likely by the size]",
+    help="Unit of the coordinates.  [default: guessed from the size]",
 )
 _JSON = click.option("--json", "as_json", is_flag=True, help="One JSON object.")
 
@@ -53,7 +53,7 @@ def inspect(
 @_UNIT
 @click.option("-o", "--output", metavar="MESH.obj", required=True, type=PATH, help="The mesh.")
 @click.option(
-    "--fill-holes", metavar="M", type=METRES, help="Fill holes with a border up to that length."
+    "--fill-holes", metavar="M", type=METRES, help="Fill holes whose border is at most this long."
 )
 @click.option(
     "--least-component",
@@ -61,10 +61,10 @@ def inspect(
     type=click.FloatRange(0, 1),
     default=0.01,
     show_default=True,
-    help="Drop components with less than this share of the largest one's area.",
+    help="Drop components smaller than this share of the largest one's area.",
 )
 @click.option(
-    "--edge-length", metavar="M", type=METRES, help="Remesh to edges of about that length."
+    "--edge-length", metavar="M", type=METRES, help="Remesh to edges of about this length."
 )
 @TIME_LIMIT
 @_JSON
@@ -108,7 +108,7 @@ def repair(
     metavar="FOLDER",
     required=True,
     type=PATH,
-    help="For the files; it is made if it does not exist.",
+    help="Folder for the files; it is created if it does not exist.",
 )
 @click.option(
     "--tool",

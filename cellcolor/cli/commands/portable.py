@@ -22,7 +22,7 @@ _FORMATS = ("opb", "wcnf", "mps", "dzn", "lp")
     "kind",
     type=click.Choice(_FORMATS),
     help="opb: pseudo-Boolean. wcnf: MaxSAT. mps: mixed-integer programs. dzn: data for MiniZinc. "
-    "lp: facts for answer set programs.  [default: by the ending of OUT]",
+    "lp: facts for answer set programs.  [default: from the ending of OUT]",
 )
 def export(source: Path, output: Path, kind: str | None) -> int:
     """Write an instance for a solver from outside, in the search space paper.
@@ -43,8 +43,8 @@ def export(source: Path, output: Path, kind: str | None) -> int:
     "kind",
     type=click.Choice(_FORMATS),
     required=True,
-    help="The one that the solver was given: opb and wcnf for lines v, mps for a file of names and "
-    "values, dzn for what coloring.mzn prints, lp for what clingo prints.",
+    help="The format that the solver was given: opb and wcnf for lines v, mps for a file of names "
+    "and values, dzn for what coloring.mzn prints, lp for what clingo prints.",
 )
 @click.option(
     "-o", "--output", metavar="SOLUTION.json", required=True, type=PATH, help="The solution."
@@ -64,5 +64,5 @@ def _by_ending(path: Path, option: str) -> str:
     ending = path.suffix.removeprefix(".")
     if ending not in _FORMATS:
         endings = ", ".join(f".{name}" for name in _FORMATS)
-        raise click.BadParameter(f"{path} has none of the endings {endings}.", param_hint=option)
+        raise click.BadParameter(f"{path} does not end in any of {endings}.", param_hint=option)
     return ending

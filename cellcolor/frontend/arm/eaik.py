@@ -24,12 +24,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.candidates import (
-    CALIBRATION,
-    branches_of_calibrated,
-    exact_solutions,
-    solutions_of_calibrated,
-)
+from cellcolor.frontend.arm.candidates import CALIBRATION, NearIdeal, exact_solutions
 from cellcolor.frontend.arm.ideal import Axes, idealized, remark_on_calibration
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import farthest_reach
@@ -59,11 +54,11 @@ class EaikKinematics(InverseKinematics):
         check_tool_on_last_axis(robot, poses, "not an arm of the family eaik")
         axes = Axes(poses.axis[0], poses.origin[0, 1:])
         self._solver = _solver(axes)
-        self._off: tuple[float, float] | None = None
+        off: tuple[float, float] | None = None
         if self._solver is None:
             ideal = idealized(axes, CALIBRATION)
-            self._solver, self._off = _solver(ideal), ideal.off(axes)
-            if self._solver is None or max(self._off) > CALIBRATION:
+            self._solver, off = _solver(ideal), ideal.off(axes)
+            if self._solver is None or max(off) > CALIBRATION:
                 raise InputError(str(robot.files[0]), "robot", _UNKNOWN)
             axes = ideal
         along = np.sign(axes.directions[5] @ poses.tool_axis[0])
@@ -72,8 +67,9 @@ class EaikKinematics(InverseKinematics):
         height = float((poses.tip[0] - axes.points[5]) @ axes.directions[5])
         self._tip = height * axes.directions[5]
         self._set_sizes(axes, poses.tip[0], files)
-        tolerance = _TOLERANCE if self._off is None else 2 * CALIBRATION
+        tolerance = _TOLERANCE if off is None else 2 * CALIBRATION
         self._signs = signs_of(robot, self.reach, tolerance)
+        self._near = None if off is None else NearIdeal(robot, self._closed_form, off, self._signs)
         self.branches = () if self._signs is None else BRANCHES
 
     def _set_sizes(self, axes: Axes, tip: Array, files: RobotFiles) -> None:
@@ -101,25 +97,25 @@ class EaikKinematics(InverseKinematics):
         not exact. Its own mark of least-squares answers is not asked: of arms with a spherical
         wrist and no parallel axes it marks exact solutions as well.
         """
-        if self._off is None:
-            candidates = self._closed_form(points, directions)
-            found = exact_solutions(self._robot, candidates, points, directions, self._signs)
-        elif branches is None or self._signs is None:
-            of = points, directions, self._signs, self._off
-            found = solutions_of_calibrated(self._robot, self._closed_form, *of)
-        else:
-            named = points, directions, self._signs, self._off, branches, np.arange(len(BRANCHES))
-            return branches_of_calibrated(self._robot, self._closed_form, *named)[:, None]
+        if self._near is not None:
+            return self._near.solve(points, directions, branches)
+        candidates = self._closed_form(points, directions)
+        found = exact_solutions(self._robot, candidates, points, directions, self._signs)
         return found if branches is None else found[np.arange(len(points)), branches][:, None]
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """How a calibrated arm is solved, and what is missing."""
-        if self._off is None:
+        if self._near is None:
             return ()
-        return (remark_on_calibration(self._robot, self._off, self.solve(points, directions)),)
+        found = self.solve(points, directions)
+        return (remark_on_calibration(self._robot, self._near.off, found),)
 
     def _closed_form(
-        self, points: Array, directions: Array, _: NDArray[np.intp] | None = None
+        self,
+        points: Array,
+        directions: Array,
+        *,
+        branches: NDArray[np.intp] | None = None,  # noqa: ARG002
     ) -> Array:
         """EAIK's answers (n, s, 6) in rad, joint 6 locked, NaN after the last of each pose.
 

@@ -99,7 +99,7 @@ KINEMATICS: Registry[InverseKinematics] = Registry(
     "cellcolor.kinematics",
     InverseKinematics,  # type: ignore[type-abstract]
     {
-        "ur": "cellcolor.frontend.arm.ur_family:UrKinematics",
+        "ur": "cellcolor.frontend.arm.ur:UrKinematics",
         "eaik": "cellcolor.frontend.arm.eaik:EaikKinematics",
         "planar-2r": "cellcolor.frontend.arm.planar:PlanarTwo",
         "planar-3r": "cellcolor.frontend.arm.planar:PlanarThree",

@@ -38,7 +38,7 @@ def locked_angle(robot: Robot, files: RobotFiles) -> float:
     """
     locked = files.locked_joint_6_rad
     if locked is None:
-        raise InputError(None, "robot.locked_joint_6_rad", "Field required")
+        raise InputError(None, "robot.locked_joint_6_rad", "is missing")
     if not robot.lower[-1] <= locked <= robot.upper[-1]:
         message = "outside the limits of the sixth joint"
         raise InputError(None, "robot.locked_joint_6_rad", message)

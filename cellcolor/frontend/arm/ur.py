@@ -1,15 +1,20 @@
-"""UR-type geometry and its closed-form inverse kinematics, all branches, vectorised.
+"""The family of UR-type arms: geometry and closed-form inverse kinematics, all branches at once.
 
 A UR-type arm has three parallel axes (2, 3, 4) across the first, and axes 4-5 and 5-6 that meet
 at right angles. With the tool on the axis of joint 6, tip position and tool direction leave that
 joint free, and up to eight solutions of the other five: shoulder x elbow x wrist
 (Hawkins, Analytic inverse kinematics for the Universal Robots UR-5/UR-10 arms, 2013).
+
+The axes of a calibrated arm are a little off those that the closed form stands on. From the
+solutions of the ideal arm Newton's method leads to those of the true one, which keep their names
+(:mod:`cellcolor.frontend.arm.candidates`).
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +22,21 @@ from scipy.optimize import minimize_scalar
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.ideal import Axes, idealized
-from cellcolor.frontend.arm.last_joint import MUST_LIE, pose_at_zero
+from cellcolor.frontend.arm.candidates import CALIBRATION, NearIdeal
+from cellcolor.frontend.arm.ideal import Axes, idealized, remark_on_calibration
+from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.last_joint import (
+    MUST_LIE,
+    check_tool_on_last_axis,
+    locked_angle,
+    pose_at_zero,
+)
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.signs import Signs, signs_of
+from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["BRANCHES", "UrGeometry", "solve_inverse", "ur_geometry"]
+__all__ = ["BRANCHES", "UrGeometry", "UrKinematics", "solve_inverse", "ur_geometry"]
 
 BRANCHES = tuple(
     f"shoulder-{shoulder} elbow-{elbow} wrist-{wrist}"
@@ -261,3 +276,74 @@ def _arccos(cosine: Array, slack: float) -> Array:
 def _principal(angles: Array) -> Array:
     """The same angles in (-pi, pi]."""
     return np.pi - np.mod(np.pi - angles, 2 * np.pi)
+
+
+_SLACK = 0.05  # by so much a cosine may exceed 1 where the ideal arm just does not reach
+
+
+class UrKinematics(InverseKinematics):
+    """UR-type arms; joint 6, which the task leaves free, is locked."""
+
+    joints = 6
+    branches = BRANCHES
+
+    def __init__(self, robot: Robot, files: RobotFiles) -> None:
+        """The constants of the arm, or of the ideal one, and the angle of the locked joint."""
+        self._robot, self._locked = robot, locked_angle(robot, files)
+        self._near: NearIdeal | None = None
+        try:
+            self.geometry = ur_geometry(robot)
+        except InputError:
+            # A refusal with the larger tolerance is the one to be seen.
+            self.geometry = ur_geometry(robot, CALIBRATION)
+            self._near = _near_ideal(robot, self.geometry, self._locked)
+        self.lever, self.viewpoints = self.geometry.reach, self.geometry.viewpoints
+        self.reach = self.geometry.arm_reach
+        if self.lever > abs(self.geometry.a2) + abs(self.geometry.a3):
+            raise InputError(
+                str(robot.files[1]),
+                f"link[{files.tip_link}]",
+                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
+            )
+
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """See :func:`~cellcolor.frontend.arm.ur.solve_inverse`."""
+        if self._near is None:
+            return solve_inverse(self.geometry, points, directions, self._locked, branches)
+        return self._near.solve(points, directions, branches)
+
+    def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
+        """How a calibrated arm is solved, and what is missing."""
+        if self._near is None:
+            return ()
+        found = self.solve(points, directions)
+        return (remark_on_calibration(self._robot, self._near.off, found),)
+
+
+def _near_ideal(robot: Robot, geometry: UrGeometry, locked: float) -> NearIdeal:
+    """A UR-type arm whose axes are a little off those of an ideal one with this geometry."""
+    poses = pose_at_zero(robot)
+    check_tool_on_last_axis(robot, poses, "not a UR-type arm")
+    axes = Axes(poses.axis[0], poses.origin[0, 1:])
+    off = idealized(axes, CALIBRATION).off(axes)
+    signs = signs_of(robot, geometry.arm_reach, 2 * CALIBRATION)
+    assert signs is not None  # a UR-type arm has them
+    closed_form = partial(solve_inverse, geometry, locked_angle=locked, slack=_SLACK)
+    return NearIdeal(robot, closed_form, off, signs, _sign_of(robot, geometry, signs))
+
+
+def _sign_of(robot: Robot, geometry: UrGeometry, signs: Signs) -> NDArray[np.intp]:
+    """For each of ``BRANCHES`` the index that the signs have for it, (8,).
+
+    Asked of the ideal arm's solutions for the pose among many that is farthest from any change of
+    sign: there the true arm's factors have the same signs.
+    """
+    tries = np.random.default_rng(0).uniform(-np.pi, np.pi, (1000, 6))
+    poses = forward(robot, tries)
+    found = solve_inverse(geometry, poses.tip, poses.tool_axis, 0.0)
+    found = found[~np.isnan(found).any(axis=(1, 2))]
+    factors = signs.factors(forward(robot, found.reshape(-1, 6)))
+    clearest = np.argmax(np.abs(factors).reshape(len(found), -1).min(axis=1))
+    return signs.branches(robot, found[clearest])[0]

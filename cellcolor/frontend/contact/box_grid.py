@@ -1,4 +1,4 @@
-"""A grid of boxes as an obstacle: the occupied cells of a map, as a scanner makes one."""
+"""A grid of boxes as an obstacle: the occupied cells of a map, for example from a scanner."""
 
 from __future__ import annotations
 

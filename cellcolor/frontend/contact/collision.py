@@ -2,7 +2,7 @@
 
 Shapes are capsules, flat-ended cylinders and solids with flat faces
 (:class:`~cellcolor.frontend.arm.body.Body`), given in the world by the ends of their axes.
-Capsules are settled in numpy. A cylinder lies between two capsules, one around it and one inside
+Capsules are tested in numpy. A cylinder lies between two capsules, one around it and one inside
 it; fcl decides only where these two disagree. For a solid, fcl decides where the capsule around it
 meets another body and :func:`gap_between` finds no plane between that body and the solid's box.
 """
@@ -100,9 +100,9 @@ def hits_ground(
     exempt: tuple[str, ...],
     poses: Poses | None = None,
 ) -> Mask:
-    """Whether any body but those of the exempt links reaches into the ground, (n,).
+    """Whether any body, except those of the exempt links, reaches into the ground, (n,).
 
-    ``poses`` of the joints are not needed by robots without solids.
+    Robots without solids do not need the ``poses`` of the joints.
     """
     hit = np.zeros(ends.shape[2], dtype=bool)
     for body, (start, end) in zip(robot.bodies, ends, strict=True):
@@ -167,8 +167,8 @@ def _norm(a: Array) -> Array:
 def longest_steps(radii: Array) -> Array:
     """How far bodies of these radii may move between two tested points of a link, m.
 
-    What two balls of radius r at a distance s leave out between them, of all that a third one on
-    its way from one to the other meets, is r - sqrt(r^2 - s^2 / 4) deep: at most 0.65 mm.
+    A ball of radius r that moves by s sweeps a space that its first and last position do not cover
+    completely. The gap is r - sqrt(r^2 - s^2 / 4) deep: at most 0.65 mm.
     """
     depth = np.minimum(_DEPTH, radii)
     return np.asarray(2 * np.sqrt(depth * (2 * radii - depth)))
@@ -196,13 +196,13 @@ def tracked_points(robot: Robot, ends: Array, poses: Poses) -> Array:
 def tracked_steps(robot: Robot, margin: float, between: float) -> Array:
     """How far each of the tracked points may move between two tests, (points,), m.
 
-    Of a solid, which may have sharp edges, what stands still reaches at most half a step less the
-    margin in which nothing may be: 0.65 mm here as for other bodies (:func:`longest_steps`). Of
+    A solid may have sharp edges. A stationary object reaches into it by at most half a step less
+    the margin in which nothing may be: 0.65 mm, as for other bodies (:func:`longest_steps`). For
     two solids that both move it is a whole step less their margin: 1.3 mm.
 
     Args:
-        margin: the least that is kept from everything that stands still, m.
-        between: what is kept between links, m.
+        margin: the smallest margin to stationary objects, m.
+        between: the margin between links, m.
     """
     steps: list[float] = []
     for body in robot.bodies:
@@ -220,8 +220,8 @@ def gap_between(
 ) -> Array:
     """Lower bounds (rows,) of the distance between two bodies, m; at most 0 where they may touch.
 
-    A solid stands in a box around it. The bound is the widest gap that two bodies leave along a
-    line, of some lines: between the middles, and along the edges of the boxes (after Gottschalk,
+    A solid lies in a box around it. The bound is the widest gap between two bodies along any of
+    several lines: between the middles, and along the edges of the boxes (after Gottschalk,
     Lin and Manocha, OBBTree, 1996, who take nine more).
 
     Args:

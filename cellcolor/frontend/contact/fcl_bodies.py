@@ -1,4 +1,4 @@
-"""Bodies as fcl sees them: one configuration after the other, for what nothing quicker settles."""
+"""Bodies for fcl: one configuration after the other, where no faster test decides."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _MODELS: WeakKeyDictionary[Polyhedron, fcl.BVHModel] = WeakKeyDictionary()
 
 
 def mesh_model(vertices: Array, faces: Index) -> fcl.BVHModel:
-    """Triangles for fcl: a shell, whatever it encloses."""
+    """Triangles for fcl: a shell, not the volume inside."""
     model = fcl.BVHModel()
     model.beginModel(len(faces), len(vertices))
     model.addSubModel(vertices, faces)
@@ -42,7 +42,7 @@ def body_shape(body: Body, wider: float = 0.0) -> fcl.CollisionGeometry:
     """The body's shape for fcl, about the origin and along z; of a solid in the joint's frame.
 
     Args:
-        wider: by so much what is no solid is made wider, a cylinder longer too, m.
+        wider: how much wider bodies that are not solids are made, and cylinders longer, m.
     """
     if body.solid is not None:
         if body.solid not in _MODELS:
@@ -77,7 +77,7 @@ Placed = tuple[Array, Array]
 
 
 class Thing(NamedTuple):
-    """What stands still: its shape in the world, and a point (parts, 3) of each part of it, m."""
+    """A stationary thing: its shape in the world, and a point (parts, 3) of each part, m."""
 
     shape: fcl.CollisionObject
     points: Array
@@ -86,7 +86,7 @@ class Thing(NamedTuple):
 def touch_thing(body: Body, placed: Placed, thing: Thing) -> Mask:
     """Whether a body in n places touches a thing, (n,); a solid is filled, the thing need not be.
 
-    What is within a solid's skin counts as touching it.
+    A thing within a solid's skin counts as touching it.
     """
     other = fcl.CollisionObject(body_shape(body), fcl.Transform())
     hit = np.zeros(len(placed[1]), dtype=bool)
@@ -110,8 +110,8 @@ def lowest_points(solid: Polyhedron, placed: Placed, plane: HalfSpace) -> Array:
 def bodies_touch(first: Body, at: Placed, second: Body, second_at: Placed) -> Mask:
     """Whether two bodies touch in each of n places, (n,); one may be wholly inside the other.
 
-    Distances between curved shapes are off by some tenths of a millimeter in fcl. So where there
-    is a skin it is given to the curved one of two shapes as far as there is one.
+    Distances between curved shapes are off by some tenths of a millimeter in fcl. So the skin, if
+    any, goes to the curved one of two shapes if one is curved.
     """
     skin = first.skin + second.skin
     curved = first.solid is None or second.solid is None

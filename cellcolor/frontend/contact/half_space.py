@@ -26,7 +26,7 @@ _DRAWN, _VERTICES = 2.0, 441  # side of the square that is drawn, m, in squares 
 
 
 class HalfSpaceObstacle(Obstacle):
-    """All that lies below its own plane z = 0, without end."""
+    """Everything below its own plane z = 0, without end."""
 
     kind: Literal["half-space"] = "half-space"
 

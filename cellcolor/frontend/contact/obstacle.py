@@ -1,4 +1,4 @@
-"""What stands around: the kinds of ``[[obstacle]]`` in a scene."""
+"""Obstacles: the kinds of ``[[obstacle]]`` in a scene."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["OBSTACLES", "MeshObstacle", "Obstacle"]
 
 
 class Obstacle(Placement):
-    """A thing that neither the arm nor the tool may touch, and where it stands.
+    """A thing that neither the arm nor the tool may touch, and its place.
 
     A kind that files can name has a key ``kind`` with its name, and is registered in ``OBSTACLES``
     or by an entry point of the group ``cellcolor.obstacles``.
@@ -29,7 +29,7 @@ class Obstacle(Placement):
     def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> tuple[Array, Faces]:
         """The obstacle's outside in its own frame: vertices (n, 3) in m and faces (m, 3).
 
-        Pictures show it, and the arm is held against it, unless :meth:`solid` says otherwise.
+        Pictures show it, and the arm is tested against it, unless :meth:`solid` says otherwise.
 
         Args:
             folder: what the names of files in the table are relative to.
@@ -41,7 +41,7 @@ class Obstacle(Placement):
         """
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:
-        """What the arm is held against, in the world; arguments and errors as of the shell."""
+        """What the arm is tested against, in the world; arguments and errors as for the shell."""
         vertices, faces = self.shell(folder, deadline)
         return mesh_solid(vertices, faces, deadline).placed(self)
 

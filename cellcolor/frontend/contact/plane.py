@@ -1,4 +1,4 @@
-"""A half space: all that lies below a plane, which may be tilted."""
+"""A half space: everything below a plane, which may be tilted."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Boxes, cylinders, cones, capsules and spheres as obstacles; unlike meshes they are filled."""
+"""Boxes, cylinders, cones, capsules and spheres as obstacles; unlike meshes they are solid."""
 
 from __future__ import annotations
 
@@ -127,7 +127,7 @@ class SphereObstacle(Primitive):
 
 
 class CapsuleObstacle(Primitive):
-    """All within a radius of a piece of its own z axis, the middle of it on the position."""
+    """All points within a radius of a piece of its own z axis, centered on the position."""
 
     kind: Literal["capsule"] = "capsule"
     radius_m: Length

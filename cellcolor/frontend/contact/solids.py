@@ -1,15 +1,14 @@
-"""What stands still: the object and the obstacles, prepared for many queries.
+"""Stationary things: the object and the obstacles, prepared for many queries.
 
-A body is settled by distances of points on its axis, all configurations at once: a slice of the
-body is clear if a ball around it is, a ball in the body that reaches the solid is a hit, and what
-lies between is halved. The distance to a mesh is looked up in a grid. Where the grid's spacing
-leaves a doubt, the distance is taken to the nearest of many samples of the mesh. What is left,
-within some tenths of a millimeter of a contact, reaches fcl.
+A body is tested by distances of points on its axis, all configurations at once. A slice of the
+body is clear if a ball around it is clear. A ball in the body that reaches the solid is a hit.
+Anything in between is halved. A grid gives the distance to a mesh. Where the grid's spacing leaves
+a doubt, the nearest of many samples of the mesh gives it. Only cases within some tenths of a
+millimeter of a contact reach fcl.
 
-Samples are so many that the distance to them says how far the mesh is: the way from a point in
-space to the nearest one of a mesh is at right angles to the face or the edge that this lies on. So
-a sample of the same face or edge at most ``slack`` aside of it is hardly farther away. All corners
-are samples.
+The samples are dense enough for their distance to give that of the mesh: the way from a point in
+space to the nearest point of a mesh is at right angles to its face or edge. So a sample of the same
+face or edge within ``slack`` of that point is hardly farther away. All corners are samples.
 """
 
 from __future__ import annotations
@@ -57,7 +56,7 @@ Near = Callable[[Array, float], tuple[Array, Array]]
 
 
 class Solid:
-    """A thing that stands still, for fcl and as bounds of distances from points.
+    """A stationary thing, for fcl and as bounds of distances from points.
 
     A mesh is a shell: a body wholly inside a closed one does not touch it. That cannot happen
     unnoticed to an arm whose bodies touch one another in a row and of which a part is outside.
@@ -80,7 +79,7 @@ class Solid:
         self._thing = Thing(fcl.CollisionObject(shape, fcl.Transform()), self._parts)
 
     def placed(self, placement: Placement) -> Solid:
-        """It, put in place from its own frame; nothing of it is built anew."""
+        """The solid, moved from its own frame into place without building it anew."""
         turn, origin = rotation_from_rpy(*placement.rpy_rad), np.array(placement.position_m)
         distances, near = self._distances, self._near
 

@@ -1,4 +1,4 @@
-"""By how much what collides in the place of a link's mesh differs from the mesh itself."""
+"""How much the colliding shapes of a link differ from its mesh."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ class StandInReport:
 
     @property
     def warning(self) -> str | None:
-        """Of a hull that is certainly far off its mesh, what to choose instead."""
+        """For a hull that is certainly far off its mesh: what to choose instead."""
         certain = self.error_m - self.known_to_m
         if self.chosen != "hull" or certain <= _FAR:
             return None

@@ -1,8 +1,8 @@
 """Where the tool works: the region at its tip that needs room on the surface.
 
-Bodies end short of the tip, since the tip touches the object. What else is there, obstacles and
-the ground, must leave room for it (``docs/frontend.md``, "Validity"). The region hangs on the
-tool's pose alone, whatever the arm does.
+Bodies end short of the tip, since the tip touches the object. Obstacles and
+the ground must leave room for it (``docs/frontend.md``, "Validity"). The region depends
+only on the tool's pose, whatever the arm does.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ class Tip:
     """All points within the contact radius of the tool's axis, from the tip to the tool's body.
 
     Attributes:
-        body: the region as a shape that hangs on the last joint.
+        body: the region as a shape fixed to the last joint.
     """
 
     def __init__(
@@ -65,8 +65,8 @@ class Tip:
     def free_along(self, surface: Surface, edges: Faces) -> Mask:
         """Whether obstacles leave room all along mesh edges (k, 2), (k,).
 
-        Asked at points so close to each other that no more than 0.65 mm of what the region meets
-        is left out. The ground is flat and needs no more than the vertices.
+        Tested at points so close together that at most 0.65 mm of an overlap with the region is
+        missed. The ground is flat, so the vertices are enough.
         """
         free = np.ones(len(edges), dtype=bool)
         if not self._obstacles:

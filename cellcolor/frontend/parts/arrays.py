@@ -68,7 +68,7 @@ class ArraysObject(Part):
         raise InputError(None, "object", message)
 
     def surface(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Surface:  # noqa: ARG002
-        """The mesh, held to what a mesh file is held to."""
+        """The mesh, checked like a mesh file."""
         return mesh_surface(self.vertices, self.faces, deadline=deadline)
 
     @property

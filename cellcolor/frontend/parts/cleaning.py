@@ -1,10 +1,10 @@
-"""Faults of a mesh mended: double vertices and faces, places not manifold, holes, the winding.
+"""Repairs of a mesh: double vertices and faces, non-manifold places, holes, the winding.
 
-- Vertices in one place are joined. Faces that are there twice or have no area are left out. Faces
-  are made to wind alike, and outward where that can be known.
-- Places that are not manifold are cut apart: edges of three faces and more, vertices of several
+- Vertices in one place are joined. Duplicate faces and faces without area are left out. Faces
+  get a consistent winding, outward where that can be known.
+- Places that are not manifold are cut apart: edges with more than two faces, vertices of several
   fans. Then every edge has one or two faces, and the faces around a vertex form one fan. The copies
-  of a vertex are moved apart a little, since two vertices in one place are no better than one.
+  of a vertex are moved apart a little, since two vertices in one place would be merged again.
 - A hole is filled with the triangulation of least area among its own vertices, as Barequet and
   Sharir do ("Filling gaps in the boundary of a polyhedron", 1995).
 """
@@ -43,7 +43,7 @@ _PASSES = 30
 
 
 def merged(vertices: Array, faces: Faces) -> tuple[Array, Faces]:
-    """Of vertices in one place, within 1e-8 of the mesh's size, the first for all of them."""
+    """For vertices in one place, within 1e-8 of the mesh's size, the first of them."""
     size = float(np.ptp(vertices, axis=0).max(initial=0.0)) if len(vertices) else 0.0
     if not size:
         return vertices, faces
@@ -139,7 +139,7 @@ def _parted_beside(vertices: Array, faces: Faces, flat: Mask) -> Faces:
 
 
 def against_the_others(mesh: TriangleMesh) -> tuple[Mask, Mask]:
-    """The faces (m,) to be turned so that all neighbors wind alike, and those of one-sided parts.
+    """The faces (m,) to turn for a consistent winding, and the faces of one-sided parts.
 
     Neighbors are two faces with an edge that no other has. Of each part the fewer are turned. A
     part is one-sided, as a Moebius strip is, if no turning makes its neighbors wind alike.
@@ -178,7 +178,7 @@ def inside_out(mesh: TriangleMesh) -> Mask:
 
 
 def turned(faces: Faces, which: Mask | Index) -> Faces:
-    """Faces, some of them wound the other way round."""
+    """Faces, some of them with reversed winding."""
     changed = faces.copy()
     changed[which] = changed[which][:, ::-1]
     return changed
@@ -205,7 +205,7 @@ def fans(faces: Faces, sides: Index) -> Index:
 
 
 def split(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
-    """A mesh cut apart where it is no manifold.
+    """A mesh cut apart where it is not manifold.
 
     At an edge of three faces and more two stay together that wind alike: of these two that are
     connected elsewhere, and of these the two that go on straightest; then two of the others. What
@@ -231,7 +231,7 @@ def split(vertices: Array, faces: Faces) -> tuple[Array, Faces, float]:
 
 
 def _glued(mesh: TriangleMesh) -> Index:
-    """Pairs of sides (p, 2) that stay together at edges of three faces and more."""
+    """Pairs of sides (p, 2) that stay together at edges with more than two faces."""
     many = mesh.triangles_at > 2
     part, ascending = mesh.parts(many), mesh.ascending.ravel()
     normals = np.nan_to_num(mesh.triangle_normals)
@@ -278,7 +278,7 @@ MOST_EDGES = 250  # of a hole that is filled; the work grows with the third powe
 
 
 def border_groups(mesh: TriangleMesh) -> tuple[Index, Index]:
-    """The edges (b,) of one face only, and the group (b,) of each: those that hang together."""
+    """The edges (b,) with only one face, and the connected group (b,) of each."""
     border = np.flatnonzero(mesh.triangles_at == 1)
     ends = mesh.edges[border]
     group = grouped(len(mesh.points), ends)[ends[:, 0]]
@@ -286,7 +286,7 @@ def border_groups(mesh: TriangleMesh) -> tuple[Index, Index]:
 
 
 def borders(mesh: TriangleMesh) -> int:
-    """How many borders there are: groups of edges of one face that hang together."""
+    """The number of borders: connected groups of edges with one face."""
     return int(border_groups(mesh)[1].max(initial=-1)) + 1
 
 

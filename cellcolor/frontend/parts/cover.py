@@ -1,4 +1,4 @@
-"""Which faces of an object are to be covered; the others are only not to be hit."""
+"""The faces of an object to be covered; the arm must only not hit the others."""
 
 from __future__ import annotations
 
@@ -68,11 +68,11 @@ class Region(Table):
 class Cover(Table):
     """The faces of an object that are to be covered, in the object's own frame.
 
-    Every key given has to hold; one at least is given. The whole object is what must not be hit,
+    Every given key has to hold; at least one is given. The arm must not hit the whole object,
     unless the scene has a ``collision_object``.
 
     Attributes:
-        component: the number of a component: faces that hang together by edges, numbered from the
+        component: the number of a component: faces connected by edges, numbered from the
             largest area, 0, to the smallest.
         faces_file: a text with the number of a face on each line, from 0.
     """

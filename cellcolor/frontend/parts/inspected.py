@@ -1,4 +1,4 @@
-"""What an inspection of a part says, as a value that prints itself."""
+"""The result of inspecting a part, as a value that prints itself."""
 
 from __future__ import annotations
 
@@ -27,12 +27,12 @@ _STORED = 100  # places of one fault in a JSON document
 
 @dataclass(frozen=True, eq=False)
 class Inspection:
-    """A mesh looked through.
+    """An inspected mesh.
 
     Attributes:
         name: of its file, or what it is.
         unit: of its coordinates, ``m`` or ``mm``.
-        unit_reason: why; of a given one that it was given.
+        unit_reason: why; for a given unit, that it was given.
         facts: what it has and what is wrong with it.
         repairs: what a repair would change, without filling holes or remeshing.
         refusal: why the mesh could not be used after that; None if it could.
@@ -50,7 +50,7 @@ class Inspection:
     faces: Faces = field(repr=False)
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it but the mesh, JSON-able; of places the first hundred of each kind."""
+        """Everything except the mesh, JSON-able; the first hundred places of each kind."""
         facts = asdict(
             replace(self.facts, places=FaultyPlaces({}, {}, self.facts.places.sharp[:0]))
         )
@@ -134,7 +134,7 @@ class Inspection:
                 "non-manifold",
                 _listed("vertex", list(map(_at, facts.non_manifold_vertices)), " not manifold"),
             ),
-            ("twins", _some(facts.merged_vertices, "vertex", "in one place with another")),
+            ("twins", _some(facts.merged_vertices, "vertex", "in the same place as another")),
             ("unused", _some(facts.unused_vertices, "vertex", "without a face")),
             ("duplicates", _some(facts.duplicate_faces, "face", "there twice")),
             ("flat", _some(facts.flat_faces, "face", "without area")),
@@ -156,7 +156,7 @@ def inspect_mesh(
     deadline: Deadline = NEVER,
     tell: Telling = lambda _: None,
 ) -> Inspection:
-    """Look a mesh through, and say what a repair would do.
+    """Inspect a mesh, and say what a repair would do.
 
     Args:
         name: of the file, or what it is.

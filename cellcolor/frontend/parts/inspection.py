@@ -1,4 +1,4 @@
-"""What a mesh has, and what is wrong with it, in numbers and places.
+"""Contents and faults of a mesh, in numbers and places.
 
 Faces that cross each other are found by a grid, then by testing every side against every face.
 """
@@ -45,7 +45,7 @@ Place = tuple[float, float, float]
 
 @dataclass(frozen=True)
 class Hole:
-    """Border edges that hang together.
+    """Connected border edges.
 
     Attributes:
         length_m: of all of them.
@@ -60,7 +60,7 @@ class Hole:
 
 @dataclass(frozen=True)
 class Component:
-    """Faces that hang together by edges.
+    """Faces connected by edges.
 
     Attributes:
         faces: how many.
@@ -100,18 +100,18 @@ class MeshFacts:
         area_m2: of all faces.
         components: from the largest area to the smallest.
         holes: from the longest border to the shortest.
-        non_manifold_edges, non_manifold_vertices: places of edges of three faces or more, and of
-            vertices on no such edge around which the faces form several fans.
+        non_manifold_edges, non_manifold_vertices: places of edges with more than two faces, and of
+            vertices on no such edge whose faces form several fans.
         duplicate_faces: how many have the corners of an earlier one.
         flat_faces: how many have no area.
         mixed_winding: how many faces wind against those around them.
         one_sided: whether no winding fits, as on a Moebius strip.
         inside_out: how many closed components have a negative volume.
-        crossings: places of pairs of faces that cross; None if it was not affordable to look.
+        crossings: places of pairs of faces that cross; None if the search was too expensive.
         edge_lengths_m: least, lower quartile, median, upper quartile, greatest.
         sharp_edges: how many, with faces that turn by 30 degrees or more.
         sharp_length_m: of them.
-        genus: handles, of a mesh that is a manifold; None of another one.
+        genus: the number of handles of a manifold mesh; None for any other.
         refusal: why a scene could not use the mesh as it is; None if it could.
     """
 
@@ -146,10 +146,10 @@ def facts_of(
     deadline: Deadline = NEVER,
     tell: Telling = lambda _: None,
 ) -> MeshFacts:
-    """Look a mesh through, whatever is wrong with it.
+    """Inspect a mesh, whatever is wrong with it.
 
-    Topology is looked at after vertices in one place are merged and faces left out that are there
-    twice or have no area, as a repair would do it first.
+    Before topology is inspected, vertices in one place are merged, and duplicate faces and faces
+    without area left out, as a repair would do first.
 
     Args:
         vertices: (n, 3) in m.
@@ -159,7 +159,7 @@ def facts_of(
         InputError: coordinates that are not finite, a face of no vertex, no face with an area.
         OutOfTime: the deadline came first.
     """
-    tell("looking for faces without use")
+    tell("looking for unused faces")
     refusal = _refusal(vertices, faces, deadline)
     there = len(np.unique(faces))
     points, clean = merged(vertices, faces)
@@ -199,7 +199,7 @@ def facts_of(
         },
         {
             "holes and borders": points[mesh.edges[mesh.triangles_at == 1]],
-            "edges of three faces and more": points[many],
+            "edges with more than two faces": points[many],
         },
         points[mesh.edges[sharp]],
     )

@@ -47,9 +47,9 @@ def mesh_surface(
         meters_per_unit: of the coordinates.
         max_edge_m: longer edges are halved; normals come from the faces of the finer mesh.
         mend: merge vertices in one place, drop useless faces and vertices, make the winding
-            consistent. A closed mesh is turned outside out. Of an open one the side that most
-            faces have is kept; which side is the outside nobody but its owner knows. What is
-            still wrong afterwards (edges that are not manifold, holes) stays.
+            consistent. A closed mesh is turned outside out. For an open one the side that most
+            faces have is kept; only its owner knows which side is the outside. Remaining faults
+            (edges that are not manifold, holes) stay.
         deadline: when to give up.
 
     Raises:
@@ -134,7 +134,7 @@ def _check_elements(mesh: TriangleMesh) -> None:
     if twin.any():
         vertex = int(np.argmax(twin))
         other = int(first[index.reshape(-1)[vertex]])
-        raise InputError(None, f"vertices[{vertex}]", f"in one place with vertex {other}")
+        raise InputError(None, f"vertices[{vertex}]", f"in the same place as vertex {other}")
     longest = mesh.lengths[mesh.edge_of_side].max(axis=1)
     flat = 2 * mesh.areas <= 1e-9 * longest**2
     if flat.any():
@@ -144,7 +144,7 @@ def _check_elements(mesh: TriangleMesh) -> None:
 def summed_normals(mesh: TriangleMesh) -> Array:
     """Sums of the adjoining faces' unit normals, weighted with their angles at the vertex.
 
-    trimesh's own vertex normals have length 1 already, and so do not tell faces that cancel out.
+    trimesh's own vertex normals already have length 1, so they do not reveal faces that cancel out.
     """
     angles = trimesh.triangles.angles(mesh.points[mesh.corners])
     normals = np.zeros_like(mesh.points)

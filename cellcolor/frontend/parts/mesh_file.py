@@ -1,7 +1,7 @@
 """Surfaces from mesh files, and the unit of a file, which is guessed from its size.
 
 A Wavefront OBJ is read as one mesh, positions and faces: its groups, objects and materials part a
-file into meshes, and texture coordinates double vertices along seams, but to a robot all of it is
+file into meshes, and texture coordinates double vertices along seams, but for a robot it is all
 one surface. trimesh reads the other formats.
 """
 

@@ -1,4 +1,4 @@
-"""What can be covered: the kinds of ``[object]`` in a scene."""
+"""Parts that can be covered: the kinds of ``[object]`` in a scene."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Remeshing in a process of its own; run as a script, by its path.
+"""Remeshing in a separate process; run as a script, by its path.
 
-It reads an archive of numpy from standard input and writes one to standard output. What it calls
-is compiled and cannot be interrupted, and some meshes make it crash; a process can be ended.
+It reads an archive of numpy from standard input and writes one to standard output. The library
+is compiled, cannot be interrupted and crashes on some meshes; a process can be ended.
 """
 
 from __future__ import annotations

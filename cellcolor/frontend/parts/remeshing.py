@@ -1,9 +1,9 @@
 """A mesh remeshed to edges of about one length, by gpytoolbox in a process of its own.
 
 The method is Botsch and Kobbelt's ("A remeshing approach to multiresolution modeling", 2004): edges
-are parted, drawn together and flipped, and vertices are moved along the surface and put back onto
-it. Along sharp edges that are short or turn a corner, a triangle may end without area, or laid back
-onto the one beside it. Such folds are mended where they are: a vertex beside one is drawn into a
+are split, collapsed and flipped, and vertices are moved along the surface and projected back onto
+it. Along sharp edges that are short or turn a corner, a triangle may lose its area, or fold back
+onto the one beside it. Such folds are repaired locally: a vertex beside one is merged into a
 neighbor.
 """
 
@@ -50,7 +50,7 @@ _FEWEST = 10  # vertices; a mesh so coarse has lost its shape
 
 @dataclass(frozen=True)
 class Deviation:
-    """How far two meshes are from each other, at vertices and middles of faces.
+    """The distances between two meshes, at vertices and centers of faces.
 
     Attributes:
         greatest, mean: from the old mesh to the new one.
@@ -64,12 +64,12 @@ class Deviation:
 
 
 def expected_vertices(area: float, length: float) -> float:
-    """How many vertices a mesh of equilateral triangles has about, two triangles for each."""
+    """About how many vertices a mesh of equilateral triangles has, two triangles for each."""
     return float(area / (np.sqrt(3) / 2 * length**2))
 
 
 def length_for(area: float, vertices: float) -> float:
-    """The length of edges with which a mesh has about so many vertices."""
+    """The edge length with which a mesh has about a given number of vertices."""
     return float(np.sqrt(area / (np.sqrt(3) / 2 * vertices)))
 
 
@@ -83,8 +83,8 @@ def remeshed(
     """A manifold mesh with edges of about one length; sharp edges stay, and so does the border.
 
     Vertices of the border keep their places; its edges are halved where they are longer than four
-    thirds of the length, and not joined where they are shorter. Folds that the remeshing has made
-    are mended, and the list says what that took and what is left.
+    thirds of the length, and not joined where they are shorter. Folds that the remeshing made
+    are repaired, and the list says which changes that needed and which folds remain.
 
     Args:
         length: wanted, in the unit of the vertices.
@@ -119,7 +119,7 @@ def remeshed(
         deadline,
     )  # fmt: skip
     if borders(TriangleMesh(points, corners)) > borders(mesh):
-        message = "gpytoolbox has torn holes into the mesh; shorter edges keep more of its shape"
+        message = "gpytoolbox tore holes into the mesh; shorter edges keep more of its shape"
         raise InputError(None, "edge_length_m", message)
     tell("measuring the deviation")
     measured = _asked(
@@ -200,9 +200,9 @@ _DEGREES = np.radians(1.0)
 
 
 def fold_angle(mesh: TriangleMesh) -> float:
-    """From where on two faces count as folded, rad.
+    """The angle from which on two faces count as folded, rad.
 
-    That is what no edge of this mesh has, from 150 degrees up, and 175 at most.
+    It is larger than at any edge of this mesh, at least 150 and at most 175 degrees.
     """
     angles = np.arange(_LEAST, _MOST + _DEGREES / 2, _DEGREES)
     sharper = [len(mesh.sharp_edges(angle)) > 0 for angle in angles[:-1]]
@@ -212,11 +212,11 @@ def fold_angle(mesh: TriangleMesh) -> float:
 def unfolded(
     vertices: Array, faces: Faces, angle: float, reach: float, deadline: Deadline = NEVER
 ) -> tuple[Array, Faces, int]:
-    """A surface with fewer folds and flat faces, and how many vertices that took.
+    """A surface with fewer folds and flat faces, and how many vertices were removed.
 
     A vertex of a fold is drawn into a neighbor where that leaves fewer folds around, no edge of
     three faces, and no place of the border elsewhere. Of several ways the one is taken that leaves
-    the vertex's place nearest to the surface. What cannot be mended so stays.
+    the vertex's place nearest to the surface. Folds that cannot be repaired in this way stay.
 
     Args:
         vertices: (n, 3).

@@ -1,4 +1,4 @@
-"""A part repaired, with all that was changed, or refused."""
+"""A repaired part with all changes, or the reason why it cannot be repaired."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ _SUGGESTED = 60_000  # vertices of a mesh that is too large, remeshed
 
 @dataclass(frozen=True, eq=False)
 class RepairedPart:
-    """A mesh that a scene can use, and how it came to be one.
+    """A mesh that a scene can use, and the changes that made it so.
 
     Attributes:
         vertices: (n, 3) in the unit of the mesh that was repaired.
@@ -91,7 +91,7 @@ class RepairedPart:
         }
 
     def __str__(self) -> str:
-        lines = [in_words(change) for change in self.changes] or ["nothing had to be changed"]
+        lines = [in_words(change) for change in self.changes] or ["no change was needed"]
         if self.deviation is not None:
             there, back = self.deviation, self.deviation
             lines.append(
@@ -108,7 +108,7 @@ class RepairedPart:
 
 
 def in_words(change: Change) -> str:
-    """A change as a line, with the area that came or went in m^2."""
+    """A change as a line, with the area gained or lost in m^2."""
     areas = [
         f"{sign}{area:.3g} m^2"
         for sign, area in (("-", change.area_lost), ("+", change.area_gained))
@@ -118,7 +118,7 @@ def in_words(change: Change) -> str:
 
 
 def check_known_size(faces: int) -> None:
-    """Refuse a mesh that needs more than 4 GiB to be looked through.
+    """Reject a mesh whose inspection needs more than 4 GiB.
 
     Raises:
         InputError: names both numbers.
@@ -137,7 +137,7 @@ def repair_mesh(
     deadline: Deadline = NEVER,
     tell: Telling = lambda _: None,
 ) -> RepairedPart:
-    """Repair a mesh, remesh it if asked, and hold it to what a scene's object is held to.
+    """Repair a mesh, remesh it on request, and check it like a scene's object.
 
     Args:
         vertices: (n, 3) in any unit.
@@ -190,7 +190,7 @@ def _refused(
     error: InputError, points: Array, faces: Faces, edge_length_m: float | None
 ) -> InputError:
     """What is still wrong, and what would help where that is known."""
-    message = f"cannot be made good: {error.message}"
+    message = f"cannot be repaired: {error.message}"
     if len(points) > MOST_VERTICES:
         length = length_for(area_of(points, faces), _SUGGESTED)
         message += f"; --edge-length {length:.2g} would give about {_SUGGESTED:,}"

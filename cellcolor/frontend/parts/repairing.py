@@ -1,4 +1,4 @@
-"""A mesh repaired step by step, with a list of what was changed."""
+"""Repairs of a mesh step by step, with a list of the changes."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class Change:
 
 @dataclass(frozen=True)
 class Mending:
-    """What a repair is asked to do, lengths in the mesh's unit.
+    """Options of a repair, lengths in the mesh's unit.
 
     Attributes:
         longest_hole: holes with a border up to that length are filled.
@@ -72,11 +72,11 @@ def mended(
     deadline: Deadline = NEVER,
     tell: Telling = lambda _: None,
 ) -> tuple[Array, Faces, list[Change]]:
-    """A mesh without the faults that can be mended, whatever others it has.
+    """A mesh without the faults that can be repaired; others may remain.
 
-    In this order: vertices in one place are merged; faces that are there twice or have no area are
-    dropped; neighbors are made to wind alike; the mesh is cut apart where it is no manifold; small
-    components are dropped; neighbors are made to wind alike where they were not neighbors before;
+    In this order: vertices in one place are merged; duplicate faces and faces without area are
+    dropped; the winding is made consistent; the mesh is cut apart where it is not manifold; small
+    components are dropped; the winding is made consistent between new neighbors;
     holes are filled; closed components are turned outward.
 
     Args:
@@ -97,14 +97,20 @@ def mended(
     before = len(vertices)
     there = len(np.unique(faces))
     vertices, faces = merged(vertices, faces)
-    _note(changes, before - there, "vertex", "dropped that no face has", "vertices")
-    _note(changes, there - len(vertices), "vertex", "merged with another in its place", "vertices")
+    _note(changes, before - there, "vertex", "dropped that no face uses", "vertices")
+    _note(
+        changes,
+        there - len(vertices),
+        "vertex",
+        "merged with another in the same place",
+        "vertices",
+    )
     step("dropping useless faces")
     vertices, faces = _without_useless(vertices, faces, changes)
-    step("making faces wind alike")
+    step("making the winding consistent")
     faces = _wound(vertices, faces, changes)
     _check_two_sided(vertices, faces)
-    step("cutting apart what is no manifold")
+    step("cutting apart what is not manifold")
     vertices, faces = _manifold(vertices, faces, changes)
     step("dropping small components")
     vertices, faces = _large(vertices, faces, asked.least_share, changes)
@@ -154,7 +160,7 @@ def _without_useless(vertices: Array, faces: Faces, changes: list[Change]) -> tu
     twice = repeated_faces(faces)
     if twice.any():
         area = area_of(vertices, faces[twice])
-        changes.append(Change(f"{count(int(twice.sum()), 'face')} dropped: there twice", area))
+        changes.append(Change(f"{count(int(twice.sum()), 'face')} dropped: duplicates", area))
     faces = faces[~twice]
     flat = int(flat_faces(vertices, faces).sum())
     if flat:
@@ -176,7 +182,7 @@ def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Arr
         vertices, faces = used(vertices, faces[~stuck])
     before = area_of(vertices, faces)
     if number > len(faces):
-        text = f"{count(number - len(faces), 'face')} dropped: in the way on edges of three faces"
+        text = f"{count(number - len(faces), 'face')} dropped: in the way on edges with three faces"
         changes.append(Change(f"{text} and more", area - before))
     if len(parted) > len(vertices):
         copies = len(parted) - len(vertices)
@@ -189,7 +195,7 @@ def _manifold(vertices: Array, faces: Faces, changes: list[Change]) -> tuple[Arr
 
 
 def _stuck(vertices: Array, faces: Faces) -> Mask:
-    """The smallest face (m,) on each edge that could not be cut apart: its ends hang together."""
+    """The smallest face (m,) on each edge that could not be cut apart: its ends are connected."""
     mesh = TriangleMesh(vertices, faces)
     (edges, sides), of_side, area = mesh.pairs, mesh.edge_of_side, mesh.areas[:, None]
     ascending = mesh.ascending.ravel()
@@ -224,7 +230,7 @@ def _check_two_sided(vertices: Array, faces: Faces) -> None:
     _, one_sided = against_the_others(TriangleMesh(vertices, faces))
     if one_sided.any():
         face = int(np.argmax(one_sided))
-        message = "lies in a one-sided component, as a Moebius strip is: it has no outside"
+        message = "lies in a one-sided component, like a Moebius strip: it has no outside"
         place = ", ".join(f"{x:.4g}" for x in vertices[faces[face]].mean(axis=0))
         raise InputError(None, f"faces near ({place})", message)
 

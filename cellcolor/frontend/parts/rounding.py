@@ -1,9 +1,9 @@
-"""Normals of a faceted surface, rounded over a radius: they are the part's, not the mesh's.
+"""Normals of a faceted surface, rounded over a radius: they belong to the part, not to the mesh.
 
 The normal at a point x is the mean of the faces' normals around it, where each point y of the
 surface has the weight 1 - (d / r)^2. Here d is the radius of the smallest ball around x in which
 the surface connects y with x. That is their distance, and more on the other side of a thin wall.
-How the faces are divided into triangles has no part in it (``docs/semantics.md``, section 1).
+How the faces are divided into triangles does not matter (``docs/semantics.md``, section 1).
 """
 
 from __future__ import annotations

@@ -45,9 +45,16 @@ class Surface:
         vertices = self.vertices @ rotation.T + np.array(placement.position_m)
         return replace(self, vertices=vertices, normals=self.normals @ rotation.T)
 
+    def taken_along(self, before: Placement, after: Placement) -> Surface:
+        """The same surface in the world after a part on it has gone to another place."""
+        turn = rotation_from_rpy(*after.rpy_rad) @ rotation_from_rpy(*before.rpy_rad).T
+        vertices = (self.vertices - np.array(before.position_m)) @ turn.T
+        vertices += np.array(after.position_m)
+        return replace(self, vertices=vertices, normals=self.normals @ turn.T)
+
     @cached_property
     def mesh(self) -> TriangleMesh:
-        """The mesh alone, with what follows from it."""
+        """The mesh alone, with everything computed from it."""
         return TriangleMesh(self.vertices, self.faces)
 
     def vertex_areas(self) -> Array:
@@ -106,7 +113,7 @@ def refine(mesh: TriangleMesh, longest: float, deadline: Deadline = NEVER) -> Tr
 
 
 def bisected(surface: Surface, marked: Mask, field: str) -> Surface:
-    """A surface with some mesh edges parted in the middle, and others where that is needed.
+    """A surface with some mesh edges bisected, and others where necessary.
 
     New vertices come after the given ones. Their normals are halfway between those of the ends.
 

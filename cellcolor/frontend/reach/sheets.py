@@ -1,9 +1,32 @@
 """Solutions without names, brought into sheets that do the work of branches.
 
-A sheet has at most one solution of each vertex, and what is linked along mesh edges is in one
+Idea. A sheet has at most one solution of each vertex, and what is linked along mesh edges is in one
 sheet. So a sheet means the same at neighboring vertices, as a named branch does, and all that comes
-after takes it for one. Colors, the components of linked solutions, are the same either way: a sheet
-is filled with components that are not next to each other.
+after takes it for one. Colors, the components of linked solutions, are the same either way.
+
+Standard terms. Solutions are the points of a covering of the part; a sheet is one of its sheets,
+or several pieces of them. Links are lifts of mesh edges, made by continuation (path tracking).
+Components are put into sheets by first fit, largest first, as in greedy coloring of a graph: those
+that share a vertex, or have vertices next to each other, are in different sheets.
+
+Steps of the algorithm.
+
+1. :class:`Linking` compares all solutions at both ends of a mesh edge. A pair is linked at once if
+   the step between them is small and clearly the nearest. What is left over at both ends is
+   followed along the edge in small steps, from either end, and is linked if both ways agree.
+2. :func:`sheets_of` finds the components of linked solutions, and refuses one that has two
+   solutions of a vertex: the arm is cuspidal there.
+3. Components are put into sheets, largest first, each into the first sheet where it fits.
+4. Solutions that are not valid fill places that are free, so that each has a reason somewhere.
+
+Example. Vertices 0, 1 and 2 are a triangle, each with solutions a and b. The links 0a-1b and 1b-2a
+make a component; 0b, 1a and 2b are linked to nothing. Sheet 1 has the component, with a of vertex
+0, b of vertex 1 and a of vertex 2. As 0b, 1a and 2b are next to each other, each of them has a
+sheet of its own: sheets 2, 3 and 4.
+
+Complexity. For k edges and s solutions of a vertex O(k s^2) comparisons, edges in batches that fit
+into memory, and the steps of what is followed. Packing c components into t sheets looks at each
+solution t times at most, and t is bounded by ``MOST_SHEETS`` afterwards only.
 """
 
 from __future__ import annotations
@@ -19,17 +42,12 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import stays_in_limits
-from cellcolor.frontend.reach.smooth import (
-    Measure,
-    bytes_of_following,
-    joint_step,
-    shorter_way,
-)
+from cellcolor.frontend.reach.smooth import bytes_of_following, joint_step, shorter_way
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
 from cellcolor.memory import at_once
 from cellcolor.mesh.triangle_mesh import grouped
 
-__all__ = ["MOST_SHEETS", "Sheets", "edges_at_once", "linked_pairs", "sheets_of"]
+__all__ = ["MOST_SHEETS", "Linking", "Sheets", "edges_at_once", "sheets_of"]
 
 T = TypeVar("T", bound=np.generic)
 
@@ -38,7 +56,7 @@ MOST_SHEETS = 60
 
 
 def edges_at_once(slots: int, joints: int) -> int:
-    """How many edges :func:`linked_pairs` compares within memory, if there are so many slots."""
+    """How many edges :class:`Linking` compares within memory, if there are so many slots."""
     return at_once(slots * (slots * 8 * (4 * joints + 8) + bytes_of_following(joints)))
 
 
@@ -67,125 +85,108 @@ class Sheets:
         return arranged
 
 
-def linked_pairs(
-    surface: Surface,
-    edges: Index,
-    nodes: Mask,
-    solutions: Solutions,
-    tracker: Tracker,
-    measure: Measure,
-    limits: tuple[Array, Array] | None,
-) -> Index:
-    """The pairs of solutions that a continuous motion along a mesh edge joins.
+@dataclass(frozen=True)
+class Linking:
+    """Finds the pairs of solutions that a continuous motion along a mesh edge joins.
 
-    Args:
-        edges: (k, 2) vertex indices.
+    Attributes:
+        surface: the part.
         nodes: (n, s) which solutions are valid.
         solutions: (n, s) of all vertices.
-        limits: lower and upper (joints,) of the joints in rad, which the motions have to keep.
-
-    Returns:
-        (l, 3) rows of ``edges``, and the indices of the solutions at both ends.
+        tracker: follows them, and says what is a jump.
+        limits: lower and upper (joints,) of the joints in rad, which the motions have to keep; none
+            without it.
     """
-    i, j = edges.T
-    step = joint_step(solutions.joints[i][:, :, None], solutions.joints[j][:, None])
-    same = (
-        np.sign(solutions.determinants[i])[:, :, None]
-        == np.sign(solutions.determinants[j])[:, None]
-    )
-    both = nodes[i][:, :, None] & nodes[j][:, None] & same
-    whole = np.zeros(len(edges))
-    lengths, turns = surface.lengths(edges), surface.turns(edges)
-    change = measure.changes(lengths, turns, whole, whole + 1)[:, None, None]
-    size = np.abs(solutions.determinants)
-    nearest = np.fmin(size[i][:, :, None], size[j][:, None])
-    at_once = both & clearly_nearest(
-        step, solutions.apart[i][:, :, None], solutions.apart[j][:, None]
-    )
-    at_once &= measure.settled(step, change, nearest)
-    found = np.argwhere(at_once)
-    start = solutions.joints[i[found[:, 0]], found[:, 1]]
-    moved = shorter_way(start, solutions.joints[j[found[:, 0]], found[:, 2]])
-    keeps = _keeps(limits, start, np.minimum(moved, 0.0), np.maximum(moved, 0.0))
-    # What is left over at both ends is followed, from either.
-    left = nodes[i] & ~at_once.any(axis=2), nodes[j] & ~at_once.any(axis=1)
-    wanted = (both & left[0][:, :, None] & left[1][:, None]).any(axis=2)
-    back = (both & left[0][:, :, None] & left[1][:, None]).any(axis=1)
-    onwards = _walked(surface, edges, wanted, solutions, tracker, limits)
-    backwards = _walked(surface, edges[:, ::-1], back, solutions, tracker, limits)
-    there = {(int(row), int(b), int(a)) for row, a, b in backwards}
-    both_ways = [link for link in onwards.tolist() if tuple(link) in there]
-    return np.concatenate([found[keeps], np.array(both_ways, dtype=np.int64).reshape(-1, 3)])
+
+    surface: Surface
+    nodes: Mask
+    solutions: Solutions
+    tracker: Tracker
+    limits: tuple[Array, Array] | None
+
+    def links(self, edges: Index) -> Index:
+        """Linked pairs (l, 3): rows of edges (k, 2), and the slots of solutions at both ends."""
+        i, j = edges.T
+        signs = np.sign(self.solutions.determinants)
+        possible = self.nodes[i][:, :, None] & self.nodes[j][:, None]
+        possible &= signs[i][:, :, None] == signs[j][:, None]
+        settled = possible & self._clear(edges)
+        left = possible & ~settled.any(axis=2)[:, :, None] & ~settled.any(axis=1)[:, None]
+        return np.concatenate([self._within_limits(edges, settled), self._followed(edges, left)])
+
+    def _clear(self, edges: Index) -> Mask:
+        """Between which solutions (k, s, s) the step is small and clearly the nearest."""
+        i, j = edges.T
+        joints, apart = self.solutions.joints, self.solutions.apart
+        size, measure = np.abs(self.solutions.determinants), self.tracker.measure
+        step = joint_step(joints[i][:, :, None], joints[j][:, None])
+        lengths, turns = self.surface.lengths(edges), self.surface.turns(edges)
+        start, end = np.zeros(len(edges)), np.ones(len(edges))
+        change = measure.changes(lengths, turns, start, end)[:, None, None]
+        smaller = np.fmin(size[i][:, :, None], size[j][:, None])
+        nearest = clearly_nearest(step, apart[i][:, :, None], apart[j][:, None])
+        return nearest & measure.settled(step, change, smaller)
+
+    def _within_limits(self, edges: Index, settled: Mask) -> Index:
+        """The pairs (l, 3) of a table (k, s, s) whose direct motion keeps the limits."""
+        pairs = np.argwhere(settled)
+        row, first, second = pairs.T
+        start = self.solutions.joints[edges[row, 0], first]
+        moved = shorter_way(start, self.solutions.joints[edges[row, 1], second])
+        return pairs[self._keeps(start, np.minimum(moved, 0.0), np.maximum(moved, 0.0))]
+
+    def _followed(self, edges: Index, left: Mask) -> Index:
+        """The pairs (l, 3) among what is left of (k, s, s) on which both ways agree."""
+        there = self._walked(edges, *np.nonzero(left.any(axis=2)))
+        back = self._walked(edges[:, ::-1], *np.nonzero(left.any(axis=1)))[:, [0, 2, 1]]
+        agreed = set(map(tuple, back.tolist()))
+        both = np.array([tuple(pair) in agreed for pair in there.tolist()], dtype=bool)
+        return np.asarray(there[both])
+
+    def _walked(self, edges: Index, row: Index, slot: Index) -> Index:
+        """Where solutions at first ends of rows of edges lead: row, slot, slot there, (l, 3)."""
+        start = self.solutions.take(edges[row, 0], slot)
+        ends, motions = self.tracker.walk(self.surface, edges[row], start, np.ones(len(row)))
+        smooth = motions.smooth & self._keeps(start.joints, motions.lowest, motions.highest)
+        row, slot, ends = row[smooth], slot[smooth], ends[smooth]
+        off = joint_step(self.solutions.joints[edges[row, 1]], ends[:, None])
+        arrived = np.argmin(np.where(np.isnan(off), np.inf, off), axis=1)
+        return np.column_stack([row, slot, arrived])
+
+    def _keeps(self, start: Array, lowest: Array, highest: Array) -> Mask:
+        if self.limits is None:
+            return np.ones(len(start), dtype=bool)
+        return stays_in_limits(*self.limits, start, lowest, highest)
 
 
-def _walked(
-    surface: Surface,
-    edges: Index,
-    wanted: Mask,
-    solutions: Solutions,
-    tracker: Tracker,
-    limits: tuple[Array, Array] | None,
-) -> Index:
-    """Rows of edges and solutions at both ends (l, 3), followed from some at the first (k, s)."""
-    row, slot = np.nonzero(wanted)
-    first, second = edges[row].T
-    start = solutions.take(first, slot)
-    ends, motions = tracker.walk(surface, edges[row], start, np.ones(len(row)))
-    smooth = motions.smooth & _keeps(limits, start.joints, motions.lowest, motions.highest)
-    row, slot, ends, second = row[smooth], slot[smooth], ends[smooth], second[smooth]
-    off = joint_step(solutions.joints[second], ends[:, None])
-    off = np.where(np.isnan(off), np.inf, off)
-    arrived = np.argmin(off, axis=1)
-    return np.column_stack([row, slot, arrived])
-
-
-def _keeps(limits: tuple[Array, Array] | None, start: Array, low: Array, high: Array) -> Mask:
-    if limits is None:
-        return np.ones(len(start), dtype=bool)
-    return stays_in_limits(*limits, start, low, high)
-
-
-def sheets_of(
-    surface: Surface, edges: Index, pairs: Index, nodes: Mask, solutions: Solutions
-) -> Sheets:
+def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions) -> Sheets:
     """Sheets of all solutions, the valid ones by their links.
 
     Args:
-        edges: (k, 2) all mesh edges.
-        pairs: (l, 3), see :func:`linked_pairs`.
+        surface: the part.
+        links: (l, 3), see :meth:`Linking.links`, of all mesh edges.
         nodes: (n, s) which solutions are valid.
+        solutions: (n, s) of all vertices.
 
     Raises:
-        InputError: linked solutions are two of one vertex; names the vertex and both.
+        InputError: linked solutions are two of one vertex; names the vertex and both. Or there are
+            too many sheets.
     """
-    count, slots = nodes.shape
-    here, there = (edges[pairs[:, 0], end] * slots + pairs[:, 1 + end] for end in (0, 1))
-    component = grouped(nodes.size, np.column_stack([here, there]))
-    present = np.flatnonzero(nodes)
+    edges, slots = surface.edges(), nodes.shape[1]
+    row, first, second = links.T
+    # Solutions are numbered vertex * slots + slot.
+    linked = np.column_stack([edges[row, 0] * slots + first, edges[row, 1] * slots + second])
+    component, present = grouped(nodes.size, linked), np.flatnonzero(nodes)
     _check_injective(surface, present, component[present], slots, solutions.joints)
-    neighbors = coo_array(
-        (np.ones(2 * len(edges)), np.concatenate([edges, edges[:, ::-1]]).T), shape=(count, count)
-    ).tocsr()
-    slot = np.full((count, 0), -1, dtype=np.int64)
-    taken = np.zeros((count, 0), dtype=bool)
-    for members in _by_size(present, component[present]):
-        vertices = members // slots
-        free = np.flatnonzero(~taken[vertices].any(axis=0))
-        if not len(free):
-            slot = np.column_stack([slot, np.full(count, -1)])
-            taken = np.column_stack([taken, np.zeros(count, dtype=bool)])
-            free = np.array([slot.shape[1] - 1])
-        slot[vertices, free[0]] = members % slots
-        # Sheets are not to have two components next to each other: their borders would be lost.
-        taken[vertices, free[0]] = taken[neighbors[vertices].indices, free[0]] = True
-    slot = _with_the_rest(slot, ~nodes & ~np.isnan(solutions.determinants))
+    packed = _packed(_by_size(present, component[present]), edges, nodes.shape)
+    slot = _with_the_rest(packed, ~nodes & ~np.isnan(solutions.determinants))
     if slot.shape[1] > MOST_SHEETS:
         message = f"its solutions fall into {slot.shape[1]} sheets, at most {MOST_SHEETS} fit"
         raise InputError(None, "robot.kinematics", message)
-    linked = np.zeros((len(edges), slot.shape[1]), dtype=bool)
-    row, sheet = np.nonzero(slot[edges[pairs[:, 0], 0]] == pairs[:, 1][:, None])
-    linked[pairs[row, 0], sheet] = True
-    return Sheets(slot, linked)
+    continuous = np.zeros((len(edges), slot.shape[1]), dtype=bool)
+    link, sheet = np.nonzero(slot[edges[row, 0]] == first[:, None])
+    continuous[row[link], sheet] = True
+    return Sheets(slot, continuous)
 
 
 def _by_size(present: Index, component: Index) -> list[Index]:
@@ -194,6 +195,27 @@ def _by_size(present: Index, component: Index) -> list[Index]:
     _, first, count = np.unique(component[order], return_index=True, return_counts=True)
     members = np.split(present[order], first[1:]) if len(first) else []
     return [members[k] for k in np.lexsort((present[order][first], -count))]
+
+
+def _packed(components: list[Index], edges: Index, shape: tuple[int, ...]) -> Index:
+    """Sheets (n, sheets) of components, each put into the first sheet where it fits.
+
+    No two components next to each other are in one sheet: their borders would be lost.
+    """
+    count, slots = shape
+    both_ways = np.concatenate([edges, edges[:, ::-1]]).T
+    neighbors = coo_array((np.ones(both_ways.shape[1]), both_ways), shape=(count, count)).tocsr()
+    sheets: list[Index] = []
+    closed: list[Mask] = []  # the vertices of each sheet that are taken, or next to these
+    for members in components:
+        vertices = members // slots
+        number = next((k for k, own in enumerate(closed) if not own[vertices].any()), len(sheets))
+        if number == len(sheets):
+            sheets.append(np.full(count, -1, dtype=np.int64))
+            closed.append(np.zeros(count, dtype=bool))
+        sheets[number][vertices] = members % slots
+        closed[number][vertices] = closed[number][neighbors[vertices].indices] = True
+    return np.column_stack(sheets) if sheets else np.empty((count, 0), dtype=np.int64)
 
 
 def _with_the_rest(slot: Index, rest: Mask) -> Index:

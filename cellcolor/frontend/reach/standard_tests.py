@@ -35,7 +35,6 @@ class JointLimits(StandardTest):
     """The configurations have been turned into the limits where that is possible."""
 
     name = "joint limits"
-    sentence = "no equivalent angle (modulo 360 degrees) inside the limits, or a slide outside them"
     remedy = "move or turn the part, or check the limits in the URDF"
     constraint = "collision"
 
@@ -50,7 +49,6 @@ class TipBlocked(StandardTest):
     """Blocked for all branches of a vertex that have a solution, or for none."""
 
     name = "tip blocked"
-    sentence = "an obstacle or the ground is in the tool's contact region"
     remedy = (
         "move what is in the tool's way, or the part: its surface lies below the ground"
         " or inside an obstacle"
@@ -66,9 +64,6 @@ class Torque(StandardTest):
     """Static: what accelerates the arm is not asked."""
 
     name = "torque"
-    sentence = (
-        "gravity of arm and tool, and the normal force along the tool axis, exceed a joint's effort"
-    )
     remedy = "lower task.normal_force_n, move the part nearer, or check the efforts in the URDF"
     constraint = "force"
 
@@ -85,7 +80,6 @@ class Manipulability(StandardTest):
     """Near a singularity of the tip's position."""
 
     name = "manipulability"
-    sentence = "Yoshikawa's translational measure of the task's joints below its threshold"
     remedy = (
         "move the part away from where the arm is stretched out, or lower"
         " thresholds.min_manipulability"
@@ -103,10 +97,6 @@ class TaskDeterminant(StandardTest):
     """Near a singularity of the task, the aligned wrist included."""
 
     name = "task determinant"
-    sentence = (
-        "absolute determinant of the Jacobian of tip position, tool direction and, if it is given,"
-        " the tool's turn below its threshold"
-    )
     remedy = "move or turn the part, or lower thresholds.min_task_determinant"
     constraint = "conditioning"
 
@@ -120,7 +110,6 @@ class GroundContact(StandardTest):
     """The ground is a half space, below a plane that may be tilted."""
 
     name = "ground"
-    sentence = "a link other than those of may_touch_ground reaches below the ground"
     remedy = "lift the part, or name the links that may touch the ground in robot.may_touch_ground"
     constraint = "collision"
 
@@ -138,7 +127,6 @@ class SelfCollision(StandardTest):
     """Links next to each other may touch."""
 
     name = "self collision"
-    sentence = "two links overlap that are not next to each other"
     remedy = "look at the shapes of the links, or name pairs that overlap anyway in robot.may_touch"
     constraint = "collision"
 
@@ -152,7 +140,6 @@ class ObstacleCollision(StandardTest):
     """All obstacles of the scene, one after the other."""
 
     name = "obstacle collision"
-    sentence = "a link or the tool's body touches an obstacle"
     remedy = "move the part or the obstacles farther apart"
     constraint = "collision"
 
@@ -170,7 +157,6 @@ class ObjectCollision(StandardTest):
     """The tool's body ends before the tip, so the tip alone may touch the object."""
 
     name = "object collision"
-    sentence = "a link or the tool's body touches the object"
     remedy = "use a longer or thinner tool, or turn the part"
     constraint = "collision"
 

@@ -61,7 +61,11 @@ def clearly_nearest(step: Array, first: Array, second: Array) -> Mask:
 
 
 class Tracker:
-    """Follows solutions of one arm along mesh edges."""
+    """Follows solutions of one arm along mesh edges.
+
+    Attributes:
+        measure: what is a jump.
+    """
 
     def __init__(
         self,
@@ -79,7 +83,7 @@ class Tracker:
             limits: what counts as well conditioned; everything, without.
             slots: how many solutions a pose may have.
         """
-        self._robot, self._solve, self._measure, self._limits = robot, solve, measure, limits
+        self._robot, self._solve, self.measure, self._limits = robot, solve, measure, limits
         self._pose = slots * bytes_of_poses(robot.joints)  # bytes
 
     def described(self, joints: Array) -> Solutions:
@@ -125,7 +129,7 @@ class Tracker:
             Where they end, (k, joints), NaN where a motion is lost since it jumps or passes a point
             that is ill-conditioned; and the motions.
         """
-        measure, count = self._measure, len(edges)
+        measure, count = self.measure, len(edges)
         lengths, turns = surface.lengths(edges), surface.turns(edges)
         at, ahead = np.zeros(count), until.copy()
         now = Solutions(*(getattr(start, each.name).copy() for each in fields(start)))

@@ -21,11 +21,9 @@ class ValidityTest(Table):
 
     Attributes:
         name: of the reason that a candidate has which fails here first, as ``joint limits``.
-        sentence: what fails, for people.
     """
 
     name: ClassVar[str]
-    sentence: ClassVar[str]
 
     @abstractmethod
     def failed(self, postures: Postures) -> Mask:

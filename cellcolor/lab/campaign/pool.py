@@ -86,7 +86,7 @@ def outcomes_of_campaign(
 
     Args:
         count: how many; the first ones are the same whatever the count.
-        seed: of everything random.
+        seed: for all random choices.
         time_limit: seconds for each solve.
         workers: who looks at them.
     """

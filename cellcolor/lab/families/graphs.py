@@ -20,7 +20,7 @@ def planar_graph(
     cells share, some are dead.
 
     Args:
-        seed: of everything random.
+        seed: for all random choices.
         cells: how many, one or more.
         edges: between cells, at least ``cells - 1``.
         colors: how many, one or more.

@@ -1,4 +1,4 @@
-"""Families whose instances grow with the seed, to see where solvers come to their end."""
+"""Families whose instances grow with the seed, to see where solvers reach their limits."""
 
 from __future__ import annotations
 

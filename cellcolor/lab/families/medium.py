@@ -1,6 +1,7 @@
 """Families of surfaces as hard as those of real scenes: they are what solvers are compared on.
 
-Each is a function of a seed, :func:`cellcolor.lab.families.blobs.blobs` with numbers of its own.
+Each is a function of a seed: :func:`~cellcolor.lab.families.blobs.blobs`, whose arguments are
+explained there, with some of them chosen.
 """
 
 from __future__ import annotations

@@ -56,4 +56,4 @@ GROWING: dict[str, Family] = {
     "hubs": growing.growing_hub,
     "grids of hubs": growing.growing_hub_grid,
 }
-"""Larger and larger with the seed, to see where solvers come to their end."""
+"""Larger and larger with the seed, to see where solvers reach their limits."""

@@ -17,7 +17,7 @@ class Contestant:
 
     Attributes:
         solver: its registered name.
-        workers: that it is told to use, None if it chooses itself.
+        workers: the number to use, None if it chooses itself.
         version: what answers.
     """
 

@@ -96,8 +96,8 @@ def profile(rows: Sequence[Row]) -> Plot:
         ]
         share = points[-1][1] if points else 0.0
         curves.append(Curve(name, ((1.0, 0.0), *points, (end, share))))
-    note = "Times below 10 ms are not told apart."
-    x, y = "times the time of the quickest", "share of the runs"
+    note = "Times below 10 ms are not distinguished."
+    x, y = "times the time of the fastest", "share of the runs"
     return Plot("Performance profile", x, y, tuple(curves), log_x=True, joined="steps", note=note)
 
 
@@ -120,7 +120,7 @@ def scatter(rows: Sequence[Row], rival: str, ours: str) -> Plot:
         log_y=True,
         joined="points",
         diagonal=True,
-        note="What was not proved in time is drawn at twice the limit.",
+        note="Runs not proved in time are drawn at twice the limit.",
     )
 
 

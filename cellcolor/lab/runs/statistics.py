@@ -23,7 +23,7 @@ __all__ = [
 ]
 
 _NOISE = 0.01
-"""Seconds. What is quicker is not told apart: the clock, not the solver, would be measured."""
+"""Seconds. Shorter times are not distinguished: they would measure the clock, not the solver."""
 
 Problem = tuple[str, str, float, int]
 _K = TypeVar("_K")

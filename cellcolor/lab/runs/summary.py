@@ -167,7 +167,7 @@ def _where_others_win(rows: Sequence[Row]) -> Iterator[str]:
         yield ""
         yield from (f"- {line}" for line in won)
     else:
-        yield f"In no family does anybody prove more minima than {ours}."
+        yield f"In no family does any solver prove more minima than {ours}."
 
 
 def _ends(rows: Sequence[Row]) -> Iterator[str]:
@@ -222,7 +222,7 @@ def _open(rows: Sequence[Row]) -> Iterator[str]:
             ]
         )
     if not body:
-        yield "Every minimum was proved by somebody."
+        yield "Some solver proved every minimum."
         return
     yield f"Open: {count(len(body), 'instance')}" + (
         f", the first {_OPEN_SHOWN}:" if len(body) > _OPEN_SHOWN else ":"

@@ -57,7 +57,7 @@ def read_table(path: str | PathLike[str], kind: type[_R]) -> list[_R]:
     except OSError as error:
         raise InputError(str(path), None, error.strerror or "cannot be read") from error
     except UnicodeDecodeError as error:
-        raise InputError(str(path), None, f"is no text: {error}") from error
+        raise InputError(str(path), None, f"is not text: {error}") from error
     return _rows(text, str(path), kind)
 
 
@@ -100,11 +100,11 @@ class TableFile(Generic[_R]):
         whole = content[: content.rfind(b"\n") + 1]
         header = _line(_columns(kind)).encode()
         if not whole and not header.startswith(content):
-            raise InputError(path, "line 1", "is no table of results")
+            raise InputError(path, "line 1", "is not a table of results")
         try:
             rows = _rows(whole.decode(), path, kind) if whole else []
         except UnicodeDecodeError as error:
-            raise InputError(path, None, f"is no text: {error}") from error
+            raise InputError(path, None, f"is not text: {error}") from error
         os.ftruncate(self._handle, len(whole))
         if not whole:
             os.write(self._handle, header)

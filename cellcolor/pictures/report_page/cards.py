@@ -7,23 +7,14 @@ from collections import defaultdict
 import numpy as np
 
 from cellcolor.data.bound import Bound
+from cellcolor.data.bounds.kinds import kind_of
 from cellcolor.data.proof_wording import reason_of, witness_in_words
 from cellcolor.data.wording import count, listed
+from cellcolor.pictures.report_page.answers import answer_cards
 from cellcolor.pictures.report_page.content import Card, MotionReport
 from cellcolor.pictures.report_page.verdict_cards import coverage_card, verdict_card
 
 __all__ = ["cards_of"]
-
-_KINDS = {
-    "strangers": "Cells of which no two lie in one region of a color: each needs its own segment.",
-    "cover": "A segment lies in one region of a color, and every cell has to be in some segment: "
-    "fewer regions do not reach all cells.",
-    "conflicts": "With fewer segments, two of them would have to cross each other.",
-    "hubs": "More connections do not fit side by side into the cells with many edges.",
-    "crossings": "The full model of divisions has no better one, and letting segments cross a "
-    "border between two cells more often would not help.",
-}
-"""Why a bound holds, by its kind (docs/bounds.md)."""
 
 
 def cards_of(report: MotionReport) -> tuple[Card, ...]:
@@ -37,7 +28,9 @@ def cards_of(report: MotionReport) -> tuple[Card, ...]:
         _extra(report),
         _left_out(report),
     )
-    return tuple(card for card in cards if card is not None)
+    found = [card for card in cards if card is not None]
+    answers = [] if report.answered is None else answer_cards(report.answered)
+    return (*found, *answers)
 
 
 def _proof(report: MotionReport) -> Card | None:
@@ -55,7 +48,7 @@ def _proof(report: MotionReport) -> Card | None:
         )
         return Card("Can there be fewer lift-offs?", (text,), _bound_rows(surface_bounds), False)
     if segments < 2:
-        text = "The tool never has to lift off: nothing can be less."
+        text = "The tool never has to lift off, so there cannot be fewer."
         return Card("Why not fewer lift-offs", (text,), (), True)
     witness = witness_in_words(report.decomposition.instance, solution.witness)
     because = witness or reason_of(solution)
@@ -65,10 +58,10 @@ def _proof(report: MotionReport) -> Card | None:
     ]
     if witness is not None:
         shown = "The button “Cells of the proof” shows them on the part."
-        paragraphs.append(f"Each needs a segment of its own. {shown}")
+        paragraphs.append(f"Each needs its own segment. {shown}")
     paragraphs.append(
         "This holds for the surface with the colors (classes of postures) found at its vertices; "
-        "between two vertices nothing is known that was not tested."
+        "between two vertices only what was tested is known."
     )
     return Card("Why not fewer lift-offs", tuple(paragraphs), _bound_rows(surface_bounds), True)
 
@@ -76,7 +69,7 @@ def _proof(report: MotionReport) -> Card | None:
 def _bound_rows(bounds: list[Bound]) -> tuple[tuple[str, ...], ...]:
     if not bounds:
         return ()
-    rows = [(str(bound.value), bound.kind, _KINDS.get(bound.kind, "")) for bound in bounds]
+    rows = [(str(bound.value), bound.kind, str(kind_of(bound))) for bound in bounds]
     return (("at least", "bound", "why"), *rows)
 
 
@@ -113,7 +106,7 @@ def _segments(report: MotionReport) -> Card | None:
 
 
 def _reach(report: MotionReport) -> Card:
-    """Why points are out of reach, and what kept the other branches of the arm away."""
+    """How much can be reached, and which tests the other vertices fail."""
     found = report.built.report
     share = 100 * found.reachable_area_m2 / found.area_m2
     text = (
@@ -124,8 +117,8 @@ def _reach(report: MotionReport) -> Card:
     if not unreachable:
         return Card("Out of reach", (text, "No vertex is out of reach."))
     explained = (
-        "A vertex has the first test that fails in the branch of the arm that comes farthest "
-        "through the tests. The button “Out of reach” shows where."
+        "For each vertex: the first failed test of the branch that passed the most tests. "
+        "The button “Out of reach” shows where."
     )
     rows = [(name, str(number)) for name, number in unreachable.items()]
     return Card("Out of reach", (text, explained), (("test that fails", "vertices"), *rows))
@@ -140,7 +133,9 @@ def _extra(report: MotionReport) -> Card | None:
     if trajectory.unplanned:
         moments = listed([f"{trajectory.times[sample]:.1f} s" for sample in trajectory.unplanned])
         moves = count(len(trajectory.unplanned), "move")
-        texts.append(f"{moves} could not be planned, and the arm must not drive it: at {moments}.")
+        texts.append(
+            f"{moves} could not be planned, and the arm must not drive them: at {moments}."
+        )
     if trajectory.extra_lift_offs:
         texts.append(f"{count(len(trajectory.extra_lift_offs), 'lift-off')} beyond the minimum:")
         rows = [("at", "segment", "reason", "place [m]")]
@@ -173,7 +168,7 @@ def _left_out(report: MotionReport) -> Card | None:
     ]
     whole = 1e4 * sum(map(sum, areas.values()))
     text = (
-        f"Parts of segments that the tool does not go to, {whole:.2f} cm² in all; rings with a red "
+        f"Parts of segments that the tool does not reach, {whole:.2f} cm² in all; rings with a red "
         "rim mark the largest."
     )
     head = ("segment", "cause", "parts", "area", "largest at [m]")

@@ -5,15 +5,20 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.decomposition import Decomposition
 from cellcolor.frontend import BuildResult
 from cellcolor.painting.paint import Painted
+from cellcolor.questions.explanation import Explanation
+from cellcolor.questions.front import Front
+from cellcolor.questions.placements import Placements
+from cellcolor.questions.set_ups import SetUpPlan
 from cellcolor.tool_paths.measures import PathMeasures
 
-__all__ = ["Card", "MotionReport"]
+__all__ = ["Answered", "Answers", "Card", "MotionReport"]
 
 
 @dataclass(frozen=True)
@@ -25,12 +30,35 @@ class Card:
         paragraphs: whole sentences.
         rows: of a table, the first one its head; none for no table.
         good: whether this is as it should be, None where that is not asked.
+        modes: for each row after the head the way to fill the part that it shows, by name.
+        curve: points to be drawn above the table, x and y of each; they show what the rows do.
     """
 
     title: str
     paragraphs: tuple[str, ...] = ()
     rows: tuple[tuple[str, ...], ...] = ()
     good: bool | None = None
+    modes: tuple[str, ...] = ()
+    curve: tuple[tuple[float, float], ...] = ()
+
+
+Answers = Front | Explanation | Placements | SetUpPlan
+"""What a page can tell besides the plan."""
+
+
+@dataclass(frozen=True)
+class Answered:
+    """Answers, and what they are about.
+
+    Attributes:
+        surface: of the scene, nothing left out.
+        decomposition: its graph.
+        answers: on it.
+    """
+
+    surface: LabelledSurface
+    decomposition: Decomposition
+    answers: tuple[Answers, ...]
 
 
 @dataclass(frozen=True)
@@ -47,6 +75,7 @@ class MotionReport:
         verdict: an independent judge's; None without a trajectory.
         paths: the tool paths, which are drawn if there is no trajectory.
         missing: what of this there is not, and why, as a sentence; empty for a whole plan.
+        answered: what was asked besides.
     """
 
     built: BuildResult
@@ -58,3 +87,4 @@ class MotionReport:
     verdict: TrajectoryVerdict | None
     paths: ToolPaths | None = None
     missing: str = ""
+    answered: Answered | None = None

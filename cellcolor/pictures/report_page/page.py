@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 
 from cellcolor.data.proof_wording import in_words, witness_in_words
@@ -62,12 +63,12 @@ def _proof(report: MotionReport) -> str:
 def _chart_note(trajectory: Trajectory | None) -> str:
     samples = 0 if trajectory is None else len(trajectory.times)
     note = (
-        "Red, dashed: limits. Orange: moves between strokes. A click goes to that moment. "
-        "Of the measures of conditioning the least value up to the next frame is drawn; their "
-        "limits are for contact."
+        "Red, dashed: limits. Orange: moves between strokes. Click to go to that moment. "
+        "Measures of conditioning show their smallest value up to the next frame; their limits "
+        "apply in contact."
     )
     if samples > MOST_FRAMES:
-        note += f" Shown are about {MOST_FRAMES} of {samples} samples."
+        note += f" About {MOST_FRAMES} of {samples} samples are shown."
     return note
 
 
@@ -107,12 +108,18 @@ def _verdict_class(good: bool | None, first: str = "") -> str:
 def _card(card: Card) -> str:
     parts = [f"<h2>{html.escape(card.title)}</h2>"]
     parts += [f"<p>{html.escape(text)}</p>" for text in card.paragraphs]
+    if card.curve:
+        parts.append(_plot(card.curve, card.modes))
     if card.rows:
         head, *rows = card.rows
         lines = []
         if any(head):
             lines.append(f"<tr>{''.join(f'<th>{html.escape(cell)}</th>' for cell in head)}</tr>")
-        lines += [f"<tr>{''.join(map(_cell, row))}</tr>" for row in rows]
+        shown = map(_shows, card.modes or [""] * len(rows))
+        lines += [
+            f"<tr{mode}>{''.join(map(_cell, row))}</tr>"
+            for row, mode in zip(rows, shown, strict=True)
+        ]
         parts.append(f"<table>{''.join(lines)}</table>")
     return f"<section{_verdict_class(card.good, 'card')}>{''.join(parts)}</section>"
 
@@ -121,3 +128,38 @@ def _cell(text: str) -> str:
     """A table's cell; what is short is not broken into lines."""
     short = ' class="short"' if len(text) <= _SHORT else ""
     return f"<td{short}>{html.escape(text)}</td>"
+
+
+def _shows(mode: str) -> str:
+    """The attribute by which the scripts know what a click shows on the part."""
+    return f' data-mode="{html.escape(mode)}" tabindex="0"' if mode else ""
+
+
+def _plot(points: Sequence[tuple[float, float]], modes: Sequence[str]) -> str:
+    """Points that are joined by lines, as an SVG drawing; y is in percent."""
+    wide, high, left, low = 360, 166, 40, 122
+    least = 10 * math.floor(min(y for _, y in points) / 10)
+    most_x = max(1.0, *(x for x, _ in points)) if len(points) > 1 else 1.0
+    across, up = (wide - left - 20) / most_x, (low - 12) / (100 - min(least, 90))
+    at = [(left + 8 + across * x, low - up * (y - min(least, 90))) for x, y in points]
+    marks = [
+        f'<circle cx="{x:.1f}" cy="{y:.1f}" r="5"{_shows(mode)}><title>{html.escape(mode)}</title>'
+        "</circle>"
+        for (x, y), mode in zip(at, modes, strict=True)
+    ]
+    line = " ".join(f"{x:.1f},{y:.1f}" for x, y in at)
+    ticks = [
+        f'<text x="{x:.1f}" y="{low + 17}" text-anchor="middle">{count:g}</text>'
+        for (x, _), (count, _) in zip(at, points, strict=True)
+    ]
+    ticks += [
+        f'<text x="{left - 4}" y="{low - up * (value - min(least, 90)) + 4:.1f}" '
+        f'text-anchor="end">{value:g} %</text>'
+        for value in (min(least, 90), 100)
+    ]
+    return (
+        f'<svg class="plot" viewBox="0 0 {wide} {high}" role="img" aria-label="Share covered by '
+        f'number of lift-offs"><path d="M{left} 8V{low}H{wide - 8}"/>'
+        f'<polyline points="{line}"/>{"".join(marks)}{"".join(ticks)}'
+        f'<text x="{wide - 8}" y="{high - 8}" text-anchor="end">lift-offs</text></svg>'
+    )

@@ -96,12 +96,24 @@ class Player {
       });
     for (const name of ["whole", "part"]) find(name).addEventListener("click", () => space.look(name));
     this.data.modes.forEach((mode, number) => {
+      if (mode.button === false) return; // these come last, for rows and points of cards
       const button = document.createElement("button");
       button.type = "button";
       button.textContent = mode.name;
       button.addEventListener("click", () => this.mode(number));
       find("modes").append(button);
     });
+    for (const link of document.querySelectorAll("[data-mode]")) {
+      const number = this.data.modes.findIndex((mode) => mode.name === link.dataset.mode);
+      if (number < 0) continue;
+      const show = () => {
+        this.mode(number);
+        find("view").scrollIntoView({ block: "nearest" });
+      };
+      link.classList.add("link");
+      link.addEventListener("click", show);
+      link.addEventListener("keydown", (event) => event.key === "Enter" && show());
+    }
     this.mode(0);
   }
 

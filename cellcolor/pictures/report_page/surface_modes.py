@@ -27,11 +27,13 @@ class SurfaceMode:
         name: what the button says.
         classes: of vertices, with their fills; those without a vertex are left out of the legend.
         labels: (n,) the class of each vertex of the surface.
+        button: whether there is a button for it; if not, it is for a table's row to show.
     """
 
     name: str
     classes: tuple[VertexClass, ...]
     labels: Labels
+    button: bool = True
 
 
 def segment_fills(painted: Painted) -> tuple[str, ...]:
@@ -65,7 +67,7 @@ def _color_name(painted: Painted, segment: int) -> str:
 
 
 def reach_mode(built: BuildResult) -> SurfaceMode:
-    """Which points are out of reach, by the test that fails in the branch that comes farthest."""
+    """Points out of reach, by the first failed test of the branch that passed the most tests."""
     view = by_reason(built.surface, built.candidates)
     return SurfaceMode("Out of reach", tuple(view.classes), view.labels)
 

@@ -28,7 +28,8 @@ def badges_of(report: MotionReport) -> list[tuple[str, bool | None]]:
         share = _percent(verdict.covered.covered_share)
         coverage = None if report.solution is None else report.solution.coverage
         given_up = 0.0 if coverage is None else coverage.given_up
-        more = f", {given_up:.1%} of the surface given up as slivers" if given_up else ""
+        why = "as slivers" if report.built.left_alone is None else "on purpose or as slivers"
+        more = f", {given_up:.1%} of the surface given up {why}" if given_up else ""
         badges.append((f"{share} of the area with a color covered{more}", None))
     return badges
 
@@ -50,13 +51,13 @@ def verdict_card(report: MotionReport) -> Card:
     """What is wrong with the trajectory, or that nothing was found; or why there is none."""
     verdict = report.verdict
     if verdict is None:
-        more = "Give a longer time limit, or none; the files beside this page are what there is."
+        more = "Give a longer time limit, or none. The files beside this page are all there is."
         return Card("What is missing", (report.missing, more), (), False)
     samples = f"{count(verdict.samples, 'sample')}, tested at {count(verdict.tested, 'place')}"
     title = "Verdict of the judge"
-    how = "The judge knows the scene and the trajectory, and nothing of what made it."
+    how = "The judge knows the scene and the trajectory, but nothing about the planner."
     if verdict.valid:
-        text = f"Valid: nothing is wrong with {samples}."
+        text = f"Valid: no fault in {samples}."
         return Card(title, (text, how, *verdict.notes), (), True)
     kinds = ", ".join(f"{number} × {kind}" for kind, number in verdict.fault_counts.items())
     rows = [("at", "kind", "what")]
@@ -65,7 +66,7 @@ def verdict_card(report: MotionReport) -> Card:
         rows.append((at, fault.kind, fault.text))
     texts = [f"Not valid, {samples}: {kinds}.", how, *verdict.notes]
     if len(verdict.faults) > _SHOWN:
-        texts.append(f"The first {_SHOWN}; the others are in verdict.json.")
+        texts.append(f"The first {_SHOWN}; the rest are in verdict.json.")
     return Card(title, tuple(texts), tuple(rows), False)
 
 
@@ -76,7 +77,7 @@ def coverage_card(report: MotionReport) -> Card | None:
         return None
     spacing = 1e3 * covered.spacing_m
     text = (
-        "Measured by the judge along the surface, so that the far side of a sheet does not count; "
+        "Measured by the judge along the surface, so the far side of a sheet does not count; "
         f"a visit is a pass within half the spacing of {spacing:g} mm."
     )
     rows = [
@@ -84,7 +85,7 @@ def coverage_card(report: MotionReport) -> Card | None:
         (f"within {1.5 * spacing:g} mm of a pass", _percent(covered.covered_share)),
         (f"within {0.75 * spacing:g} mm of a pass", _percent(covered.closely_covered_share)),
         ("left out, rightly", _percent(covered.left_out_share)),
-        ("uncovered without a cause", f"{1e4 * covered.uncovered_m2:.1f} cm²"),
+        ("uncovered without a reason", f"{1e4 * covered.uncovered_m2:.1f} cm²"),
         ("visits, mean and most", f"{covered.mean_visits:.2f}, {covered.most_visits}"),
         ("along earlier passes", f"{covered.repeated_m:.2f} of {covered.length_m:.2f} m"),
         ("length × spacing / area", f"{covered.length_times_spacing_per_area:.2f}"),

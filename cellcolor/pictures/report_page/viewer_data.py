@@ -24,6 +24,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.pictures.arm import body_mesh, obstacle_mesh
 from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
+from cellcolor.pictures.report_page.answers import answer_modes
 from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.report_page.surface_modes import (
     SurfaceMode,
@@ -53,6 +54,9 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
     witness = () if report.solution is None else report.solution.witness
     proof = proof_mode(surface, report.decomposition, witness)
     modes += [proof] if proof is not None else []
+    answered = report.answered
+    if answered is not None and len(answered.surface.vertices) == len(surface.vertices):
+        modes += answer_modes(answered)
     if painted is not None:  # its surface may be finer
         surface, given = painted.surface, painted.stands_for
         modes = [replace(mode, labels=mode.labels[given]) for mode in modes]
@@ -99,7 +103,7 @@ def _mode(surface: LabelledSurface, mode: SurfaceMode) -> dict[str, Any]:
             for label, own in enumerate(mode.classes)
         ],
         "labels": _packed(mode.labels, "i2"),
-    }
+    } | ({} if mode.button else {"button": False})
 
 
 def _arm(robot: Robot) -> dict[str, Any]:

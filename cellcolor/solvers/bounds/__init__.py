@@ -1,2 +1,2 @@
-"""What holds for any division of the surface, whichever solver divides it: lower bounds, and what
-can be left out."""
+"""Facts that hold for any division of the surface, whichever solver makes it: lower bounds, and
+what can be left out."""

@@ -1,9 +1,10 @@
 """Pairs of segments that would have to cross: lower bounds for any division of the surface.
 
-Two color regions (``cover``) are looked at by themselves, their cells merged where nothing
-separates them (``merged_cells``). Around a hub, a cell of all colors with a ring of one-colored
-cells, the petals, two petals of one color and two of another that follow in turn are in conflict:
-whoever connects the first two parts the others. The proof is in docs/bounds.md, "Conflicts".
+The method looks at two color regions (``cover``) alone and merges their cells where nothing
+separates them (``merged_cells``). A hub is a cell of all colors with a ring of one-colored cells,
+the petals. Around it, two petals of one color that alternate with two of another are in conflict:
+a segment that connects the first two separates the others. The proof is in
+docs/bounds.md, "Conflicts".
 """
 
 from __future__ import annotations
@@ -33,9 +34,9 @@ for k of them 2^k curves have to be looked at."""
 class Parting:
     """What a segment of one color region does to those of another.
 
-    A segment of the one region that touches both merged cells ``ends`` leaves merged cells of the
-    other region in ``groups``: no segment of that one touches two merged cells of different groups
-    without crossing the first, however often cutting paths cross the edges.
+    A segment of one region that touches both merged cells ``ends`` divides merged cells of the
+    other region into ``groups``: no segment of the other region touches two merged cells of
+    different groups without crossing the first, however often cutting paths cross the edges.
 
     Attributes:
         ends: two merged cells that belong to the one region and not to the other.
@@ -64,9 +65,9 @@ class Conflict:
 
 
 def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflict]:
-    """All that is known of what segments in two color regions cannot do side by side.
+    """All known conflicts between segments in two color regions.
 
-    All conflicts that are returned are true ones, but not all there are.
+    All returned conflicts are true, but there may be more.
 
     Args:
         instance: the topological graph.
@@ -87,10 +88,10 @@ def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflic
 
 
 class RegionPair:
-    """The surface as two color regions see it: merged cells with one color, the other or both.
+    """The surface for two color regions: merged cells with one color, the other or both.
 
-    Cells of both colors are merged as far as both colors can go on, so that apart from cracks edges
-    are left between merged cells of one color and merged cells of both only.
+    Cells of both colors are merged as far as both colors continue. So, apart from cracks, edges
+    remain only between merged cells of one color and merged cells of both.
 
     Args:
         instance: the topological graph.
@@ -165,7 +166,7 @@ class Side:
                 self._wall = self._components(parted, other)
 
     def partings(self, near: int, far: int) -> list[Parting]:
-        """What a segment that touches two merged cells of its own region does to the other region.
+        """The partings of the other region by a segment that touches two merged cells of its own.
 
         Args:
             near: a merged cell of the one region alone.

@@ -1,8 +1,8 @@
 """Lower bounds that hold for any division of the physical surface: set cover and strangers.
 
 A color region is a connected component of the cells that have a color. Every segment lies in one,
-so there are as many segments as regions are needed to touch all cells; and cells of which no two
-lie in a common region, strangers to each other, are in different segments. Strangers are an
+so there are at least as many segments as regions needed to touch all cells. Cells of which no
+two lie in a common region, strangers to each other, are in different segments. Strangers are an
 independent set of the graph that joins two cells where a region holds both.
 """
 
@@ -37,7 +37,7 @@ class Cover:
     """Color regions that together touch every cell.
 
     Attributes:
-        regions: as few of them as were found.
+        regions: the fewest that were found.
         bound: no cover has fewer regions, and no division of the surface fewer segments.
     """
 
@@ -90,14 +90,14 @@ def set_cover(
 ) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
 
-    Every cell of a division holds some sub-cell, that belongs to some segment, that lies within
-    one color region; so the regions of all segments together touch every cell, and there are at
+    Every cell of a division contains a sub-cell, which belongs to a segment, which lies within
+    one color region. So the regions of all segments together touch every cell, and there are at
     least as many segments as regions in a smallest cover. This holds in both search spaces.
 
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, if not all of its own.
-        deadline: when to be content with the best cover and bound so far.
+        deadline: when to stop with the best cover and bound so far.
 
     Raises:
         KeyboardInterrupt: Ctrl-C.
@@ -111,11 +111,11 @@ def set_cover(
 
 
 def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> list[int] | None:
-    """A few cells that fewer than ``value`` color regions do not touch: why a cover is not smaller.
+    """A few cells that fewer than ``value`` color regions cannot touch: why no cover is smaller.
 
-    With as many cells as ``value`` no two of them lie in one color region: they are strangers,
-    which can be seen by eye. Where there are no such cells, each group of cells that color regions
-    connect has its own: cells are added that a smallest cover of those before leaves out.
+    If there are as many cells as ``value``, no two of them lie in one color region: they are
+    strangers, which can be seen by eye. Otherwise each group of cells that color regions connect
+    has its own cells: repeatedly, a cell is added that a smallest cover of the others misses.
 
     Args:
         instance: the topological graph.
@@ -185,11 +185,11 @@ def _strangers(group: Sequence[int], touching: Sequence[set[int]], deadline: Dea
 
 
 def greedy_strangers(instance: Instance, without: Collection[int] = ()) -> list[int]:
-    """Cells of which no two lie in one color region, found at once but not the most there are.
+    """Cells of which no two lie in one color region, found quickly but not always the most.
 
     Args:
         instance: the topological graph.
-        without: cells that are taken away first.
+        without: cells to remove first.
     """
     colors = [frozenset(() if c.id in without else c.colors) for c in instance.cells]
     touching = _touching(color_regions(instance, colors), len(instance.cells))

@@ -1,4 +1,4 @@
-"""How many corridors may have to cross an edge: where one is enough, ``paper`` is ``surface``."""
+"""How many corridors may have to cross an edge: if one is enough, ``paper`` equals ``surface``."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ def enough_crossings(
 ) -> dict[int, float]:
     """Strands of each live edge that are enough for a minimum over all divisions.
 
-    Of all divisions of the surface with the fewest segments take one with the fewest sub-cells,
-    and a spanning tree of each segment. Then (docs/bounds.md, "Crossing an edge twice")
+    Among all divisions of the surface with the fewest segments, take one with the fewest
+    sub-cells, and a spanning tree of each segment. Then (docs/bounds.md, "Crossing an edge twice")
 
     - successive strands of an edge that the trees cross have different colors, so an edge with a
       single joinable color is crossed once;

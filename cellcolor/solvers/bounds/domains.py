@@ -1,4 +1,4 @@
-"""Where a segment can be, and the walls around it: the ground of docs/bounds.md, "Tangles"."""
+"""Where a segment can be, and the walls around it: the basis of docs/bounds.md, "Tangles"."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ class Domain:
     """Where a segment can be: merged cells that its color connects.
 
     Attributes:
-        id: tells domains of one surface apart.
+        id: identifies the domain on its surface.
         tree: by which edge each merged cell of the domain is first reached, and from which one.
         number: of each of these merged cells, from 0.
-        wall: of each other merged cell, the component of what the domain is not.
+        wall: for each other merged cell, its component outside the domain.
     """
 
     id: int
@@ -74,8 +74,8 @@ class Domains:
     def odd_crossings(self, one: Domain, other: Domain) -> dict[int, int]:
         """For each merged cell of a domain its way's odd crossings with those of another domain.
 
-        These are the bits of a number, one for each merged cell of the first domain; the way is
-        that to a merged cell of the second.
+        They are the bits of a number, one for each merged cell of the first domain; the way leads
+        to a merged cell of the second.
         """
         if (one.id, other.id) not in self._odd:
             crossed: dict[int, int] = {}

@@ -14,7 +14,7 @@ __all__ = ["LeftOut", "drop_dominated", "left_out"]
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A color region that another color can stand in for.
+    """A color region that another color can replace.
 
     Attributes:
         color: the region's color.
@@ -28,7 +28,7 @@ class LeftOut:
 
 
 def drop_dominated(instance: Instance, dropped: Iterable[LeftOut]) -> tuple[frozenset[int], ...]:
-    """The colors of each cell that are left without some color regions."""
+    """The remaining colors of each cell after some color regions are left out."""
     allowed = [set(cell.colors) for cell in instance.cells]
     for region in dropped:
         for cell in region.cells:
@@ -39,11 +39,11 @@ def drop_dominated(instance: Instance, dropped: Iterable[LeftOut]) -> tuple[froz
 def left_out(instance: Instance, deadline: Deadline = NEVER) -> list[LeftOut]:
     """Color regions that a minimum does not need (docs/semantics.md, section 6), in their order.
 
-    A color's region may go when some other color is available in each of its cells and joinable
-    across each edge that is joinable for it: whatever is painted in the one can be painted in the
-    other. One region goes at a time, since of two equal ones the last has to stay. This keeps the
-    minimum of both search spaces, not the set of optimal schemes. After the deadline the regions
-    that were not looked at stay.
+    A color's region may be left out if some other color is available in each of its cells and
+    joinable across each edge that is joinable for it: anything painted in the one can be painted
+    in the other. Regions are left out one at a time, since one of two equal ones has to stay. This
+    keeps the minimum of both search spaces, not the set of optimal schemes. After the deadline
+    the remaining regions stay.
     """
     found: list[LeftOut] = []
     allowed = [set(cell.colors) for cell in instance.cells]

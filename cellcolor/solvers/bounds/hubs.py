@@ -1,7 +1,7 @@
 """A lower bound by counting what fits side by side in cells with many edges (docs/bounds.md).
 
-Take some hubs away. What is left needs so many color regions at least, and each hub can save no
-more segments than it has links: connections between its edges in one color that do not cross.
+Remove some hubs. The rest needs at least a number of color regions, and each hub saves at most as
+many segments as it has links: connections between its edges in one color that do not cross.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ class HubBound:
 
     Attributes:
         value: so many, ``len(cells)`` less the links of the hubs.
-        hubs: the cells that were taken away, no two of which share a live edge.
-        cells: of which no two lie in one color region of what is left.
+        hubs: the removed cells; no two of them share a live edge.
+        cells: no two of them lie in one color region of the rest.
     """
 
     value: int
@@ -39,11 +39,11 @@ class HubBound:
 
 
 def hub_bound(instance: Instance, deadline: Deadline = NEVER) -> HubBound:
-    """The best bound that hubs give which are chosen one after the other.
+    """The best bound from hubs chosen one after the other.
 
     Args:
         instance: the topological graph.
-        deadline: when to be content with the hubs found so far.
+        deadline: when to stop with the hubs found so far.
     """
     found = HubBound(0, cells=tuple(greedy_strangers(instance)))
     links, fewest = 0, len(found.cells)

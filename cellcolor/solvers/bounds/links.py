@@ -2,7 +2,7 @@
 
 A **grouping** puts the live darts of a cell into groups, each in one color that all of its darts
 can be joined in, so that the groups can be drawn in the cell as connected areas that do not cross.
-A group of k darts has k - 1 **links**: links and groups together are as many as there are darts.
+A group of k darts has k - 1 **links**: there are as many links and groups together as darts.
 """
 
 from __future__ import annotations
@@ -67,7 +67,7 @@ def best_grouping(
     """A grouping of a single loop's darts with the most links.
 
     ``best[i, j]`` is that of the darts from i to j, j left out. Dart i is in no group with a later
-    one, or it is linked in some color to a next dart k, with everything between them by itself.
+    one, or it is linked in some color to a next dart k, and the darts between them are separate.
 
     Args:
         colors: those that each dart can be joined in, one at least, in cyclic order.
@@ -165,10 +165,10 @@ def most_links(colors: Sequence[frozenset[int]], deadline: Deadline = NEVER) -> 
 def links_bound(
     loops: Sequence[Sequence[frozenset[int]]], deadline: Deadline = NEVER
 ) -> int | None:
-    """No grouping of a cell's darts has more links than this; None where nothing is known.
+    """No grouping of a cell's darts has more links than this; None if nothing is known.
 
-    For a single loop it is reached. For several it counts the faces that groups and loops can make
-    when they are drawn, which takes darts with one color each.
+    A single loop reaches it. For several loops it counts the faces that groups and loops can make
+    when they are drawn, which requires darts with one color each.
 
     Args:
         loops: the colors that each dart can be joined in, loop by loop, in cyclic order.

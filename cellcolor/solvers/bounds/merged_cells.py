@@ -13,13 +13,13 @@ __all__ = ["MergedCells", "merge_cells"]
 
 @dataclass(frozen=True, slots=True)
 class MergedCells:
-    """Cells made one where nothing separates them, each under the id of one of its parts.
+    """Cells merged where nothing separates them, each under the id of one of its parts.
 
     Attributes:
         loops: the live darts around each merged cell.
-        sides: the merged cells to the left and to the right of each edge that is left.
-        joinable: the joinable colors of each edge that is left.
-        merged_cell_of: the merged cell that each cell went into.
+        sides: the merged cells to the left and to the right of each remaining edge.
+        joinable: the joinable colors of each remaining edge.
+        merged_cell_of: the merged cell of each cell.
     """
 
     loops: dict[int, list[list[int]]]
@@ -38,10 +38,10 @@ class MergedCells:
 def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> MergedCells:
     """Merge neighboring cells where nothing separates them.
 
-    Two cells with one and the same set of colors, and an edge between them that is joinable for
-    the whole set, are one area in which any division can be drawn: the edge goes. An edge with one
-    merged cell on both sides goes as well, which may leave a hole; an edge between two loops of
-    one merged cell stays, for it is a handle. Dead darts are left out.
+    Two cells with the same set of colors, and an edge between them that is joinable for the whole
+    set, are one area in which any division can be drawn, so the edge is removed. An edge with one
+    merged cell on both sides is removed as well, which may leave a hole. An edge between two loops
+    of one merged cell stays, because it is a handle. Dead darts are left out.
 
     Args:
         instance: the topological graph.

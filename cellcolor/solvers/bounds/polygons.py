@@ -1,4 +1,4 @@
-"""A surface of merged cells as polygons glued along edges, and curves over it up to homology."""
+"""A surface of merged cells as polygons glued along edges, and curves on it up to homology."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ class PolygonSurface:
     def borders(self) -> UnionFind[int]:
         """The border curves, each as the darts after which it runs.
 
-        Behind a dart, at the corner where it ends, the border goes on to what lies before the
-        dart's other side.
+        At the corner where a dart ends, the border continues to what lies before the dart's
+        other side.
         """
         borders: UnionFind[int] = UnionFind(self.following)
         for dart in self.following:
@@ -85,11 +85,11 @@ class PolygonSurface:
         return {edge: passed[edge] ^ passed[-edge] for edge in self.sides}
 
     def independent(self, turns: Mapping[int, int]) -> list[int]:
-        """Of some closed curves as many as no combination of which is homologous to zero.
+        """A largest set of given closed curves of which no combination is homologous to zero.
 
         A curve is homologous to zero (modulo 2, borders filled with discs) if every closed curve
-        crosses it an even number of times. Closed are the fundamental circles of the graph of
-        polygons.
+        crosses it an even number of times. It is enough to test the fundamental cycles of the graph
+        of polygons.
 
         Args:
             turns: the curves between polygons, see above.
@@ -119,7 +119,7 @@ def spanning_tree(
 
     Args:
         sides: the two nodes of each edge.
-        nodes: where to begin, one after the other, as far as they have not been reached.
+        nodes: where to begin, one after the other, if not yet reached.
     """
     near: dict[int, list[tuple[int, int]]] = {}
     for edge, (left, right) in sides.items():

@@ -1,11 +1,11 @@
-"""Segments that fit two at a time and still cannot all be drawn: lower bounds for any division.
+"""Segments of which any two fit but not all can be drawn: lower bounds for any division.
 
 Two segments that do not meet cross evenly, and so do any two ways within them. How often two ways
 cross modulo 2 is known but for the sides on which they pass what is in their way. So a plan of
 segments gives equations over the field of two elements, with a variable for each of these sides,
 and where the equations have no solution the segments cannot all be drawn. If it is also known what
 a segment does not touch, it has less room, and there are more equations. The proof is in
-docs/bounds.md, "Tangles".
+docs/bounds/tangles.md.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ class Touching:
     Attributes:
         region: the number of its color region.
         cells: merged cells that it touches.
-        avoided: merged cells of its color region that it does not touch, and some other segment
-            does.
+        avoided: merged cells of its color region that another segment touches and this one
+            does not.
     """
 
     region: int
@@ -57,8 +57,8 @@ class TangledSegment:
 
     Attributes:
         region: the number of its color region.
-        groups: groups of merged cells, of each of which it is to touch one.
-        avoided: merged cells of its color region, none of which it is to touch.
+        groups: groups of merged cells; it has to touch one cell of each group.
+        avoided: merged cells of its color region; it must touch none of them.
     """
 
     region: int
@@ -68,7 +68,7 @@ class TangledSegment:
 
 @dataclass(frozen=True, slots=True)
 class Tangle:
-    """What some segments cannot do side by side, however often cutting paths cross the edges.
+    """Segments that cannot all be drawn, however often cutting paths cross the edges.
 
     Attributes:
         segments: it is not possible that each of them touches a merged cell of each of its groups,
@@ -96,9 +96,10 @@ class Tangles:
         self._on_a_sphere = self._domains.surface.is_spheres
 
     def find(self, plan: Sequence[Touching], deadline: Deadline) -> list[Tangle]:
-        """Tangles that a plan breaks, none if none is known.
+        """The tangles that a plan violates; empty if none is known.
 
-        Of two segments as many as there are, up to a limit, else of three, else one of more.
+        Up to a limit, these are all tangles of two segments; if there are none, those of three; if
+        there are none either, one larger tangle.
 
         Args:
             plan: segments.

@@ -1,8 +1,8 @@
-"""Somebody else's solver on another model of the same problem: clingo and answer set programming.
+"""An independent solver on another model of the same problem: clingo, answer set programming.
 
-The model is ``models/constraints/coloring.lp``. Nothing is shared with the other solvers, which
-makes it a witness beside them and something to be compared with (docs/benchmarks.md). It needs the
-extra ``peers``.
+The model is ``models/constraints/coloring.lp``. It shares nothing with the other solvers, so its
+answers are independent evidence, and it can be compared with them (docs/benchmarks.md). It needs
+the extra ``peers``.
 """
 
 from cellcolor.solvers.clingo.solver import ClingoSolver, asp_facts

@@ -1,11 +1,17 @@
-"""What lets a checker without a solver verify a bound by conflicts between segments or by hubs."""
+"""Certificates with which a checker verifies bounds by conflicts or hubs without a solver."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from itertools import combinations, product
-from typing import Any
 
+from cellcolor.data.bounds.parts import (
+    CertifiedCrossing,
+    CertifiedPart,
+    CertifiedParts,
+    CertifiedSegment,
+    CertifiedTangle,
+)
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.domination import LeftOut
 from cellcolor.solvers.cpsat.search import PartSearch
@@ -18,22 +24,21 @@ MOST_CONFLICTS = 2_000
 
 def conflict_certificate(
     left_out: Iterable[LeftOut], parts: Sequence[PartSearch]
-) -> dict[str, Any] | None:
-    """The certificate of a bound by conflicts or hubs (docs/formats.md); None if too large.
+) -> CertifiedParts | None:
+    """The certificate of a bound by conflicts or hubs; None if too large.
 
     Args:
         left_out: the color regions that were left out before the instance fell into parts.
         parts: searched; their bounds add up.
     """
-    found = [_part(part) for part in parts]
-    number = sum(len(part["conflicts"]) + len(part.get("tangles", ())) for part in found)
-    if number > MOST_CONFLICTS:
+    found = tuple(_part(part) for part in parts)
+    if sum(len(part.conflicts) + len(part.tangles) for part in found) > MOST_CONFLICTS:
         return None
-    steps = [[region.color, min(region.cells), region.stand_in] for region in left_out]
-    return {"left_out": steps, "parts": found}
+    steps = tuple((region.color, min(region.cells), region.stand_in) for region in left_out)
+    return CertifiedParts(left_out=steps, parts=found)
 
 
-def _part(part: PartSearch) -> dict[str, Any]:
+def _part(part: PartSearch) -> CertifiedPart:
     whole = part.cells
 
     def cells(merged_cell: Iterable[int]) -> tuple[int, ...]:
@@ -41,39 +46,43 @@ def _part(part: PartSearch) -> dict[str, Any]:
 
     if part.hubs is not None:
         hubs, hard = (cells(found) for found in (part.hubs.hubs, part.hubs.cells))
-        return {"value": part.surface_bound, "cells": hard, "conflicts": [], "hubs": hubs}
-    conflicts = []
+        return CertifiedPart(part.surface_bound, hard, hubs=hubs)
     # A part that a smallest cover proves needs nothing of what was planned.
     planner = part.planning.planner if part.surface_bound > part.cover_bound else None
-    for one, other, parting in planner.partings if planner is not None else ():
-        for group, further in combinations(parting.groups, 2):
-            for pair in product(group, further):
-                ends, parted = ([cells(m) for m in two] for two in (parting.ends, pair))
-                conflicts.append({"colors": [one[0], other[0]], "one": ends, "other": parted})
-    tangles = [
-        {
-            "segments": [
-                {
-                    "color": color,
-                    "groups": [[cells(area) for area in group] for group in groups],
-                    "avoided": cells(avoided),
-                }
-                for (color, _), groups, avoided in tangle
-            ]
-        }
-        for tangle in (planner.tangles if planner is not None else ())
+    if planner is None:
+        return CertifiedPart(part.surface_bound, _hardest(part, (), ()))
+    conflicts = [
+        CertifiedCrossing(
+            (one[0], other[0]),
+            (cells(parting.ends[0]), cells(parting.ends[1])),
+            (cells(near), cells(far)),
+        )
+        for one, other, parting in planner.partings
+        for group, further in combinations(parting.groups, 2)
+        for near, far in product(group, further)
     ]
-    found = {
-        "value": part.surface_bound,
-        "cells": _hardest(part, conflicts, tangles),
-        "conflicts": conflicts,
-    }
-    return found | {"tangles": tangles} if tangles else found
+    tangles = [
+        CertifiedTangle(
+            tuple(
+                CertifiedSegment(
+                    color,
+                    tuple(tuple(cells(area) for area in group) for group in groups),
+                    cells(avoided),
+                )
+                for (color, _), groups, avoided in tangle
+            )
+        )
+        for tangle in planner.tangles
+    ]
+    hard = _hardest(part, conflicts, tangles)
+    return CertifiedPart(part.surface_bound, hard, tuple(conflicts), tuple(tangles))
 
 
 def _hardest(
-    part: PartSearch, conflicts: Sequence[dict[str, Any]], tangles: Sequence[dict[str, Any]]
-) -> list[int]:
+    part: PartSearch,
+    conflicts: Sequence[CertifiedCrossing],
+    tangles: Sequence[CertifiedTangle],
+) -> tuple[int, ...]:
     """One cell of each kind, without those that are touched wherever another one is.
 
     Two cells are of one kind if they lie in the same color regions, the same ends of conflicts and
@@ -84,23 +93,23 @@ def _hardest(
     for number, (_, own) in enumerate(color_regions(part.instance)):
         for cell in own:
             regions[part.cells[cell]].add(number)
-    ends: dict[int, set[tuple[int, str, int]]] = {cell: set() for cell in part.cells}
+    ends: dict[int, set[tuple[object, ...]]] = {cell: set() for cell in part.cells}
     for number, conflict in enumerate(conflicts):
-        for side, end in product(("one", "other"), (0, 1)):
-            for cell in conflict[side][end]:
-                ends[cell].add((number, side, end))
+        for end, area in enumerate((*conflict.one, *conflict.other)):
+            for cell in area:
+                ends[cell].add(("conflict", number, end))
     for number, tangle in enumerate(tangles):
-        for place, segment in enumerate(tangle["segments"]):
-            groups = [*segment["groups"], [segment["avoided"]]]
-            for group, areas in enumerate(groups):
+        for place, segment in enumerate(tangle.segments):
+            for group, areas in enumerate([*segment.groups, (segment.avoided,)]):
                 for cell in (cell for area in areas for cell in area):
-                    ends[cell].add((number, f"segment {place} of a tangle", group))
-    first: dict[tuple[frozenset[int], frozenset[tuple[int, str, int]]], int] = {}
+                    ends[cell].add(("tangle", number, place, group))
+    first: dict[tuple[frozenset[int], frozenset[tuple[object, ...]]], int] = {}
     for cell in sorted(part.cells):
         first.setdefault((frozenset(regions[cell]), frozenset(ends[cell])), cell)
     kinds = list(first)
-    return sorted(
+    hard = (
         cell
         for (own, at), cell in first.items()
         if at or not any(other < own for other, _ in kinds)
     )
+    return tuple(sorted(hard))

@@ -47,7 +47,7 @@ class Runner:
         """A solver with the options' workers.
 
         Args:
-            effort: deterministic seconds a worker, None for as long as there is time.
+            effort: deterministic seconds per worker, None for all the time left.
             deadline: an earlier one than the options'.
         """
         its = self._options
@@ -57,7 +57,7 @@ class Runner:
         """A solver with one worker, for models that are too small for a portfolio.
 
         Args:
-            effort: deterministic seconds, None for as long as there is time.
+            effort: deterministic seconds, None for all the time left.
             seed: added to the options' seed.
         """
         return make_cp_solver(self._options.deadline, 1, self._options.seed + seed, effort)

@@ -86,7 +86,7 @@ class ModelSearch:
         if not self._fits(size):
             return
         if size * SECONDS_A_TERM > deadline.left:
-            raise OutOfTime("building the model would take longer than there is time")
+            raise OutOfTime("building the model would take longer than the time left")
         built = full_model(graph, color_regions(self._part.instance, colors), deadline=deadline)
         # What meets the bound ends the search; by itself the model would have to prove it first.
         built.model.add(sum(built.variables.root) + sum(built.variables.alone) >= self._part.bound)

@@ -1,4 +1,4 @@
-"""What is known of a part: its best division, and what is proved of it.
+"""What is known about a part: its best division, and its proved bounds.
 
 A part is what live edges connect (``parts``). A strand is one of the parallel corridors by which
 segments may cross an edge, or a seam between two loops of a cell (docs/semantics.md, sections 4
@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from functools import cached_property
 
 from cellcolor.data.solution import Seam
+from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_strangers
 from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.bounds.hubs import HubBound
@@ -19,6 +20,7 @@ from cellcolor.solvers.cpsat.model.full import model_size
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import ConnectedPart
+from cellcolor.solvers.cpsat.routes.recoloring import recolor
 from cellcolor.solvers.interface import Options
 
 __all__ = ["FEW_STRANDS", "PartState"]
@@ -28,11 +30,11 @@ FEW_STRANDS = 2
 lower bound."""
 
 LARGE_MODEL = 200_000
-"""Terms of a part's model; a larger part is first improved window by window."""
+"""Terms of a part's model; a larger part is first improved by local search."""
 
 
 class PartState:
-    """The best division of a part so far, and what is proved of it.
+    """The best division of a part so far, and its proved bounds.
 
     Attributes:
         connected: the part itself, with its seams and loops.
@@ -105,7 +107,7 @@ class PartState:
 
     @property
     def large(self) -> bool:
-        """Whether it is improved window by window before a model of the whole is thought of."""
+        """Whether it is improved by local search before a model of the whole is thought of."""
         return model_size(self.best[0]) >= LARGE_MODEL
 
     def narrow_graph(self) -> DartGraph:
@@ -133,6 +135,21 @@ class PartState:
         if segments < self.segments:
             self.segments, self.best = segments, (graph, painting)
             self._report()
+
+    def recolor(
+        self, graph: DartGraph, painting: Painting, seed: int, deadline: Deadline, moves: int
+    ) -> None:
+        """What local search makes of a canonical painting, kept if it is the best so far.
+
+        Args:
+            graph: its dart graph.
+            painting: what the search begins with.
+            seed: of the choice of moves.
+            deadline: when to stop.
+            moves: in vain for each segment, before nothing better is expected.
+        """
+        for better in recolor(graph, painting, seed, self.bound, deadline, moves):
+            self.keep(graph, better)
 
     def raise_to(self, bound: int, *, for_surface: bool) -> None:
         """A bound that is proved, in the search space alone or for any division of the surface."""

@@ -24,7 +24,7 @@ class ConnectedPart:
             another part leads outside.
         cells: the cell of the whole instance that each one is.
         loops: the loops between which the cells' seams run: those that are live in the whole
-            instance, so that a seam lies where everybody expects it, whatever was left out here.
+            instance, so that a seam lies where other code expects it, whatever was left out here.
         seams: the seams of its cells, by the part's numbers of cells, without strands.
     """
 

@@ -1,4 +1,4 @@
-"""Plans of the segments of a part, and divisions by routing them.
+"""Plans for the segments of a part, and divisions made by routing them.
 
 A plan says of each segment its color and the cells that it has a share in; ``routes`` has both.
 """
@@ -10,7 +10,9 @@ from contextlib import suppress
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
+from cellcolor.solvers.cpsat.model.painting import canonical
 from cellcolor.solvers.cpsat.part_state import PartState
+from cellcolor.solvers.cpsat.routes.recoloring import FEW_MOVES
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
@@ -61,15 +63,15 @@ class Planning:
             self._undecided = False
 
     def go_on(self, deadline: Deadline) -> None:
-        """What was left undecided is planned with more effort, where hubs do not say more."""
+        """Plan what was left undecided with more effort, unless hubs give a better bound."""
         if self._undecided:
             self._plan_with_effort(deadline)
 
     def avoid(self, deadline: Deadline) -> None:
         """Plans that say what segments avoid, too, where one segment is left above the bound.
 
-        The bound rises by one in seconds, if at all. Where more is missing, models and other routes
-        have the better use of the time.
+        The bound rises by one in seconds, if at all. If the gap is larger, models and other routes
+        use the time better.
         """
         if self._part.segments == self._part.bound + 1:
             self._avoiding = True
@@ -114,7 +116,7 @@ class Planning:
             for rings in () if self._avoiding else (0, 1):
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
                 if self._part.large and self._part.segments > FAR * self._part.bound:
-                    raise Undecided  # windows first: on so large a part all this takes too long
+                    raise Undecided  # local search first: on so large a part this takes too long
             if self._part.done:
                 return plan
             if not planner.find_conflicts(plan, deadline, avoiding=self._avoiding):
@@ -138,4 +140,8 @@ class Planning:
             return
         graph = self._part.narrow_graph()
         seed += self._part.options.seed
-        self._part.offer(graph, route(refined(graph, rings), plan, rounds, seed, deadline))
+        routed = canonical(graph, route(refined(graph, rings), plan, rounds, seed, deadline))
+        self._part.keep(graph, routed)
+        if self._part.large:
+            # Routed as planned it has many fragments, and yet it is the best start that there is.
+            self._part.recolor(graph, routed, seed, deadline, FEW_MOVES)

@@ -51,7 +51,7 @@ class PartSearch(PartState):
         self.offer(self.best[0], whole)
 
     def count_links(self, deadline: Deadline, *, before_plans: bool) -> None:
-        """A bound by what fits side by side in cells with many edges, and a division like it.
+        """A bound by what fits side by side in cells with many edges, and a matching division.
 
         Args:
             deadline: when to end.

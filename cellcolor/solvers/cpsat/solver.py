@@ -176,12 +176,13 @@ class _Search:
         return [
             PartSearch.cover,
             lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=True),
+            lambda part, deadline: part.improving.begin_large(deadline.share(1 / 4)),
             lambda part, deadline: part.planning.route(
                 deadline.share(1 / 4 if part.large else 1 / 2)
             ),
             lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=False),
             lambda part, deadline: part.improving.drop(deadline.share(1 / 4)),
-            lambda part, deadline: part.improving.improve_large(deadline.share(9 / 10)),
+            lambda part, deadline: part.improving.recolor_large(deadline.share(1 / 2)),
             lambda part, deadline: part.planning.go_on(deadline.share(1 / 2)),
             lambda part, deadline: part.planning.avoid(deadline.share(1 / 3)),
             lambda part, deadline: part.improving.narrow_gap(deadline.share(3 / 4)),
@@ -206,7 +207,7 @@ class _Search:
     def _begin_with(self, start: Start) -> None:
         places = [replace(seam, strands=0) for seam in start.seams]
         if places != list(seam_places(self._instance, self._loops)):
-            raise InputError(None, "seams", "lie elsewhere than this solver puts them")
+            raise InputError(None, "seams", "lie in other places than this solver puts them")
         graph = self._whole_graph(start.seams)
         self._start = graph, canonical(graph, painting_of(graph, start.division))
 
@@ -244,13 +245,14 @@ class _Search:
         """What is proved of the number of segments, and how; bounds of parts add up."""
         if not self._parts:
             return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
+        certificate = conflict_certificate(self._left_out, self._parts)
         return (
             Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
             Bound(
                 "hubs" if any(part.hubs for part in self._parts) else "conflicts",
                 sum(part.surface_bound for part in self._parts),
                 "surface",
-                conflict_certificate(self._left_out, self._parts),
+                None if certificate is None else certificate.to_document(),
             ),
             Bound("crossings", sum(part.proved_for_surface for part in self._parts), "surface"),
             Bound("model", sum(part.bound for part in self._parts), "strands"),

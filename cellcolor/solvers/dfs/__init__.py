@@ -1,4 +1,4 @@
-"""The paper's depth-first enumerative solver, to be read beside sections IV and V.
+"""The paper's depth-first enumerative solver, to be read with sections IV and V.
 
 ``cell_schemes`` enumerates the schemes of one cell (section IV), ``search`` paints the graph cell
 by cell (section V), ``segment_counts`` carries the cost (section V-A), ``zero_darts`` checks what a

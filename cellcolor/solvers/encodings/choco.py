@@ -217,9 +217,9 @@ class Ranks:
 
         A cell has alone + counted - links - 1 sub-cells beyond the first, 0 or more. Summed up over
         all cells, segments = cells + those further sub-cells - joins. Let no two of some cells, the
-        hubs, be neighbors. Each join at a hub stands twice in the sum, once for the hub's darts and
-        once as a join, and drops out: what is left of a hub is alone - links - 1. CP-SAT finds this
-        in its linear relaxation; Choco looks at one constraint at a time.
+        hubs, be neighbors. Each join at a hub appears twice in the sum, once for the hub's darts
+        and once as a join, and drops out: what is left of a hub is alone - links - 1. CP-SAT finds
+        this in its linear relaxation; Choco looks at one constraint at a time.
         """
         problem = self.problem
         hubs: set[int] = set()

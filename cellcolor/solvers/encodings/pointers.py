@@ -4,7 +4,7 @@ A segment is a connected set of sub-cells. Choose a spanning tree of each: the j
 are **counted**, others are not. Then there are as many segments as trees. Each dart whose join is
 counted has one pointer: **up**, across its edge to the parent of its sub-cell; **forward** or
 **backward** along its sub-cell, to the next of its darts in cyclic order; or none, at the **root**
-of the tree. Pointers that never run in a circle make a forest, and its roots are counted.
+of the tree. Pointers without a cycle make a forest, and its roots are counted.
 """
 
 from __future__ import annotations
@@ -137,7 +137,7 @@ class Pointers(Encoding):
     def _roots(self) -> None:
         """A root is the first counted dart of an undivided cell, which every segment has.
 
-        Why it has one is told in docs/encodings.md. In an undivided cell that is the root all other
+        docs/encodings.md explains why it has one. In an undivided cell that is the root all other
         darts lead to children: none points up.
         """
         model = self.model

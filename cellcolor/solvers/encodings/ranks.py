@@ -6,10 +6,9 @@ successive ones are **linked**. In a cell
 
     sub-cells = counted darts - links,
 
-and every sub-cell but the root of its tree has one dart that leads **up** to its parent. So what is
-left when the darts that lead up are taken away are roots, and these are counted. Links have no
-direction here, unlike in ``pointers``; that a sub-cell has one parent is told by a literal carried
-along its chain.
+and every sub-cell but the root of its tree has one dart that leads **up** to its parent. So
+sub-cells less darts that lead up are roots, and these are counted. Links have no direction here,
+unlike in ``pointers``; a literal carried along its chain ensures that a sub-cell has one parent.
 """
 
 from __future__ import annotations
@@ -139,7 +138,7 @@ class Ranks(Encoding):
     def _roots(self) -> None:
         """Sub-cells without a parent are roots, and a cell with a root is undivided.
 
-        Why every segment has such a root is told in docs/encodings.md. With it no dart of the cell
+        docs/encodings.md explains why every segment has such a root. With it no dart of the cell
         leads up, and the equation says that the root is the cell's only sub-cell.
         """
         for number, cell in enumerate(self.problem.cells):

@@ -18,7 +18,7 @@ def require_solution(coloring: Coloring, true: Collection[int]) -> None:
         true: the variables that are 1; those above the model's own are left alone.
 
     Raises:
-        InputError: a constraint does not hold; the first is told by its variables.
+        InputError: a constraint does not hold; the first is identified by its variables.
     """
     model = coloring.model
     for sense, literals in model.rows():
@@ -29,7 +29,9 @@ def require_solution(coloring: Coloring, true: Collection[int]) -> None:
                 for literal in literals[:4]
             )
             more = ", …" if len(literals) > 4 else ""
-            message = f"is no solution of the model: of ({names}{more}) {count} hold, not {sense} 1"
+            message = (
+                f"is not a solution of the model: of ({names}{more}) {count} hold, not {sense} 1"
+            )
             raise InputError(None, None, message)
 
 

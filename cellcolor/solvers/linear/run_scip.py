@@ -39,7 +39,7 @@ def main(file: str, seconds: str, seed: str) -> None:
             else:
                 say(f"bound {self.model.getDualbound()}")
 
-    model.includeEventhdlr(Watcher(), "watcher", "tells of better solutions and bounds")
+    model.includeEventhdlr(Watcher(), "watcher", "reports better solutions and bounds")
     model.optimize()
     if model.getStatus() == "optimal":
         tell()

@@ -133,7 +133,7 @@ class GecodeSolver(_MiniZinc):
     """Gecode, a solver by propagation and search."""
 
     name = "gecode"
-    how = "install MiniZinc with Gecode, as by: apt install minizinc fzn-gecode"
+    how = "install MiniZinc with Gecode, for example: apt install minizinc fzn-gecode"
 
 
 class ChuffedSolver(_MiniZinc):

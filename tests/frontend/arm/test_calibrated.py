@@ -19,8 +19,7 @@ from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.newton import both_sides_of_folds, merged, nearest, polished
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.ur import BRANCHES
-from cellcolor.frontend.arm.ur_family import UrKinematics
+from cellcolor.frontend.arm.ur import BRANCHES, UrKinematics
 from cellcolor.frontend.setup import RobotFiles
 
 LOCKED = 0.4

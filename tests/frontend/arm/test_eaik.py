@@ -226,7 +226,7 @@ def test_a_tool_beside_the_last_axis_is_refused() -> None:
 
 
 @pytest.mark.parametrize(
-    ("locked", "message"), [(None, "required"), (7.0, "outside the limits of the sixth joint")]
+    ("locked", "message"), [(None, "is missing"), (7.0, "outside the limits of the sixth joint")]
 )
 def test_the_locked_joint_is_needed(locked: float | None, message: str) -> None:
     error = refused(ROBOTS["kr6"], locked_joint_6_rad=locked)

@@ -28,7 +28,7 @@ from cellcolor.frontend.arm.task_space import FREE_TURN, GIVEN_TURN
 from cellcolor.frontend.arm.tool_pose import angle_about, turn_at, turned_about
 from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
 from cellcolor.frontend.arm.ur import BRANCHES as UR_BRANCHES
-from cellcolor.frontend.arm.ur_family import UrKinematics
+from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.setup import RobotFiles, Turn
 
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")

@@ -174,6 +174,6 @@ def test_the_rest_is_not_to_be_hit() -> None:
 
 def test_a_list_goes_with_the_faces_of_the_file_only() -> None:
     table = {"kind": "mesh", "file": "x.obj", "meters_per_unit": 1.0, "max_edge_m": 0.01}
-    with pytest.raises(InputError, match="does not go with max_edge_m") as caught:
+    with pytest.raises(InputError, match="cannot be combined with max_edge_m") as caught:
         shipped("wok").varied(object=table, cover={"faces_file": "faces.txt"})
     assert caught.value.field == "cover.faces_file"

@@ -101,7 +101,7 @@ def test_a_moebius_strip_is_refused() -> None:
         faces += [(a, b, c), (b, d, c)]
     mesh = np.concatenate([low, high]), np.array(faces)
     assert inspect_mesh("strip", *mesh).facts.one_sided
-    with pytest.raises(InputError, match="one-sided component, as a Moebius strip") as caught:
+    with pytest.raises(InputError, match="one-sided component, like a Moebius strip") as caught:
         repair_mesh(*mesh)
     assert str(caught.value.field).startswith("faces near (")
 

@@ -73,7 +73,7 @@ def test_holes_torn_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         return made | {"faces": made["faces"][1:]} if "faces" in made else made
 
     monkeypatch.setattr(remeshing, "_asked", losing)
-    with pytest.raises(InputError, match="torn holes into the mesh; shorter edges") as caught:
+    with pytest.raises(InputError, match="tore holes into the mesh; shorter edges") as caught:
         repair_mesh(np.array(ball.vertices), np.array(ball.faces), edge_length_m=0.4)
     assert caught.value.field == "edge_length_m"
 

@@ -39,6 +39,7 @@ def test_seams_have_enough_strands() -> None:
     assert Graphs(three, 1).sufficient_seam_strands(0) == [4, 8]
 
 
+@pytest.mark.second
 @pytest.mark.parametrize(("name", "cell", "minimum"), [("annulus", 1, 3), ("three-loops", 0, 4)])
 def test_order_of_loops_does_not_matter(name: str, cell: int, minimum: int) -> None:
     instance = Instance.read(PAPER / f"{name}.json")

@@ -1,4 +1,4 @@
-"""Cutting paths of a painting: how many curves part its cells (docs/encodings.md)."""
+"""Cutting paths of a painting: how many curves divide its cells (docs/encodings.md)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ __all__ = ["count_cuts", "unseamed"]
 
 
 def count_cuts(instance: Instance, graph: DartGraph, painting: Painting) -> int:
-    """The fewest curves that part the cells into the painting's sub-cells.
+    """The fewest curves that divide the cells into the painting's sub-cells.
 
     Args:
         instance: the topological graph.
@@ -30,7 +30,7 @@ def count_cuts(instance: Instance, graph: DartGraph, painting: Painting) -> int:
 
 
 def unseamed(graph: DartGraph, blocks: Sequence[Block]) -> list[Block]:
-    """A cell's sub-cells on the surface: what a seam parts is one, and seams have no darts."""
+    """A cell's sub-cells on the surface: seams neither divide them nor have darts."""
     seams = {seam.id for seam in graph.seams}
     holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     whole: UnionFind[int] = UnionFind(range(len(blocks)))

@@ -27,9 +27,9 @@ __all__ = ["FewestCuts"]
 
 
 class FewestCuts:
-    """Of the divisions with a number of segments one with the fewest cutting paths.
+    """Among the divisions with a number of segments, one with the fewest cutting paths.
 
-    Three models are solved as long as the best division does not meet the bound: one without seams
+    Three models are solved until the best division meets the bound: one without seams
     that also has divisions which cannot be drawn, one with seams of the fewest sub-cells, and one
     of the divisions whose cutting paths connect no loops.
 

@@ -1,1 +1,1 @@
-"""Divisions of cells with many edges, made of the links that a bound counts (docs/routes.md)."""
+"""Divisions of cells with many edges, made from the links that a bound counts (docs/routes.md)."""

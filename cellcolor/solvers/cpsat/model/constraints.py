@@ -1,7 +1,7 @@
-"""The model's constraints, a group a function.
+"""The model's constraints, one function for each group.
 
-``DEFINING`` are needed for a right answer; ``REDUNDANT`` only make the proof quick. How darts,
-links and pointers make segments is told in ``variables``.
+``DEFINING`` groups are needed for a correct answer; ``REDUNDANT`` groups only speed up the
+proof. ``variables`` explains how darts, links and pointers make segments.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ def strands_in_turn(
 ) -> None:
     """The lower strands of an edge are joined first, successive ones in different colors.
 
-    Which strands the corridors take is all the same; why their colors differ stands in
+    It does not matter which strands the corridors take. Why their colors differ is explained in
     docs/bounds.md, "Crossing an edge twice".
     """
     seams = {seam.id for seam in graph.seams}

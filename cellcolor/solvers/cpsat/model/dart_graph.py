@@ -1,9 +1,9 @@
-"""The instance as the model sees it: one cyclic list of live darts a cell, strands put in.
+"""The instance as the model sees it: one cyclic list of live darts for each cell, with strands.
 
 A strand is one of several parallel corridors across an edge; a seam is a virtual edge that makes
 one cyclic list of two loops of a cell (docs/semantics.md, sections 4 and 5). The reference solver
-(``dfs/graph.py``) and the checker (``dart_lists.py``) put strands and seams in by code of their
-own. That is on purpose: a mistake made in only one of the three is found out by the others.
+(``dfs/graph.py``) and the checker (``dart_lists.py``) insert strands and seams with their own
+code. This is on purpose: the others reveal a mistake made in only one of the three.
 """
 
 from __future__ import annotations

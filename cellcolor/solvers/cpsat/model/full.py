@@ -1,8 +1,8 @@
-"""The CP-SAT model of the whole problem: its size, its making, its hint, and what it has found.
+"""The CP-SAT model of the whole problem: size, construction, hint and result.
 
 A painting is a division with a color for each sub-cell, and a **block** is a sub-cell of it. Before
-the model is solved it is hinted with a known painting. Afterwards the painting is read off it.
-Solving is left to the callers.
+the model is solved it gets a known painting as a hint. Afterwards the painting is read from it.
+The callers solve it.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def model_size(graph: DartGraph) -> float:
 
 
 def seams_size(seams: Sequence[Seam]) -> float:
-    """About how many terms a model has for its seams alone, told before its graph is made.
+    """About how many terms a model has for its seams alone, before its graph is made.
 
     Each strand of a seam gives its cell two darts, and any two of them have a color in common. The
     widths of seams double from loop to loop, so they are cut off before a number overflows.
@@ -165,7 +165,7 @@ def fewest_subcells(
 def read_painting(graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:
     """The painting that a solved model has found.
 
-    Darts are in state 1 only where the model counts a join. Edges whose join would close a circle
+    Darts are in state 1 only where the model counts a join. Edges whose join would close a cycle
     of sub-cells are left unjoined.
     """
     color_of: dict[int, int] = {}
@@ -195,8 +195,8 @@ def add_hint(built: Model, graph: DartGraph, painting: Painting) -> None:
     """Hint a model with a whole painting: its joins, pointers, roots and ranks.
 
     The joins of the painting are thinned out to a forest, one tree for each segment. A root has to
-    be in an undivided cell. If some segment has none, nothing is hinted, since a hint of some
-    variables only would mislead the search.
+    be in an undivided cell. If some segment has none, there is no hint, since a partial hint
+    would mislead the search.
     """
     forest = _forest(graph, painting, built.fixed_roots)
     if forest is None:

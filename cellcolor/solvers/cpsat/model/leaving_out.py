@@ -1,7 +1,7 @@
-"""The CP-SAT model in which cells may be left out, for a number of segments that is given.
+"""The CP-SAT model in which cells may be left out, for a given number of segments.
 
-A cell that a segment enters is covered whole, without one more segment: what nobody covers of it
-falls, piece by piece, to a segment beside it in the same cell. So only whole cells are left out,
+A cell that a segment enters can be covered whole without another segment: uncovered pieces of it
+go, one by one, to a segment beside them in the same cell. So only whole cells are left out,
 and a cell that is left out has no joined dart and counts for no segment.
 """
 

@@ -1,9 +1,9 @@
 """A model for divisions in which cutting paths connect no two loops of a cell.
 
-In such a division loops and sub-cells hang together like a forest (docs/encodings.md, "Fewest
+In such a division loops and sub-cells form a forest (docs/encodings.md, "Fewest
 cutting paths"). So each loop is divided on its own, as if it were a cell's only one, and a sub-cell
 on one loop is joined to a sub-cell on another by a **bridge**, which may lie anywhere in the cell:
-bridges never cross, as long as those of a cell make no circle of its loops. No seams are needed.
+bridges never cross, as long as those of a cell make no cycle of its loops. No seams are needed.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def build_apart(
         regions: color regions of the instance that it was made of.
         segments: the fewest there are.
         groups: whether loops may be put into groups, at one cutting path for each loop beyond the
-            first, within which bridges may make circles. Then the model has all divisions there
+            first, within which bridges may make cycles. Then the model has all divisions there
             are, and others whose sub-cells would cross between the loops of a group.
     """
     model = cp_model.CpModel()
@@ -185,7 +185,7 @@ def _forest_of_loops(
     loops: Sequence[int],
     groups: _Groups,
 ) -> None:
-    """At most one bridge between two groups of loops, and none that close a circle of groups.
+    """At most one bridge between two groups of loops, and none that close a cycle of groups.
 
     Each such bridge points to a group of lower height, at most one from each group.
     """

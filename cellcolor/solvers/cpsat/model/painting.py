@@ -37,7 +37,7 @@ Painting = list[list[Block]]
 def division_of(
     graph: DartGraph, painting: Sequence[Iterable[Block]], strands: int = 1
 ) -> Division:
-    """The painting as a solution writes it, with so many strands for every edge."""
+    """The painting as a solution writes it, with a given number of strands for every edge."""
     seams = {seam.id for seam in graph.seams}
 
     def name(dart: int) -> DartName:
@@ -111,8 +111,8 @@ def canonical(
     3. A sub-cell with a single dart beside others goes. It ends its segment, so that the segment
        stays in one piece without it.
 
-    Each of them leaves as many segments or fewer. The first two only add joins or take away
-    sub-cells; the third takes away a join and a sub-cell, so that all this comes to an end. On a
+    None of them adds segments. The first two only add joins or remove sub-cells; the third removes
+    a join and a sub-cell, so the process ends. On a
     graph without seams there are no more cutting paths than before either (docs/encodings.md).
 
     Args:

@@ -1,8 +1,8 @@
-"""Divisions that know no seams, written in the cyclic lists that seams make.
+"""Divisions without seams, written in the cyclic lists that seams make.
 
 Where the sub-cells of a cell lie around its seams is found by painting a small instance: the cell
 alone, in as many colors as it has sub-cells, with a cell of the sub-cell's color across each dart
-in state 1. Its division with one segment a color is the one that is looked for; there is none if
+in state 1. Its division with one segment for each color is the result; there is none if
 the sub-cells would have to cross.
 """
 
@@ -127,7 +127,7 @@ class SeamWriter:
     def can_be_drawn(self, painting: Painting) -> bool:
         """Whether the sub-cells, which do not cross on any one loop, do not cross at all.
 
-        Loops and sub-cells that hang together like a forest can be drawn in any case.
+        Loops and sub-cells that form a forest can always be drawn.
 
         Raises:
             OutOfTime: there was no time to see.

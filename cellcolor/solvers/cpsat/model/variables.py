@@ -1,7 +1,7 @@
 """The model's variables.
 
 Every dart in state 1 points at another dart: across its edge, along its sub-cell to the next dart
-in state 1, or nowhere when it is the root of its segment. Pointers that never run in a circle
+in state 1, or nowhere when it is the root of its segment. Pointers without a cycle
 make a forest, and every tree of it is one segment.
 """
 
@@ -22,7 +22,7 @@ class Variables:
 
     Attributes:
         joined: per edge (its lower dart) and color: the edge is joined in that color, and the
-            join is counted. Joins that only close a circle of sub-cells are never counted.
+            join is counted. Joins that only close a cycle of sub-cells are never counted.
         up: per dart: its sub-cell's parent lies across it.
         forward: per two darts of a cell, in list order: they are neighbours within one sub-cell,
             and the first points at the second.

@@ -1,1 +1,1 @@
-"""A division without a model of the whole: segments are planned, then routed."""
+"""Divisions without a model of the whole: segments are planned, then routed."""

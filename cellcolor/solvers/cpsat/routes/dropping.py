@@ -1,12 +1,12 @@
-"""A division improved segment by segment: one is left out, and all others are routed anew.
+"""Improve a division segment by segment: leave one out, and route all others anew.
 
 The literature calls this ruin and recreate (Schrimpf, Schneider, Stamm-Wilbrandt and Dueck, "Record
 breaking optimization results using the ruin and recreate principle", 2000).
 
 The segments of a division are a segment plan that can be drawn. Without one of them it is a plan
 with one segment less, if other segments can reach the cells that only this one touched. Routing
-such a plan takes a small part of the time of a model, and tries what windows cannot: segments
-that give way to each other all over the surface.
+such a plan takes much less time than a model, and tries what windows cannot: segments that make
+room for each other all over the surface.
 """
 
 from __future__ import annotations
@@ -49,9 +49,9 @@ def drop_segments(
     deadline: Deadline,
     tries: float = FRUITLESS,
 ) -> Iterator[Painting]:
-    """Better and better divisions of a graph, each with a segment less at least.
+    """Better and better divisions of a graph, each with at least one segment less.
 
-    What is as good as before is taken for it, so that the search does not stay at one division.
+    An equally good division replaces the old one, so the search does not stay at one division.
 
     Args:
         graph: the dart graph.
@@ -165,7 +165,7 @@ def _kept_nodes(
     segments: Sequence[PlannedSegment],
     held: Sequence[tuple[int, set[int]]],
 ) -> list[set[int]]:
-    """Of each planned segment the nodes that it holds already, the most that hang together."""
+    """For each planned segment its largest connected set of nodes that it already has."""
     left = [(color, nodes, {graph.cell[node] for node in nodes}) for color, nodes in held]
     found: list[set[int]] = []
     for segment in plan:

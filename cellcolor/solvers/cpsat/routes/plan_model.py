@@ -26,8 +26,8 @@ class PlanCells:
 
     Args:
         of_region: the merged cells of each color region.
-        parted: the partings that a plan has to heed.
-        tangles: the tangles that a plan has to heed.
+        parted: the partings that a plan has to satisfy.
+        tangles: the tangles that a plan has to satisfy.
 
     Attributes:
         kinds: of each color region the merged cells that partings or tangles name, with the first
@@ -71,7 +71,7 @@ class PlanCells:
 
 
 class PlanModel:
-    """A plan with exactly so many segments.
+    """A plan with an exact number of segments.
 
     Args:
         cells: what the plan is about.

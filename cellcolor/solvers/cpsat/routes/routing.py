@@ -1,8 +1,8 @@
 """Segments as routes that compete for room: a first division, usually with the fewest segments.
 
 Every planned segment is a net that has to connect cells in which only it can be painted. Nets are
-routed one after the other as if they were alone, and may run over each other at a price. Where
-they do, the price rises with every round, until those give way that can (negotiated congestion:
+routed one after the other as if they were alone, and may overlap at a price. Where
+they do, the price rises with every round, until some make room (negotiated congestion:
 McMurchie and Ebeling, PathFinder, FPGA 1995). Cells that no route touches are then painted from
 their neighbors.
 """

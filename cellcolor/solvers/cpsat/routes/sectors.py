@@ -9,7 +9,7 @@ from itertools import pairwise
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 
-__all__ = ["RefinedGraph", "held_nodes", "painting_of_nodes", "refined"]
+__all__ = ["RefinedGraph", "held_nodes", "node_colors", "painting_of_nodes", "refined"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ class RefinedGraph:
 
 
 def refined(graph: DartGraph, rings: int) -> RefinedGraph:
-    """Cut every cell into so many rings of sectors."""
+    """Cut every cell into a number of rings of sectors."""
     nodes: list[range] = []
     cell_of: list[int] = []
     beside: list[list[int]] = []
@@ -113,8 +113,8 @@ def painting_of_nodes(refined: RefinedGraph, colors: Sequence[int]) -> Painting:
     return [[block for block in cell if block.darts] or cell[:1] for cell in painting]
 
 
-def held_nodes(refined: RefinedGraph, painting: Painting) -> list[tuple[int, set[int]]]:
-    """The connected nodes of one color that a division comes to, the largest sets first.
+def node_colors(refined: RefinedGraph, painting: Painting) -> list[int]:
+    """The color of each node by a division.
 
     A sector belongs to the sub-cell that its dart is in or, in state 0, shows. The center belongs
     to a sub-cell that is not connected along the ring, if there is one. A segment that passes a
@@ -135,6 +135,12 @@ def held_nodes(refined: RefinedGraph, painting: Painting) -> list[tuple[int, set
         if ring:
             for place, node in enumerate(nodes[:-1]):
                 colors[node] = ring[place % len(ring)].color
+    return colors
+
+
+def held_nodes(refined: RefinedGraph, painting: Painting) -> list[tuple[int, set[int]]]:
+    """The connected nodes of one color (``node_colors``), the largest sets first."""
+    colors = node_colors(refined, painting)
     found: list[tuple[int, set[int]]] = []
     seen: set[int] = set()
     for first, color in enumerate(colors):

@@ -1,8 +1,8 @@
 """Segment plans: which color regions get how many segments, and which cells each of them touches.
 
-A segment plan looks at segments two at a time only. It can be made in milliseconds where the full
-model takes seconds; where there is none with so many segments, there is no division of the surface
-with so many either (docs/bounds.md, "Segment plans").
+A segment plan compares segments only two at a time. It can be made in milliseconds where the full
+model takes seconds. If there is no plan with a number of segments, there is no such division of
+the surface either (docs/bounds.md, "Segment plans").
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class PlannedSegment:
 
     Attributes:
         region: the color region it lies in.
-        cells: the cells that it is to touch, so that every cell is touched by some segment.
+        cells: the cells that it has to touch, so that some segment touches every cell.
         besides: cells that it touches as well, because a tangle would hold if it avoided them.
     """
 
@@ -70,7 +70,7 @@ does not show that the segment crosses another."""
 
 
 class Undecided(Exception):
-    """Within its limits the solver found neither a plan nor that there is none."""
+    """Within its limits the solver neither found a plan nor proved that there is none."""
 
 
 class Planner:
@@ -79,7 +79,7 @@ class Planner:
     Args:
         instance: the topological graph.
         regions: its color regions.
-        fewest: so many regions at least are needed to touch every cell.
+        fewest: at least this many regions are needed to touch every cell.
         solve: runs a model with a seed, within limits.
         cover: color regions that touch every cell, with which the first plan begins.
     """
@@ -115,12 +115,12 @@ class Planner:
         }
 
     def plan(self, segments: int, seed: int, thoroughly: bool = False) -> SegmentPlan | None:
-        """A plan with exactly so many segments that heeds all partings and tangles found so far.
+        """A plan with an exact number of segments that satisfies all partings and tangles so far.
 
         Args:
             segments: how many, the smallest cover or more.
             seed: other seeds give other plans, where there are several.
-            thoroughly: whether to heed far more partings, which takes longer.
+            thoroughly: whether to respect far more partings, which takes longer.
 
         Returns:
             A plan, or None if it is proved that there is none.
@@ -159,7 +159,7 @@ class Planner:
 
     @property
     def heeds_conflicts(self) -> bool:
-        """Whether plans have to heed anything but that every cell is touched."""
+        """Whether plans have constraints besides touching every cell."""
         return bool(self._partings or self._tangles)
 
     @property

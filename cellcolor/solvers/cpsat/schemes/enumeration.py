@@ -1,7 +1,7 @@
-"""All optimal schemes: the solutions of a model, found in a thread and looked at one by one.
+"""All optimal schemes: the solutions of a model, found in a thread and tested one by one.
 
-The model (``scheme_model``) has every scheme as a solution, and some divisions that are none: what
-cannot be told of a dart alone is looked at when a solution comes.
+Every scheme is a solution of the model (``scheme_model``), but so are some other divisions.
+Conditions that concern more than one dart are tested on each solution.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ _READING = 5e-6
 
 
 def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iterator[Division]:
-    """Every scheme with so many segments, the fewest, each once (semantics, section 3).
+    """Every scheme with the fewest segments, each once (semantics, section 3).
 
-    The search runs in a thread that is never far ahead of who takes the schemes.
+    The search runs in a thread that is never far ahead of the consumer.
 
     Args:
         instance: the topological graph.
@@ -48,7 +48,7 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         InputError: the search space is ``surface``, for which schemes are not defined.
         OutOfTime: the deadline came first.
         TooLarge: the model would not fit into memory.
-        CellcolorError: CP-SAT took the model for none.
+        CellcolorError: CP-SAT considered the model invalid.
     """
     if options.search_space != "paper":
         raise InputError(None, "search_space", "schemes are defined in search space 'paper' only")
@@ -82,7 +82,7 @@ def _paintings(model: SchemeModel, options: Options) -> Generator[Painting, None
 
     Raises:
         OutOfTime: the deadline came first.
-        CellcolorError: CP-SAT took the model for none.
+        CellcolorError: CP-SAT considered the model invalid.
     """
     solver = cp_model.CpSolver()
     solver.parameters.enumerate_all_solutions = True
@@ -92,7 +92,7 @@ def _paintings(model: SchemeModel, options: Options) -> Generator[Painting, None
     if isfinite(options.deadline.moment):
         solver.parameters.max_time_in_seconds = options.deadline.left
         if options.deadline.left < _READING * len(model.model.proto.constraints):
-            raise OutOfTime("the time would end while CP-SAT reads the model of all schemes")
+            raise OutOfTime("the time would run out while CP-SAT reads the model of all schemes")
     collector = _Collector(model)
     found = collector.found
 

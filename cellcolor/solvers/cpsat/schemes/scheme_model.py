@@ -1,11 +1,11 @@
-"""The model of all optimal schemes: every solution of it is another scheme.
+"""The model of all optimal schemes: each of its solutions is a different scheme.
 
 
 Everything in it is a function of the scheme, so that the search never meets one twice: the color
 that a dart in state 0 has before and after it, and a certificate of the segments (breadth-first
 distances from the segment's first dart). Rule 5 (docs/semantics.md, section 3), that no edge in
 state 0 has to show one joinable color on both sides, is in the model only where a dart has no
-choice what to show; what hangs on the choices of several runs of such darts is looked at solution
+choice what to show; conditions that depend on several runs of such darts are tested solution
 by solution.
 """
 
@@ -29,7 +29,7 @@ gigabytes during the search; a larger model is not built."""
 
 
 def check_size(graph: DartGraph, deadline: Deadline) -> None:
-    """Refuse to build a model that is too large, by the constraints over three darts of a cell.
+    """Reject a model that is too large, by the constraints over three darts of a cell.
 
     A link between two darts, d places apart in a cell of n, stands in about 2 d constraints that
     keep it from crossing others and in 2 n that want blocks of two darts; rule 4 looks at the

@@ -1,4 +1,4 @@
-"""What makes a scheme of a cell with several loops (docs/semantics.md, section 3)."""
+"""The rules of a scheme for a cell with several loops (docs/semantics.md, section 3)."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def same_blocks(
 ) -> Together:
     """Blocks of one color on several loops, with rules 2 and 4 as far as one loop tells.
 
-    That blocks do not cross is said loop by loop only; whether they cross between loops, and
-    whether blocks of one color are connected, is to be seen of each solution.
+    The constraints prevent crossings only loop by loop. Whether blocks cross between loops, and
+    whether blocks of one color are connected, is tested on each solution.
     """
     joined, joined_in = variables
     cell = [dart for loop in loops for dart in loop]

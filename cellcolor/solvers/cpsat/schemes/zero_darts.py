@@ -2,7 +2,7 @@
 
 A dart in state 0, a zero, shows the color of the sub-cell that it is given to: the one before it or
 the one after it along the border (docs/semantics.md, section 3). The reference solver and the
-checker decide the same by code of their own, so that they can be held to each other.
+checker decide the same with their own code, so they can be compared.
 """
 
 from __future__ import annotations
@@ -21,11 +21,11 @@ __all__ = ["zeros_can_differ"]
 def zeros_can_differ(
     graph: DartGraph, painting: Sequence[Sequence[Block]], deadline: Deadline = NEVER
 ) -> bool:
-    """Whether the darts in state 0 can be dealt to the blocks before and after them.
+    """Whether the darts in state 0 can be assigned to the blocks before and after them.
 
-    Within a gap the dealt colors change once, from that before to that after. Each dart in state 0
-    has a choice, early or late; a 2-satisfiability problem, solved by trying and propagating:
-    what a choice forces is kept when it leads to no contradiction, for it then hinders nothing.
+    Within a gap the assigned colors change once, from the color before to the color after. Each
+    dart in state 0 has a choice, early or late: a 2-satisfiability problem, solved by trying and
+    propagating. The consequences of a choice are kept if they lead to no contradiction.
 
     A loop without darts in state 1, in a cell that has some on another loop, lies in one of the
     cell's blocks: each color that these have is tried.

@@ -1,0 +1,172 @@
+"""Bounds that add up over the parts of a surface: by conflicts and tangles, and by hubs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from pydantic import NonNegativeInt
+
+from cellcolor.data.bounds.cells import CertifiedCells, marks_of
+from cellcolor.data.bounds.kind import (
+    EVERY_CELL,
+    BoundKind,
+    Certificate,
+    Connection,
+    Mark,
+    Shown,
+)
+from cellcolor.data.wording import count, listed
+
+if TYPE_CHECKING:
+    from cellcolor.data.instance import Instance
+
+__all__ = [
+    "CONFLICTS",
+    "HUBS",
+    "CertifiedCrossing",
+    "CertifiedPart",
+    "CertifiedParts",
+    "CertifiedSegment",
+    "CertifiedTangle",
+]
+
+_Cells = tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedCrossing:
+    """Two segments that would have to cross.
+
+    Attributes:
+        colors: the first segment's color, and the second one's.
+        one: two sets of cells of which the first segment touches one each.
+        other: the same for the second segment.
+    """
+
+    __pydantic_config__ = Certificate.__pydantic_config__
+
+    colors: tuple[int, int]
+    one: tuple[_Cells, _Cells]
+    other: tuple[_Cells, _Cells]
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedSegment:
+    """What a tangle says of one of its segments.
+
+    Attributes:
+        color: its color.
+        groups: groups of areas, each a set of cells; it touches a cell of some area of each group.
+        avoided: cells of its color region, none of which it touches.
+    """
+
+    __pydantic_config__ = Certificate.__pydantic_config__
+
+    color: int
+    groups: tuple[tuple[_Cells, ...], ...]
+    avoided: _Cells = ()
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedTangle:
+    """Segments that cannot all be drawn."""
+
+    __pydantic_config__ = Certificate.__pydantic_config__
+
+    segments: tuple[CertifiedSegment, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class CertifiedPart:
+    """Cells that so many segments at least are needed to touch, and why fewer cannot.
+
+    Attributes:
+        value: so many.
+        cells: what they are needed to touch.
+        conflicts: what two segments cannot do.
+        tangles: what one segment or more cannot do.
+        hubs: cells that are taken away, to see how many pieces of segments are needed.
+    """
+
+    __pydantic_config__ = Certificate.__pydantic_config__
+
+    value: NonNegativeInt
+    cells: _Cells
+    conflicts: tuple[CertifiedCrossing, ...] = ()
+    tangles: tuple[CertifiedTangle, ...] = ()
+    hubs: _Cells = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CertifiedParts(Certificate):
+    """Parts whose values add up; ``left_out`` has color, a cell of the region, and stand-in."""
+
+    left_out: tuple[tuple[int, int, int], ...] = ()
+    parts: tuple[CertifiedPart, ...]
+
+    def shown(self, value: int, instance: Instance) -> Shown:
+        """One conflict if there is any, or else the cells, with the hubs."""
+        conflicts = [conflict for part in self.parts for conflict in part.conflicts]
+        tangles = sum(len(part.tangles) for part in self.parts)
+        if conflicts:
+            return _conflict_shown(conflicts, tangles, instance)
+        cells, hubs = (
+            sorted({cell for part in self.parts for cell in getattr(part, name)})
+            for name in ("cells", "hubs")
+        )
+        if hubs:
+            notes = (
+                "Without the hubs no two of the cells can share a segment,",
+                "and the hubs join no more.",
+            )
+        elif tangles:
+            fewer = count(value - 1, "segment")
+            notes = (f"No {fewer} that touch all of these cells", "can be drawn side by side.")
+        else:
+            return CertifiedCells(tuple(cells)).shown(value, instance)
+        return Shown(marks_of(instance, cells, hubs), (), notes)
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object; parts have tangles and hubs where there are some."""
+        document = Certificate.to_document(self)
+        for part in document["parts"]:
+            for name in ("tangles", "hubs"):
+                if not part[name]:
+                    del part[name]
+        return document
+
+
+def _conflict_shown(
+    conflicts: Sequence[CertifiedCrossing], tangles: int, instance: Instance
+) -> Shown:
+    """The four areas of one conflict, and two connections, which would cross."""
+    first = conflicts[0]
+    marks, connections = [], []
+    for group, (letter, areas) in enumerate(zip("ab", (first.one, first.other), strict=True)):
+        color = first.colors[group]
+        name = instance.colors[color]
+        for place, area in enumerate(areas, start=1):
+            which = f"{'cell' if len(area) == 1 else 'cells'} {listed(area)}"
+            text = f"{letter}{place}: {which}, to be connected in {name}"
+            marks.append(Mark(f"{letter}{place}", text, area, group))
+        text = f"a connection of {letter}1 and {letter}2 in {name}"
+        connections.append(Connection(text, color, *areas))
+    notes = [
+        "A segment that touches a1 and a2 and one that touches b1",
+        "and b2 would cross, wherever they run. Two are drawn.",
+    ]
+    if len(conflicts) > 1:
+        notes.append(f"The certificate names {count(len(conflicts) - 1, 'conflict')} more.")
+    if tangles:
+        notes.append(f"It names {count(tangles, 'tangle')} of several segments, too.")
+    return Shown(tuple(marks), tuple(connections), tuple(notes))
+
+
+CONFLICTS = BoundKind("fewer segments would have to cross each other", EVERY_CELL, CertifiedParts)
+HUBS = BoundKind(
+    "more connections do not fit side by side into cells with many edges",
+    EVERY_CELL,
+    CertifiedParts,
+)

@@ -1,0 +1,195 @@
+"""What is left out on purpose: places to leave alone, and whatever a share does not need."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.restricted import without_cells, without_vertices
+from cellcolor.door.subject import Subject
+from cellcolor.errors import InputError
+from cellcolor.questions.front import Front, FrontPoint
+from cellcolor.questions.places import Place, chosen
+from cellcolor.solvers.interface import Options
+
+if TYPE_CHECKING:
+    from cellcolor.arrays import Array, Mask
+    from cellcolor.data.surface import LabelledSurface
+
+__all__ = ["Wanted", "front_on", "left_alone", "rest_of"]
+
+_FOR_FRONT = 0.5  # of the time that is left
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What has to be covered.
+
+    Attributes:
+        cover: the share of the area that can be covered and is not left alone, 0 to 1; None for
+            all of it.
+        required: what has to be covered whatever the share leaves out.
+        left_alone: what must not be covered.
+
+    Raises:
+        InputError: the share is not from 0 to 1, or something is required without a share.
+    """
+
+    cover: float | None = None
+    required: Place | None = None
+    left_alone: Place | None = None
+
+    def __post_init__(self) -> None:
+        if self.cover is not None and not 0 <= self.cover <= 1:
+            raise InputError(None, "cover", f"must be from 0 to 1, is {self.cover:g}")
+        if self.cover is None and self.required is not None:
+            raise InputError(None, "required", "goes with cover: without it everything has to be")
+
+    @property
+    def everything(self) -> bool:
+        """Whether nothing is left out."""
+        return self.cover is None and self.left_alone is None
+
+
+def rest_of(
+    subject: Subject,
+    wanted: Wanted,
+    options: Options,
+    progress: Callable[[str], None] | None = None,
+) -> tuple[Subject, tuple[str, ...], float]:
+    """A subject without what is left out on purpose.
+
+    Args:
+        subject: a scene, a labelled surface or an instance.
+        wanted: what has to be covered.
+        options: deadline, workers and seed of the search for what is best left out, which takes
+            half of the time that is left.
+        progress: told what is being done.
+
+    Returns:
+        What has to be covered, as a subject like any other; notes on what is left out, a sentence
+        each; and the share that has to be covered.
+
+    Raises:
+        InputError: a place is of another mesh, or there is no surface for it to be on; or no
+            division is known that covers as much.
+        OutOfTime: the deadline came before any division was known.
+    """
+    notes: tuple[str, ...] = ()
+    if wanted.left_alone is not None:
+        whole = subject.surface
+        subject = left_alone(subject, wanted.left_alone)
+        notes = (_alone_in_words(whole, subject.surface),)
+    if wanted.cover is None or subject.graph(options.deadline).nothing_to_cover:
+        return subject, notes, 1.0
+    options = replace(options, deadline=options.deadline.share(_FOR_FRONT))
+    front = front_on(subject, None, wanted.required, options, progress)
+    point = front.at_least(wanted.cover)
+    notes += (_share_in_words(front, point, wanted.cover),)
+    return _without_cells(subject, point.left_out), notes, point.covered_share
+
+
+def left_alone(subject: Subject, place: Place | None) -> Subject:
+    """A subject whose surface has no colors in a place.
+
+    Raises:
+        InputError: the place is of another mesh, or the subject has no surface.
+    """
+    if place is None:
+        return subject
+    return _restricted(subject, chosen(subject.surface, place, "left_alone"))
+
+
+def front_on(
+    subject: Subject,
+    weights: Sequence[float] | Array | None,
+    required: Place | None,
+    options: Options,
+    progress: Callable[[str], None] | None = None,
+) -> Front:
+    """The front of a subject, with weights and places on its surface.
+
+    Args:
+        subject: a scene, a labelled surface or an instance.
+        weights: of each vertex (n,), as a factor of its area; None for 1.
+        required: what has to be covered.
+        options: deadline, workers and seed.
+        progress: told what is being done.
+
+    Raises:
+        InputError: weights or place are of another mesh, or the subject has no surface.
+        OutOfTime: the deadline came before any division was known.
+    """
+    from cellcolor.questions.tradeoff import front_of  # imports a solver
+
+    instance = subject.graph(options.deadline)
+    cells: frozenset[int] = frozenset()
+    if required is not None:
+        mask = chosen(subject.surface, required, "required")
+        cells = frozenset(_cells(subject)[mask].tolist()) - {OUTSIDE}
+    per_cell = None if weights is None else _weights(subject, instance, weights)
+    return front_of(instance, options, weights=per_cell, required=cells, progress=progress)
+
+
+def _restricted(subject: Subject, mask: Mask) -> Subject:
+    """The subject without colors at some vertices (n,)."""
+    if subject.built is not None:
+        built = subject.built.without(mask)
+        return Subject(subject.path, built, built.surface)
+    return Subject(None, given_surface=without_vertices(subject.surface, mask))
+
+
+def _without_cells(subject: Subject, cells: Sequence[int]) -> Subject:
+    """The subject without some cells: on its surface, or in the graph where there is none."""
+    if not cells:
+        return subject
+    if subject.given_instance is not None:
+        return Subject(None, given_instance=without_cells(subject.given_instance, cells)[0])
+    return _restricted(subject, np.isin(_cells(subject), cells))
+
+
+def _alone_in_words(whole: LabelledSurface, rest: LabelledSurface) -> str:
+    left = sorted(set(rest.given_up) - set(whole.given_up))
+    share = whole.vertex_areas[left].sum() / whole.vertex_areas.sum()
+    return f"{share:.1%} of the surface can be covered and is left alone on purpose."
+
+
+def _share_in_words(front: Front, point: FrontPoint, cover: float) -> str:
+    text = (
+        f"{point.covered_share:.1%} of what can be covered has to be, since {cover:.1%} is asked "
+        "for; the rest is left out on purpose"
+    )
+    fewer = [other for other in front if other.segments < point.segments]
+    if not fewer:
+        return f"{text}."
+    most = fewer[-1].at_most_share
+    if point.segments != fewer[-1].segments + 1 or most >= cover:
+        return f"{text}; it is not proved that fewer segments do not cover as much."
+    sure = "any division of the surface" if fewer[-1].holds_for_surface else "search space paper"
+    return f"{text}; with one segment fewer it is at most {most:.1%}, proved for {sure}."
+
+
+def _cells(subject: Subject) -> np.ndarray:
+    """The cell of each vertex, ``OUTSIDE`` where it has none."""
+    return np.array(subject.decomposition.vertex_cell, dtype=np.int64)
+
+
+def _weights(subject: Subject, instance: Instance, given: Sequence[float] | Array) -> list[float]:
+    """What each cell weighs, of the weights of its vertices by their areas."""
+    own = np.asarray(given, dtype=float)
+    areas = subject.surface.vertex_areas
+    if own.shape != areas.shape:
+        message = f"must be one for each of {len(areas)} vertices: are they of another mesh?"
+        raise InputError(None, "weights", message)
+    bad = np.flatnonzero(~((own >= 0) & np.isfinite(own)))
+    if len(bad):
+        text = f"must be a number from 0 on, is {own[bad[0]]:g}"
+        raise InputError(None, f"weights[{bad[0]}]", text)
+    cell = _cells(subject)
+    inside = cell != OUTSIDE
+    found = np.bincount(cell[inside], (own * areas)[inside], len(instance.cells))
+    return [float(weight) for weight in found]

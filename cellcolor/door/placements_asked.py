@@ -1,0 +1,235 @@
+"""Who is asked for the minima of many placements, and the table that keeps them."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Annotated, Any
+
+from annotated_types import Ge, Le
+
+from cellcolor.deadline import Deadline
+from cellcolor.errors import CellcolorError, InputError
+from cellcolor.lab.executors.alone import Limits
+from cellcolor.lab.executors.work import Task, Workers, as_they_end
+from cellcolor.lab.runs.table import TableFile
+from cellcolor.questions.placements import PlacedMinimum, Pose
+from cellcolor.version import __version__
+
+if TYPE_CHECKING:
+    from cellcolor.frontend import Scene
+
+__all__ = ["AskedPlacements", "PlacementRow", "PlacementTable"]
+
+_BATCH = 32  # placements a process; reading the scene takes as long as one or two of them
+_ATTEMPTS = 2  # at placements whose process broke down
+_ENDING = 10.0  # s that a process may take beyond its time
+_ALL_DAY = 86_400.0  # s, where there is no limit
+
+
+@dataclass(frozen=True, slots=True)
+class PlacementRow:
+    """A placement in a table that a search goes on from.
+
+    Attributes:
+        scene: what is asked about, wherever the part stands: a fingerprint.
+        mesh: ``own``, or how many vertices were wanted of the coarse one.
+        x, y, z, roll, pitch, yaw: where the part stands, m and rad.
+        segments, covered_share, proved_for_surface, vertices, refused: see
+            :class:`~cellcolor.questions.placements.PlacedMinimum`.
+    """
+
+    scene: str
+    mesh: str
+    x: float
+    y: float
+    z: float
+    roll: float
+    pitch: float
+    yaw: float
+    segments: Annotated[int, Ge(1)] | None
+    covered_share: Annotated[float, Ge(0), Le(1 + 1e-9)]
+    proved_for_surface: bool
+    vertices: Annotated[int, Ge(0)]
+    refused: str | None
+
+    @property
+    def minimum(self) -> PlacedMinimum:
+        """The same as the value."""
+        return PlacedMinimum(
+            (self.x, self.y, self.z, self.roll, self.pitch, self.yaw),
+            self.segments,
+            self.covered_share,
+            self.proved_for_surface,
+            self.vertices,
+            self.refused or "",
+        )
+
+
+class PlacementTable(AbstractContextManager["PlacementTable"]):
+    """What is known of placements; with a file it is kept there, row by row.
+
+    Args:
+        scene: what is asked about.
+        path: of the table; one that is there is continued. None keeps nothing.
+        base: whether its rows are places of the arm's base.
+
+    Raises:
+        InputError: the file is no such table, is damaged, or is of another scene.
+    """
+
+    def __init__(self, scene: Scene, path: Path | None, base: bool = False) -> None:
+        self._known: dict[tuple[str, Pose], PlacedMinimum] = {}
+        self._file: TableFile[PlacementRow] | None = None
+        if path is None:
+            return
+        self._scene = _fingerprint(scene, base)
+        self._file = TableFile(path, PlacementRow)
+        for number, row in enumerate(self._file.rows, 2):
+            if row.scene != self._scene:
+                self._file.__exit__(None, None, None)
+                message = "is a placement of another scene, or of one that has changed since"
+                raise InputError(str(path), f"line {number}", message)
+            self._known[row.mesh, row.minimum.pose] = row.minimum
+
+    def get(self, mesh: str, pose: Pose) -> PlacedMinimum | None:
+        """What is known of a placement on a mesh."""
+        return self._known.get((mesh, pose))
+
+    def add(self, mesh: str, row: PlacedMinimum) -> None:
+        """Keep a row; in the file only what another run could not know better."""
+        self._known[mesh, row.pose] = row
+        if self._file is not None and (row.proved_for_surface or row.refused):
+            found = row.segments, row.covered_share, row.proved_for_surface, row.vertices
+            self._file.append(PlacementRow(self._scene, mesh, *row.pose, *found, row.refused))
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        if self._file is not None:
+            self._file.__exit__(kind, error, trace)
+
+
+class AskedPlacements:
+    """Who is asked for the minima of many placements: this process, or others.
+
+    Attributes:
+        complete: whether no time limit has left any out.
+
+    Args:
+        workers: who does the work; None for this process.
+        table: what is known already, and where new rows are kept.
+        deadline: of all of it.
+        seed: of everything random.
+        report: told how many are done.
+        base: whether the arm's base is moved instead of the part.
+    """
+
+    def __init__(
+        self,
+        workers: Workers | None,
+        table: PlacementTable,
+        deadline: Deadline,
+        seed: int,
+        report: Callable[[str], None],
+        base: bool = False,
+    ) -> None:
+        self._base = base
+        self._workers, self._table, self._deadline = workers, table, deadline
+        self._seed, self._report = seed, report
+        self._done = 0
+        self.complete = True
+
+    def minima(self, scene: Scene, mesh: str, poses: Sequence[Pose]) -> list[PlacedMinimum]:
+        """A row for each placement, in their order; fewer if the time ends.
+
+        Args:
+            scene: with any placement.
+            mesh: what the table calls the mesh of this scene.
+            poses: where the part is put.
+
+        Raises:
+            OutOfTime: the deadline came before the first.
+            CellcolorError: a process could not do its work.
+        """
+        self._deadline.check()
+        slots = 1 if self._workers is None else self._workers.slots
+        new = [pose for pose in dict.fromkeys(poses) if self._table.get(mesh, pose) is None]
+        size = min(_BATCH, -(-len(new) // slots) or 1)
+        parts = [new[at : at + size] for at in range(0, len(new), size)]
+        for rows in self._asked(scene, parts):
+            for row in rows:
+                self._table.add(mesh, row)
+            self._done += len(rows)
+            self._report(f"{self._done} placements")
+        found = [self._table.get(mesh, pose) for pose in poses]
+        rows = [row for row in found if row is not None]
+        self.complete &= len(rows) == len(poses)
+        return rows
+
+    def _asked(
+        self, scene: Scene, parts: Sequence[Sequence[Pose]]
+    ) -> Iterator[list[PlacedMinimum]]:
+        """The rows of each part, as they come."""
+        from cellcolor.questions.placing import minima_at
+
+        if self._workers is None:
+            for part in parts:
+                yield minima_at(scene, part, self._deadline.left, 1, self._seed, self._base)
+            return
+        lost = list(parts)
+        for attempt in range(1, _ATTEMPTS + 1):
+            left = self._deadline.left
+            limits = Limits(min(left, _ALL_DAY) + _ENDING)
+            tasks = [
+                (part, Task(minima_at, (scene, part, left, 1, self._seed, self._base), limits))
+                for part in lost
+            ]
+            lost = []
+            for part, ended in as_they_end(self._workers, tasks):
+                if ended.end in ("done", "timeout", "stopped"):
+                    yield ended.value or []
+                elif ended.end == "failed" or attempt == _ATTEMPTS:
+                    raise CellcolorError(f"placements could not be tried: {ended.error}")
+                else:  # the process was lost, not the work
+                    lost.append(part)
+
+
+def _fingerprint(scene: Scene, base: bool) -> str:
+    """Of all that a scene's and its setup's file say but the placement, and of the files they name.
+
+    Meshes that a URDF names are not looked at.
+    """
+    whole = hashlib.sha256(__version__.encode())
+    if base:  # places of the base say nothing of places of the part, and the part stays
+        whole.update(scene.placement.model_dump_json().encode())
+    for table, folder in ((scene, scene.folder), (scene.setup, scene.setup.folder)):
+        content = table.model_dump(mode="json", exclude={"placement"})
+        whole.update(json.dumps(content, sort_keys=True).encode())
+        for text in _texts(content):
+            try:
+                whole.update((folder / text).read_bytes())
+            except (OSError, ValueError):  # no name of a file
+                continue
+    return whole.hexdigest()[:16]
+
+
+def _texts(content: Any) -> Iterator[str]:
+    """All texts in JSON content."""
+    open_ = [content]
+    while open_:
+        value = open_.pop()
+        if isinstance(value, str):
+            yield value
+        elif isinstance(value, dict):
+            open_ += value.values()
+        elif isinstance(value, list):
+            open_ += value

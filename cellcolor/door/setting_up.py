@@ -1,0 +1,170 @@
+"""``cellcolor.setups``: which set-ups of a part cover it with the fewest lift-offs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.extras import extras_for
+from cellcolor.door.result import Result
+from cellcolor.door.subject import Subject, scene_or_file
+from cellcolor.errors import InputError
+from cellcolor.questions.placements import PlacedMinimum, Placements, Pose
+from cellcolor.questions.set_ups import SetUpPlan
+
+if TYPE_CHECKING:
+    from cellcolor.arrays import Mask
+    from cellcolor.door.drawing import Drawing
+    from cellcolor.door.planning import PlannedScene
+    from cellcolor.frontend import Scene
+
+__all__ = ["ChosenSetUps", "setups"]
+
+_FOR_BUILDING = 0.6  # of the time that is left
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class ChosenSetUps:
+    """The set-ups to use, with what is needed to look at them and to drive them.
+
+    Attributes:
+        answer: which they are, and what is proved of them.
+        scenes: of each of them, in the order of ``answer.set_ups``.
+    """
+
+    answer: SetUpPlan
+    scenes: tuple[Scene, ...]
+
+    @property
+    def result(self) -> Result:
+        """The division of the surface, in the part's own frame, among all set-ups."""
+        subject = Subject(None, given_surface=self.answer.surface)
+        return Result(self.answer.solution, subject, self.answer.covered_share)
+
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> Drawing:
+        """Draw the segments of all set-ups on the part: ``cellcolor.show``."""
+        return self.result.plot(path, **view)
+
+    def left_alone(self) -> list[Mask]:
+        """Of each set-up the vertices (n,) that others paint, or nobody."""
+        from cellcolor.door.painting import paint
+
+        painted = paint(self.result.subject, self.answer.solution)
+        count = len(self.answer.surface.vertices)
+        own = np.zeros(count, dtype=int)
+        names = self.answer.surface.colors
+        for vertex, color in enumerate(painted.plan.vertex_colors[:count]):
+            if color is not None:
+                own[vertex] = int(names[color].partition(":")[0])
+        return [own != one.number for one in self.answer.set_ups]
+
+    def plan(
+        self,
+        *,
+        time_limit: TimeLimit = None,
+        progress: Callable[[str], None] | None = None,
+        **given: Any,
+    ) -> list[PlannedScene]:
+        """A judged motion for each set-up, which paints its own part of the surface.
+
+        Args:
+            time_limit: seconds for all of them, None for as long as it takes.
+            progress: told what is being done.
+            **given: what ``cellcolor.plan`` takes besides.
+
+        Raises:
+            InputError, OutOfTime: as of ``cellcolor.plan``.
+        """
+        from cellcolor.door.planning import plan
+
+        deadline = Deadline.of(time_limit)
+        return [
+            plan(scene, left_alone=mask, time_limit=deadline, progress=progress, **given)
+            for scene, mask in zip(self.scenes, self.left_alone(), strict=True)
+        ]
+
+    def __str__(self) -> str:
+        return str(self.answer)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} of {self.answer.name!r}: {len(self.scenes)}>"
+
+
+def setups(
+    scene: str | PathLike[str] | Scene,
+    *,
+    at: Sequence[Sequence[float]] | Placements = (),
+    others: Sequence[str | PathLike[str] | Scene] = (),
+    cover: float = 1.0,
+    change_over: float | None = None,
+    time_limit: TimeLimit = None,
+    workers: int | None = None,
+    seed: int = 0,
+    progress: Callable[[str], None] | None = None,
+) -> ChosenSetUps:
+    """Choose set-ups of a part that cover enough with the fewest lift-offs, with proof.
+
+    Needs the extra ``frontend``. Borders are not refined, so that all set-ups have one mesh.
+
+    Args:
+        scene: its file, its shipped name, or the value; as it stands it is the first candidate.
+        at: where else the part may stand: x, y, z in m and roll, pitch, yaw in rad of each place
+            (extrinsic, as in a scene), or what ``place`` has tried.
+        others: other scenes of the same part, such as with another arm.
+        cover: the share that has to be covered of the area that any candidate reaches, 0 to 1.
+        change_over: what a change from one set-up to the next costs, in lift-offs, 1 or more; None
+            for the fewest set-ups first, then the fewest lift-offs.
+        time_limit: seconds for all of it, None for as long as it takes.
+        workers: CP-SAT's search workers, None for its portfolio.
+        seed: of everything random.
+        progress: told what is being done.
+
+    Raises:
+        InputError: a scene cannot be used, a place or a share is none, another scene has another
+            part, or nothing is reached.
+        OutOfTime: the time limit came before there was a choice.
+    """
+    if not 0 <= cover <= 1:
+        raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
+    if change_over is not None and not 1 <= change_over < float("inf"):
+        message = f"must be 1 or more, since it takes a lift-off, is {change_over:g}"
+        raise InputError(None, "change_over", message)
+    deadline = Deadline.of(time_limit)
+    poses = _poses(at)
+    given = [scene_or_file(one) for one in (scene, *others)]
+    with extras_for("the front end"):
+        from cellcolor.frontend.scene import Scene as SceneValue
+        from cellcolor.questions.setting_up import candidates_of, plan_of
+        from cellcolor.solvers.interface import Options
+
+    scenes = [one if isinstance(one, SceneValue) else SceneValue.read(one) for one in given]
+    found = candidates_of(scenes, poses, deadline.share(_FOR_BUILDING), progress)
+    options = Options(deadline=deadline, workers=workers, seed=seed)
+    answer = plan_of(found, cover, change_over, options, progress)
+    return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))
+
+
+def _poses(at: Sequence[Sequence[float]] | Placements) -> list[Pose]:
+    """Places, each once.
+
+    Raises:
+        InputError: one is none.
+    """
+    if isinstance(at, Placements):
+        return list(dict.fromkeys(row.pose for row in at if isinstance(row, PlacedMinimum)))
+    poses = []
+    for number, place in enumerate(at):
+        try:
+            pose = tuple(float(value) for value in place)
+        except (TypeError, ValueError):
+            pose = ()
+        if len(pose) != 6 or not np.isfinite(pose).all():
+            message = "must be six numbers: x, y, z in m and roll, pitch, yaw in rad"
+            raise InputError(None, f"at[{number}]", message)
+        poses.append(pose)
+    return list(dict.fromkeys(poses))

@@ -1,0 +1,141 @@
+"""Several set-ups of one part, as a value: which are used, what each covers, what one needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.wording import count
+from cellcolor.questions.placements import Pose
+
+__all__ = ["SetUp", "SetUpPlan"]
+
+
+@dataclass(frozen=True)
+class SetUp:
+    """A part in one place before one arm.
+
+    Attributes:
+        number: among those that could be used, from 1.
+        scene: the name of the scene that has the arm.
+        pose: where the part stands in it.
+        segments: that are painted here.
+        covered_share: of the area that any set-up reaches, what is painted here, 0 to 1.
+    """
+
+    number: int
+    scene: str
+    pose: Pose
+    segments: int
+    covered_share: float
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "number": self.number,
+            "scene": self.scene,
+            "position_m": list(self.pose[:3]),
+            "rpy_rad": list(self.pose[3:]),
+            "segments": self.segments,
+            "covered_share": self.covered_share,
+        }
+
+    def __str__(self) -> str:
+        x, y, z, roll, pitch, yaw = self.pose
+        place = f"({x:.4g}, {y:.4g}, {z:.4g}) m"
+        if roll or pitch or yaw:
+            place += f" turned by ({roll:.4g}, {pitch:.4g}, {yaw:.4g}) rad"
+        segments = count(self.segments, "segment")
+        return f"{self.scene} at {place}: {segments}, {100 * self.covered_share:.1f} %"
+
+
+@dataclass(frozen=True, eq=False)
+class SetUpPlan:
+    """The set-ups to use, and how the surface is divided among them.
+
+    Attributes:
+        name: of the scene.
+        set_ups: those that are used, in the order of their numbers.
+        surface: in the part's own frame, the colors of the set-ups side by side, each with the
+            number of its set-up before its name; what is left out on purpose has none.
+        solution: of that surface, which the checker has passed.
+        covered_share: of the area that any set-up reaches, 0 to 1.
+        fewest_set_ups: no fewer of the given set-ups cover enough.
+        at_least_segments: with as many of them, no division has fewer segments.
+        proved: whether no other choice among the given set-ups is better, for any division of the
+            surface.
+        alone: the set-up that covers most by itself, with the segments that it needs then.
+        candidates: how many set-ups could be used.
+        refused: why others could not be, a sentence each.
+    """
+
+    name: str
+    set_ups: tuple[SetUp, ...]
+    surface: LabelledSurface
+    solution: Solution
+    covered_share: float
+    fewest_set_ups: int
+    at_least_segments: int
+    proved: bool
+    alone: SetUp
+    candidates: int
+    refused: tuple[str, ...] = ()
+
+    @property
+    def segments(self) -> int:
+        """In all set-ups together."""
+        return self.solution.segments or 0
+
+    @property
+    def lift_offs(self) -> int:
+        """Between segments of one set-up; a change-over is not one."""
+        return self.segments - len(self.set_ups)
+
+    @property
+    def change_overs(self) -> int:
+        """One between each two set-ups."""
+        return len(self.set_ups) - 1
+
+    @property
+    def proved_for_surface(self) -> bool:
+        """The same as ``proved``."""
+        return self.proved
+
+    def __iter__(self) -> Iterator[SetUp]:
+        return iter(self.set_ups)
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {
+            "lift_offs": self.lift_offs,
+            "segments": self.segments,
+            "change_overs": self.change_overs,
+            "covered_share": self.covered_share,
+            "proved_for_surface": self.proved,
+            "fewest_set_ups": self.fewest_set_ups,
+            "at_least_segments": self.at_least_segments,
+            "setups": [one.to_document() for one in self.set_ups],
+            "alone": self.alone.to_document(),
+            "candidates": self.candidates,
+            "refused": list(self.refused),
+        }
+
+    def __str__(self) -> str:
+        proof = "proved" if self.proved else f"at least {count(self.at_least_segments, 'segment')}"
+        used = count(len(self.set_ups), "set-up")
+        lines = [
+            f"{self.name}: {used}, {count(self.lift_offs, 'lift-off')} within them, "
+            f"{100 * self.covered_share:.1f} % of what {count(self.candidates, 'candidate')} "
+            f"{'reaches' if self.candidates == 1 else 'reach'}, {proof}"
+        ]
+        lines += [f"  {one.number}. {one}" for one in self.set_ups]
+        alone = self.alone
+        if len(self.set_ups) > 1 or alone.covered_share < self.covered_share:
+            lift_offs = count(max(0, alone.segments - 1), "lift-off")
+            lines.append(f"  one set-up alone: {alone}, {lift_offs}")
+        if self.refused:
+            lines.append(f"  {count(len(self.refused), 'candidate')} refused: {self.refused[0]}")
+        return "\n".join(lines)

@@ -1,0 +1,202 @@
+"""Candidates for set-ups: one part in several places and before several arms, on one mesh."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.decomposition import decomposition_of
+from cellcolor.errors import InputError
+from cellcolor.frontend.build import labelled
+from cellcolor.frontend.displaced import run_stages
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.scene import Scene
+from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.questions.choosing_set_ups import Choice, choose
+from cellcolor.questions.placements import Pose
+from cellcolor.questions.placing import pose_of, stands_in
+from cellcolor.questions.set_ups import SetUp, SetUpPlan
+from cellcolor.solvers import checked
+from cellcolor.solvers.interface import Options
+
+__all__ = ["Candidates", "candidates_of", "plan_of"]
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """Set-ups that could be used.
+
+    Attributes:
+        scenes: of each, with the part in its place and borders that are not refined.
+        surfaces: of each, in the part's own frame; all on one mesh.
+        refused: why others cannot be used, a sentence each.
+    """
+
+    scenes: tuple[Scene, ...]
+    surfaces: tuple[LabelledSurface, ...]
+    refused: tuple[str, ...]
+
+
+def candidates_of(
+    scenes: Sequence[Scene],
+    poses: Sequence[Pose],
+    deadline: Deadline,
+    progress: Callable[[str], None] | None = None,
+) -> Candidates:
+    """Each scene as it stands, and each with the part in the other places, built.
+
+    Args:
+        scenes: with the same part.
+        poses: other places.
+        deadline: when to be content with those built so far.
+        progress: told what is being done.
+
+    Raises:
+        InputError: a scene cannot be used wherever its part stands, or has another part.
+        OutOfTime: the deadline came before the first was built.
+    """
+    report = progress or (lambda _: None)
+    found: list[tuple[Scene, LabelledSurface]] = []
+    refused: list[str] = []
+    part: LabelledSurface | None = None
+    for given in scenes:
+        own = given.with_setup(given.setup.varied(continuity={"border_length_m": None}))
+        prepared = prepare(own.varied(file=given.file), deadline)
+        _check_same_part(part, prepared)
+        for pose in dict.fromkeys((pose_of(given.placement), *poses)):
+            report(f"set-up {len(found) + len(refused) + 1}")
+            try:
+                surface = _built(prepared, pose, deadline)
+            except OutOfTime:
+                if not found:
+                    raise
+                return _together(found, refused)
+            except InputError as error:
+                refused.append(f"{own.name} at {_in_words(pose)}: {error.message}")
+                continue
+            part = part or surface
+            placement = Placement(position_m=pose[:3], rpy_rad=pose[3:])
+            scene = prepared.scene.varied(placement=placement, file=given.file)
+            found.append((scene, surface))
+    if not found:
+        raise InputError(None, None, f"no set-up can be used; {refused[0]}")
+    return _together(found, refused)
+
+
+def _together(found: Sequence[tuple[Scene, LabelledSurface]], refused: Sequence[str]) -> Candidates:
+    scenes, surfaces = zip(*found, strict=True)
+    return Candidates(tuple(scenes), tuple(surfaces), tuple(refused))
+
+
+def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledSurface:
+    """The part in a place, labelled, its vertices in its own frame.
+
+    Raises:
+        InputError: it cannot stand there, or nothing of it is reached.
+        OutOfTime: the deadline came first.
+    """
+    there = prepared.at(Placement(position_m=pose[:3], rpy_rad=pose[3:]))
+    within = stands_in(there)
+    if within is not None:
+        raise InputError(None, "placement", f"the part stands in {within}")
+    surface = labelled(there, run_stages(there, StageClock(deadline, None)), {})
+    if not any(surface.vertex_colors):
+        raise InputError(None, None, "nothing is reached")
+    decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar
+    own = prepared.part.surface
+    return LabelledSurface(
+        prepared.scene.name,
+        surface.colors,
+        own.vertices,
+        own.faces,
+        surface.vertex_colors,
+        surface.cracks,
+        given_up=surface.given_up,
+    )
+
+
+def _check_same_part(part: LabelledSurface | None, prepared: PreparedScene) -> None:
+    if part is None:
+        return
+    own = prepared.part.surface
+    same = np.array_equal(part.vertices, own.vertices) and np.array_equal(part.faces, own.faces)
+    if not same:
+        file = None if prepared.scene.file is None else str(prepared.scene.file)
+        message = (
+            f"has {len(own.vertices)} vertices that are not the {len(part.vertices)} of the first "
+            "scene's object: set-ups are of one part, on one mesh"
+        )
+        raise InputError(file, "object", message)
+
+
+def plan_of(
+    candidates: Candidates,
+    cover: float,
+    change_over: float | None,
+    options: Options,
+    progress: Callable[[str], None] | None = None,
+) -> SetUpPlan:
+    """The set-ups to use; see :func:`~cellcolor.questions.choosing_set_ups.choose`."""
+    choice = choose(candidates.surfaces, cover, change_over, options, progress)
+    report = progress or (lambda _: None)
+    report("one set-up alone")
+    areas = choice.surface.vertex_areas
+    reached = np.zeros(len(areas), dtype=bool)
+    shares = []
+    for surface in candidates.surfaces:
+        own = np.array([bool(colors) for colors in surface.vertex_colors])
+        reached |= own
+        shares.append(float(areas[own].sum()))
+    whole = float(areas[reached].sum())
+    best = max(range(len(shares)), key=lambda number: shares[number])
+    instance = decomposition_of(candidates.surfaces[best]).instance
+    alone = checked.solve(instance, options)
+    return SetUpPlan(
+        name=candidates.scenes[0].name,
+        set_ups=_set_ups(candidates, choice, whole),
+        surface=choice.surface,
+        solution=choice.solution,
+        covered_share=choice.covered_share,
+        fewest_set_ups=choice.fewest_set_ups,
+        at_least_segments=choice.at_least_segments,
+        proved=choice.proved,
+        alone=_set_up(candidates, best, alone.segments or 0, shares[best] / whole),
+        candidates=len(candidates.scenes),
+        refused=candidates.refused,
+    )
+
+
+def _set_ups(candidates: Candidates, choice: Choice, whole: float) -> tuple[SetUp, ...]:
+    """Each set-up with its segments, and the area of the cells that are painted in them.
+
+    A cell that is divided counts in equal parts for its sub-cells: where a cut runs is free.
+    """
+    names = choice.surface.colors
+    cell_areas = np.bincount(
+        np.array(decomposition_of(choice.surface).vertex_cell) + 1, choice.surface.vertex_areas
+    )[1:]
+    segments: dict[int, set[int]] = {number: set() for number in choice.set_ups}
+    covered = dict.fromkeys(choice.set_ups, 0.0)
+    for cell in choice.solution.cells or ():
+        for sub in cell.subcells:
+            number = int(names[sub.color].partition(":")[0]) - 1
+            segments[number].add(sub.segment)
+            covered[number] += float(cell_areas[cell.id]) / len(cell.subcells)
+    return tuple(
+        _set_up(candidates, number, len(segments[number]), covered[number] / whole)
+        for number in choice.set_ups
+    )
+
+
+def _set_up(candidates: Candidates, number: int, segments: int, share: float) -> SetUp:
+    scene = candidates.scenes[number]
+    return SetUp(number + 1, scene.name, pose_of(scene.placement), segments, share)
+
+
+def _in_words(pose: Pose) -> str:
+    return f"({', '.join(f'{value:.4g}' for value in pose)})"

@@ -1,0 +1,95 @@
+"""Courses beside a singularity: no joint goes far from one sample to the next."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+from shipped import ROBOTS
+
+from cellcolor.data.tool_paths import ToolPath
+from cellcolor.deadline import NEVER
+from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
+from cellcolor.frontend.setup import Setup
+from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.motion import courses
+from cellcolor.motion.courses import Course, laid_out
+from cellcolor.motion.following import Followed, bowed
+from cellcolor.motion.samples import DISTANCE, Samples
+
+CORNERS = np.array([[-0.05, -0.01, 0.0], [0.05, -0.01, 0.0], [0.0, 0.05, 0.0]])
+MOST = 0.5  # rad; docs/judging-trajectories.md: in contact, a longer step is a jump
+
+
+def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
+    """Across a triangle, with a joint that turns by half a circle, most of it within a length."""
+
+    def follow(_prepared: Any, samples: Samples, *_: Any) -> Followed:
+        angle = np.arctan(samples.points[:, 0] / passed_within)[:, None]
+        reasons = np.zeros(len(samples), dtype=np.uint8)
+        return Followed(angle, reasons, np.zeros(len(samples) - 1, dtype=bool))
+
+    monkeypatch.setattr(courses, "follow", follow)
+    monkeypatch.setattr(courses, "bowed", lambda _robot, joints: np.zeros(len(joints) - 1, bool))
+    up = np.tile([0.0, 0.0, 1.0], (3, 1))
+    ends = np.array([[-0.0301, 0.0, 0.0], [0.0302, 0.0, 0.0]])
+    path = ToolPath(0, 0, ends, up[:2], np.array([0]))
+    mesh = TriangleMesh(CORNERS, np.array([[0, 1, 2]]))
+    laid: Any = SimpleNamespace(paths=SimpleNamespace(paths=(path,)))
+    judge = SimpleNamespace(reason_names=("valid",))
+    prepared: Any = SimpleNamespace(judge=judge, robot=None)
+    surface: Any = SimpleNamespace(mesh=mesh)
+    (found,) = laid_out(prepared, surface, up, 0, lambda _: laid, {}, NEVER).courses
+    return found
+
+
+@pytest.mark.parametrize("passed_within", [0.1, 0.003, 0.0005, 0.0001])
+def test_a_fast_joint_gets_samples_so_close_that_no_step_is_a_jump(
+    passed_within: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found = course(passed_within, monkeypatch)
+    x, angles = found.samples.points[:, 0], found.followed.joints[:, 0]
+    assert np.allclose(np.tan(angles) * passed_within, x)
+    assert np.abs(np.diff(angles)).max() < MOST
+    assert not found.followed.torn.any()
+    assert x[0] == -0.0301 and x[-1] == 0.0302
+    steps = np.diff(x)
+    assert (steps > 0).all() and (steps <= DISTANCE).all()
+    # Where the joint is slow, samples are as far apart as ever.
+    assert np.median(steps) > 0.9 * DISTANCE
+    assert (np.ptp(steps) < 1e-12) == (passed_within > DISTANCE)
+
+
+def test_a_step_that_stays_too_long_is_torn(monkeypatch: pytest.MonkeyPatch) -> None:
+    found = course(1e-9, monkeypatch)
+    (torn,) = np.flatnonzero(found.followed.torn)
+    before, after = found.samples.points[torn : torn + 2, 0]
+    assert before < 0 < after < before + DISTANCE / 30
+
+
+def test_steps_that_bow_off_their_way_are_told() -> None:
+    """Of UR5 steps, small and large: the tip and the axis at places all along each of them."""
+    robot = prepare_arm(Setup.read(ROBOTS / "ur5_polishing.toml")).robot
+    rng = np.random.default_rng(5)
+    start = rng.uniform(-2, 2, (400, robot.joints))
+    size = 10 ** rng.uniform(-3, 0, (400, 1))
+    end = start + size * rng.uniform(-1, 1, start.shape)
+    told = np.array([bowed(robot, np.stack(pair))[0] for pair in zip(start, end, strict=True)])
+    between = [forward(robot, start + share * (end - start)) for share in np.linspace(0, 1, 9)]
+    tips, axes = (np.stack([getattr(at, name) for at in between]) for name in ("tip", "tool_axis"))
+    way = np.linspace(0, 1, 9)[:, None, None]
+    off = np.linalg.norm(tips - ((1 - way) * tips[0] + way * tips[-1]), axis=2).max(axis=0)
+    straight = (1 - way) * axes[0] + way * axes[-1]
+    straight /= np.linalg.norm(straight, axis=2, keepdims=True)
+    tilt = np.degrees(np.arccos(np.clip((axes * straight).sum(axis=2), -1, 1))).max(axis=0)
+    # What is let through stays well inside what the judge allows: a sample, and 1 degree.
+    share = off / np.linalg.norm(tips[-1] - tips[0], axis=1)
+    assert share[~told].max() < 0.4 and tilt[~told].max() < 0.75
+    assert ((share > 0.25) | (tilt > 0.4))[told].all()
+    assert 50 < told.sum() < 350

@@ -1,0 +1,147 @@
+"""The arm's base as what moves, and the price of what is left uncovered."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+from commands import json_lines, run
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+from shipped import SCENES, shipped
+
+import cellcolor
+from cellcolor.frontend.parts.placement import Placement
+from cellcolor.questions.placements import PlacedMinimum
+from cellcolor.questions.placing import minima_at
+from examples import examples
+
+METRES = st.floats(-2, 2)
+ANGLES = st.floats(-3.1, 3.1)
+NO_POSE = (0.0,) * 6
+
+
+def taken_along(thing: Placement, base: Placement) -> dict[str, Any]:
+    """The pose in the world of what stands in the frame of a base; SciPy's rotations."""
+    turn = Rotation.from_euler("xyz", base.rpy_rad)
+    position = turn.apply(thing.position_m) + base.position_m
+    angles = (turn * Rotation.from_euler("xyz", thing.rpy_rad)).as_euler("xyz")
+    return {"position_m": tuple(position.tolist()), "rpy_rad": tuple(angles.tolist())}
+
+
+@examples(60)
+@given(
+    base=st.tuples(METRES, METRES, METRES),
+    yaw=ANGLES,
+    thing=st.tuples(METRES, METRES, METRES),
+    angles=st.tuples(ANGLES, ANGLES, ANGLES),
+    tilt=st.tuples(st.floats(-0.5, 0.5), st.floats(-0.5, 0.5)),
+)
+def test_the_world_stays_where_it_is(
+    base: Any, yaw: float, thing: Any, angles: Any, tilt: tuple[float, float]
+) -> None:
+    """Part, obstacle and ground, taken back into the world, are those of the scene."""
+    own = shipped("wok_obstacle", 60)
+    moved = {"position_m": thing, "rpy_rad": angles}
+    scene = own.varied(
+        placement=moved,
+        obstacle=(own.obstacle[0].varied(**moved),),
+        ground={"height_m": -0.1, "normal": (*tilt, 1.0)},
+    )
+    at = Placement(position_m=base, rpy_rad=(0.0, 0.0, yaw))
+    seen = scene.seen_from(at)
+    points = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    for before, after in (
+        (scene.placement, seen.placement),
+        (scene.obstacle[0], seen.obstacle[0]),
+    ):
+        assert at.placed(after.placed(points)) == pytest.approx(before.placed(points), abs=1e-9)
+    assert scene.ground is not None and seen.ground is not None
+    plane, there = scene.ground.half_space, seen.ground.half_space
+    heights = plane.along(at.placed(points)) - plane.offset_m
+    assert there.along(points) - there.offset_m == pytest.approx(heights, abs=1e-9)
+
+
+def test_a_world_and_a_base_that_move_together_change_nothing() -> None:
+    """A scene whose things stand 0.3 m aside and turned, asked about with its base there too."""
+    own = shipped("wok_obstacle", 60)
+    base = Placement(position_m=(0.3, -0.2, 0.1), rpy_rad=(0.0, 0.0, 0.7))
+    assert own.ground is not None
+    aside = own.varied(
+        placement=taken_along(own.placement, base),
+        obstacle=tuple(each.varied(**taken_along(each, base)) for each in own.obstacle),
+        ground={"height_m": own.ground.height_m + 0.1},
+    )
+    (there,) = minima_at(own, [(*own.placement.position_m, *own.placement.rpy_rad)], np.inf, 1, 0)
+    pose = (*base.position_m, *base.rpy_rad)
+    first, again = minima_at(aside, [pose, pose], np.inf, 1, 0, base=True)
+    assert first == again and first.pose == pose
+    assert (first.segments, first.vertices) == (there.segments, there.vertices)
+    assert first.covered_share == pytest.approx(there.covered_share)
+
+
+def test_without_obstacles_the_base_goes_where_the_part_comes_from() -> None:
+    own = shipped("wok", 60)
+    x, y, *rest = *own.placement.position_m, *own.placement.rpy_rad
+    poses = [(0.05, -0.1, *NO_POSE[2:]), NO_POSE]
+    bases = minima_at(own, poses, np.inf, 1, 0, base=True)
+    parts = minima_at(own, [(x - 0.05, y + 0.1, *rest), (x, y, *rest)], np.inf, 1, 0)
+    assert [(row.segments, row.vertices) for row in bases] == [
+        (row.segments, row.vertices) for row in parts
+    ]
+    for base, part in zip(bases, parts, strict=True):
+        assert base.covered_share == pytest.approx(part.covered_share)
+
+
+@pytest.mark.parametrize(
+    ("scene", "field"),
+    [
+        (lambda own: own.varied(setup={"task": {"gravity_m_per_s2": (1.0, 0.0, -9.0)}}), "gravity"),
+        (lambda own: own.varied(setup={"task": {"turn": {"along": (0.0, 1.0, 0.0)}}}), "task.turn"),
+    ],
+)
+def test_what_is_bound_to_the_world_is_named(scene: Any, field: str) -> None:
+    with pytest.raises(cellcolor.InputError, match="belongs to the world") as caught:
+        scene(shipped("wok", 60)).seen_from(Placement(position_m=(0.1, 0.0, 0.0)))
+    assert field in str(caught.value)
+
+
+@examples(50)
+@given(
+    rows=st.lists(st.tuples(st.integers(1, 5), st.integers(0, 100)), min_size=1, max_size=8),
+    price=st.floats(0.5, 100),
+)
+def test_with_a_price_the_sum_is_least(rows: list[tuple[int, int]], price: float) -> None:
+    values = [PlacedMinimum(NO_POSE, n, share / 100, True, 1) for n, share in rows]
+    best = min(values, key=lambda row: row.rank(0.0, price))
+    sums = [n - 1 + price * (1 - share / 100) for n, share in rows]
+    assert best.lift_offs is not None
+    assert best.lift_offs + price * (1 - best.covered_share) == pytest.approx(min(sums))
+
+
+@pytest.mark.second
+def test_the_command_moves_the_base(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    wok = SCENES / "wok_obstacle.toml"
+    asked = ("--points", "1", "--vertices", "50", "--best", "1", "--uncovered-price", "20")
+    table = tmp_path / "places.csv"
+    assert run("place", wok, "--base", "--x", "0,0.1", *asked, "-o", table, "--json") == 0
+    rows = json_lines(capsys.readouterr().out)
+    assert all(row["moved"] == "base" for row in rows) and rows[0]["position_m"] == [0, 0, 0]
+    places = tmp_path / "places.jsonl"
+    places.write_text('{"moved": "base", "position_m": [0, 0, 0], "rpy_rad": [0, 0, 0]}\n')
+    for wrong, said in (
+        (("place", wok, "--x", "0.4,0.5", "-o", table), "is a placement of another scene"),
+        (("place", wok, "--base", "--roll", "0,1"), "roll: the arm's base stays upright"),
+        (("place", wok, "--base", "--x", "0,1", "--leeway", "0.01"), "leeway"),
+        (("place", wok, "--x", "0,1", "--uncovered-price", "-1"), "uncovered-price"),
+        (("place", wok, "--x", "0,1", "--uncovered-price", "nan"), "uncovered"),
+        (("setups", wok, "--places", places), "line 1: is a place of the arm's base"),
+    ):
+        assert run(*wrong) == 2
+        assert said in capsys.readouterr().err

@@ -1,0 +1,217 @@
+"""Several set-ups: the choice against trying all, and the whole way on a small scene."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from itertools import combinations
+from math import pi
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
+
+from commands import json_lines, run
+from exhaustive_fronts import front_by_subsets
+from exhaustive_minima import minimum
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from shipped import shipped
+
+import cellcolor
+from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.surface import LabelledSurface
+from cellcolor.decomposition import decomposition_of
+from cellcolor.lab.families import blobs
+from cellcolor.questions.choosing_set_ups import choose
+from cellcolor.solvers.interface import Options
+from examples import examples
+
+TURNED = (0.465, -0.15, -0.04, 0.0, 0.0, pi)
+"""The wok before an obstacle, turned round."""
+
+
+def together(surfaces: Sequence[LabelledSurface]) -> LabelledSurface:
+    """All their colors on one surface; blobs have no cracks."""
+    names: list[str] = []
+    colors: list[list[int]] = [[] for _ in surfaces[0].vertices]
+    for number, surface in enumerate(surfaces):
+        for vertex, own in enumerate(surface.vertex_colors):
+            colors[vertex] += [color + len(names) for color in own]
+        names += [f"{number}/{name}" for name in surface.colors]
+    first = surfaces[0]
+    return LabelledSurface(
+        "all", tuple(names), first.vertices, first.faces, tuple(map(tuple, colors))
+    )
+
+
+def reached(surface: LabelledSurface) -> np.ndarray:
+    return np.array([bool(own) for own in surface.vertex_colors])
+
+
+def covering(surfaces: Sequence[LabelledSurface], share: float) -> list[tuple[int, ...]]:
+    """The smallest sets of set-ups that reach a share of what all reach."""
+    areas = surfaces[0].vertex_areas
+    whole = areas[np.any([reached(one) for one in surfaces], axis=0)].sum()
+    for size in range(1, len(surfaces) + 1):
+        found = [
+            some
+            for some in combinations(range(len(surfaces)), size)
+            if areas[np.any([reached(surfaces[n]) for n in some], axis=0)].sum()
+            >= share * whole - 1e-9
+        ]
+        if found:
+            return found
+    raise AssertionError("all of them reach everything")
+
+
+def drawn_at_random(seed: int, count: int) -> list[LabelledSurface]:
+    """Set-ups on one mesh of 16 vertices, each of which reaches about half of it."""
+    found = [blobs(seed + n, size=4, colors=2, coverage=(0.3, 0.8)) for n in range(count)]
+    assert all(np.array_equal(one.vertices, found[0].vertices) for one in found)
+    return found
+
+
+@examples(20)
+@given(seed=st.integers(0, 10**6), count=st.integers(1, 4))
+def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int) -> None:
+    surfaces = drawn_at_random(seed, count)
+    assume(any(reached(one).any() for one in surfaces))
+    sets = covering(surfaces, 1.0)
+    graphs = [decomposition_of(together([surfaces[n] for n in some])).instance for some in sets]
+    assume(all(graph.most_live_loops < 2 for graph in graphs))
+    choice = choose(surfaces, 1.0, None, Options())
+    assert len(choice.set_ups) == choice.fewest_set_ups == len(sets[0])
+    assert choice.set_ups in sets
+    assert choice.covered_share == pytest.approx(1.0)
+    least = min(minimum(graph) for graph in graphs)
+    assert choice.solution.segments == least
+    assert choice.at_least_segments <= least
+    assert choice.proved == (choice.at_least_segments == least)
+
+
+@pytest.mark.second
+@examples(10)
+@given(seed=st.integers(0, 10**6), count=st.integers(1, 3), share=st.floats(0.3, 1.0))
+def test_a_share_is_covered_with_no_fewer_set_ups(seed: int, count: int, share: float) -> None:
+    """Fewer segments may be known to nobody, but what is called proved is the least."""
+    surfaces = drawn_at_random(seed, count)
+    assume(any(reached(one).any() for one in surfaces))
+    sets = covering(surfaces, share)
+    areas = surfaces[0].vertex_areas
+    whole = areas[np.any([reached(one) for one in surfaces], axis=0)].sum()
+    least = []
+    for some in sets:
+        found = decomposition_of(together([surfaces[n] for n in some]))
+        assume(found.instance.most_live_loops < 2 and len(found.instance.cells) < 10)
+        cell = np.array(found.vertex_cell)
+        inside = cell != OUTSIDE
+        weights = np.bincount(cell[inside], areas[inside], len(found.instance.cells))
+        fronts = front_by_subsets(found.instance, weights.tolist())
+        least.append(min(k for k, w in fronts.items() if w >= share * whole - 1e-9))
+    choice = choose(surfaces, share, None, Options())
+    assert len(choice.set_ups) == len(sets[0])
+    assert choice.covered_share >= share - 1e-9
+    assert choice.solution.segments >= min(least)
+    if choice.proved:
+        assert choice.solution.segments == min(least)
+
+
+@pytest.mark.second
+@examples(6)
+@given(seed=st.integers(0, 10**6), price=st.integers(1, 5))
+def test_a_change_over_has_its_price(seed: int, price: int) -> None:
+    surfaces = drawn_at_random(seed, 3)
+    assume(any(reached(one).any() for one in surfaces))
+    everything = np.any([reached(one) for one in surfaces], axis=0)
+    costs = []
+    for size in (1, 2, 3):
+        for some in combinations(range(3), size):
+            if (np.any([reached(surfaces[n]) for n in some], axis=0) == everything).all():
+                graph = decomposition_of(together([surfaces[n] for n in some])).instance
+                assume(graph.most_live_loops < 2)
+                costs.append(minimum(graph) - size + price * (size - 1))
+    choice = choose(surfaces, 1.0, float(price), Options())
+    used = len(choice.set_ups)
+    assert (choice.solution.segments or 0) - used + price * (used - 1) == min(costs)
+
+
+@pytest.fixture(scope="module")
+def found() -> cellcolor.ChosenSetUps:
+    return cellcolor.setups(shipped("wok_obstacle", 150), at=[TURNED])
+
+
+def test_the_part_turned_round_is_covered_whole(found: cellcolor.ChosenSetUps) -> None:
+    """What the obstacle hides from one side is reached from the other."""
+    answer = found.answer
+    assert answer.proved and len(answer.set_ups) == 2 and answer.change_overs == 1
+    assert answer.lift_offs == answer.segments - 2
+    assert answer.covered_share == 1.0 > answer.alone.covered_share
+    assert sum(one.covered_share for one in answer) == pytest.approx(1.0)
+    scene = shipped("wok_obstacle", 150)
+    for one, pose in zip(found.scenes, (None, TURNED), strict=True):
+        if pose is not None:
+            assert one.placement.rpy_rad == pose[3:]
+        alone = cellcolor.build(one)
+        assert len(alone.surface.vertices) == len(answer.surface.vertices)
+    assert len(found.scenes) == 2 and found.scenes[0].placement == scene.placement
+    areas, masks = answer.surface.vertex_areas, found.left_alone()
+    painted = [areas[~mask].sum() for mask in masks]
+    assert sum(painted) == pytest.approx(areas[reached(answer.surface)].sum())
+    assert cellcolor.check(answer.surface, answer.solution).valid
+
+
+@pytest.mark.second
+def test_each_set_up_is_driven_and_judged() -> None:
+    pytest.importorskip("ompl")
+    pytest.importorskip("toppra")
+    scene = shipped("square", 100)
+    x, y, z = scene.placement.position_m
+    found = cellcolor.setups(scene, at=[(x, y, z, 0, 0, pi / 2)])
+    planned = found.plan(spacing_m=0.05)
+    assert len(planned) == len(found.answer.set_ups)
+    assert all(one.verdict.valid for one in planned)
+    driven = sum(one.trajectory.lift_offs for one in planned)
+    assert driven == found.answer.lift_offs
+
+
+def test_what_cannot_be_set_up_is_refused_in_a_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    lines = tmp_path / "places.jsonl"
+    lines.write_text('{"position_m": [1, 2], "rpy_rad": [0, 0]}\n[]\n')
+    for wrong, said in (
+        (("--at", "1,2,3"), "--at: a place is six numbers"),
+        (("--at", "nan,0,0,0,0,0"), "at[0]: must be six numbers"),
+        (("--with", "half_pipe"), "half_pipe.toml: object: has"),
+        (("--places", lines), "places.jsonl: line 2"),
+        (("--change-over", "0.5"), "not in the range"),
+        (("--places", tmp_path / "none"), "No such file"),
+    ):
+        assert run("setups", "wok_obstacle", *wrong) == 2
+        said_in = capsys.readouterr().err
+        assert said in said_in and "Traceback" not in said_in
+    with pytest.raises(cellcolor.InputError, match="no set-up can be used"):
+        inside = shipped("wok_obstacle", 80).moved(position_m=(0, 0, 0))
+        cellcolor.setups(inside)
+    with pytest.raises(cellcolor.InputError, match="change_over"):
+        cellcolor.setups("wok_obstacle", change_over=float("nan"))
+
+
+def test_the_command_takes_what_place_prints(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = [
+        {"position_m": TURNED[:3], "rpy_rad": TURNED[3:], "refused": ""},
+        {"position_m": (0, 0, 0), "rpy_rad": (0, 0, 0), "refused": "stands in a link"},
+    ]
+    lines = tmp_path / "places.jsonl"
+    lines.write_text("".join(json.dumps(row) + "\n" for row in rows))
+    assert run("setups", "wok_obstacle", "--places", lines, "--json") == 0
+    (row,) = json_lines(capsys.readouterr().out)
+    assert (row["lift_offs"], row["segments"], row["candidates"]) == (0, 2, 2)
+    assert (row["covered_share"], row["proved_for_surface"]) == (1.0, True)
+    assert [one["rpy_rad"] for one in row["setups"]] == [[0, 0, 0], list(TURNED[3:])]
+    assert row["alone"]["segments"] == 3
