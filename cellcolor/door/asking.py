@@ -27,7 +27,7 @@ from cellcolor.solvers.interface import Options
 if TYPE_CHECKING:
     from cellcolor.arrays import Array
     from cellcolor.frontend import Scene
-    from cellcolor.pictures.report_page.content import Answered, Answers
+    from cellcolor.pictures.report_page.content import AnsweredScene, Answers
     from cellcolor.questions.explanation import Explanation
 
 __all__ = ["QUESTIONS", "asked_besides", "check_questions", "explain", "save_front", "tradeoff"]
@@ -153,7 +153,7 @@ def asked_besides(
     subject: Subject,
     deadline: Deadline,
     progress: Callable[[str], None] | None = None,
-) -> Answered:
+) -> AnsweredScene:
     """What a plan's page tells besides, as far as there is time.
 
     Args:
@@ -162,7 +162,7 @@ def asked_besides(
         deadline: when to be content with the answers so far.
         progress: told what is being done.
     """
-    from cellcolor.pictures.report_page.content import Answered
+    from cellcolor.pictures.report_page.content import AnsweredScene
 
     scene = subject.build().scene
     x, y = (float(value) for value in scene.placement.position_m[:2])
@@ -189,4 +189,4 @@ def asked_besides(
             answers.append(chosen.answer)
     except OutOfTime:
         pass  # the page is about the plan, and has what there is
-    return Answered(subject.surface, subject.decomposition, tuple(answers))
+    return AnsweredScene(subject.surface, subject.decomposition, tuple(answers))

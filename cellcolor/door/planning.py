@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.stage_clock import StageClock
-    from cellcolor.pictures.report_page.content import Answered
+    from cellcolor.pictures.report_page.content import AnsweredScene
     from cellcolor.tool_paths.measures import PathMeasures
 
 __all__ = ["PlannedScene", "plan"]
@@ -64,7 +64,7 @@ class PlannedScene:
     trajectory: Trajectory
     verdict: TrajectoryVerdict
     seconds: Mapping[str, float]
-    answered: Answered | None = None
+    answered: AnsweredScene | None = None
 
     @property
     def built(self) -> BuildResult:

@@ -60,7 +60,7 @@ class Nearby:
         The weights of all pairs of vertices that a curve separates add up to about its length.
         For vertices that are spread evenly, with the two rings a disc of radius R, the products of
         the areas of two vertices, divided by their distance, add up to R² for each meter of the
-        curve. So each product is divided by R², the disc as large as :data:`_RINGS` vertices.
+        curve. So each product is divided by R², the disc as large as ``_RINGS`` vertices.
         """
         if vertex not in self._known:
             count = len(self.areas)

@@ -18,7 +18,7 @@ from browser import DESKTOP, opened
 from stand_in import stand_in
 
 import cellcolor
-from cellcolor.pictures.report_page.content import Answered, MotionReport
+from cellcolor.pictures.report_page.content import AnsweredScene, MotionReport
 from cellcolor.pictures.report_page.page import render_page
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from cellcolor.questions.placements import PlacedMinimum, Placements
@@ -38,7 +38,7 @@ def page(*answers: object) -> str:
         made.trajectory,
         made.measures,
         made.verdict,
-        answered=Answered(made.built.surface, subject.decomposition, answers),
+        answered=AnsweredScene(made.built.surface, subject.decomposition, answers),
     )
     return render_page(report).decode()
 

@@ -11,7 +11,7 @@ from cellcolor.decomposition import Decomposition
 from cellcolor.pictures.by_cell_and_color import bare_classes, bare_labels, neighboring, shares
 from cellcolor.pictures.mesh_picture import VertexClass
 from cellcolor.pictures.palette import assign
-from cellcolor.pictures.report_page.content import Answered, Answers, Card
+from cellcolor.pictures.report_page.content import AnsweredScene, Answers, Card
 from cellcolor.pictures.report_page.surface_modes import SurfaceMode
 from cellcolor.questions.explanation import Explanation
 from cellcolor.questions.front import Front, FrontPoint
@@ -24,7 +24,7 @@ _LEFT_OUT, _DIVIDED = "#CC3311", "#666666"
 _MOST_PLACES = 5
 
 
-def answer_cards(answered: Answered) -> list[Card]:
+def answer_cards(answered: AnsweredScene) -> list[Card]:
     """A card for each answer."""
     return [_card(answer) for answer in answered.answers]
 
@@ -150,7 +150,7 @@ def _number(lift_offs: int | None) -> str:
     return "none found" if lift_offs is None else str(lift_offs)
 
 
-def answer_modes(answered: Answered) -> list[SurfaceMode]:
+def answer_modes(answered: AnsweredScene) -> list[SurfaceMode]:
     """What each point of a front covers, on the part."""
     return [
         _front_mode(answered.surface, answered.decomposition, point)

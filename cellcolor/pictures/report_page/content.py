@@ -18,7 +18,7 @@ from cellcolor.questions.placements import Placements
 from cellcolor.questions.set_ups import SetUpPlan
 from cellcolor.tool_paths.measures import PathMeasures
 
-__all__ = ["Answered", "Answers", "Card", "MotionReport"]
+__all__ = ["AnsweredScene", "Answers", "Card", "MotionReport"]
 
 
 @dataclass(frozen=True)
@@ -47,7 +47,7 @@ Answers = Front | Explanation | Placements | SetUpPlan
 
 
 @dataclass(frozen=True)
-class Answered:
+class AnsweredScene:
     """Answers, and what they are about.
 
     Attributes:
@@ -87,4 +87,4 @@ class MotionReport:
     verdict: TrajectoryVerdict | None
     paths: ToolPaths | None = None
     missing: str = ""
-    answered: Answered | None = None
+    answered: AnsweredScene | None = None
