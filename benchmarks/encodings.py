@@ -19,7 +19,8 @@ from functools import partial
 from itertools import product
 from pathlib import Path
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose

@@ -24,7 +24,7 @@ import numpy as np
 from exhaustive_fronts import front_by_subsets, front_by_vertices
 
 import cellcolor
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs
 from cellcolor.questions.tradeoff import front_of

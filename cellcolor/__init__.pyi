@@ -1,10 +1,10 @@
 # The public names for type checkers and editors; a test holds them to those of __init__.py.
 
 from cellcolor.data.bound import Bound as Bound
+from cellcolor.data.cells_and_edges import OUTSIDE as OUTSIDE
+from cellcolor.data.cells_and_edges import Cell as Cell
+from cellcolor.data.cells_and_edges import Edge as Edge
 from cellcolor.data.coverage import Coverage as Coverage
-from cellcolor.data.instance import OUTSIDE as OUTSIDE
-from cellcolor.data.instance import Cell as Cell
-from cellcolor.data.instance import Edge as Edge
 from cellcolor.data.instance import Instance as Instance
 from cellcolor.data.joint_plan import ContactPath as ContactPath
 from cellcolor.data.joint_plan import JointPlan as JointPlan

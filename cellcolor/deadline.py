@@ -11,8 +11,6 @@ from typing import TypeAlias, TypeVar
 
 from cellcolor.errors import CellcolorError, InputError
 
-__all__ = ["NEVER", "Deadline", "OutOfTime", "TimeLimit"]
-
 _Item = TypeVar("_Item")
 
 

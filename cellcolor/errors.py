@@ -2,17 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = [
-    "BeatenBound",
-    "CellcolorError",
-    "ContradictionError",
-    "Disagreement",
-    "InputError",
-    "RefusedResult",
-    "SolverMissing",
-    "TooLarge",
-]
-
 
 class CellcolorError(Exception):
     """Base of every error that cellcolor raises on purpose."""

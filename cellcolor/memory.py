@@ -15,8 +15,6 @@ from numpy.typing import NDArray
 
 from cellcolor.errors import TooLarge
 
-__all__ = ["at_once", "batches", "cached", "check_memory", "chunks", "machine_memory"]
-
 MEMORY = 64_000_000
 """Bytes that the temporaries of one step may take at a time, in each process. Steps that call
 others have theirs beside those of the others."""

@@ -15,8 +15,6 @@ from typing import Any
 
 from cellcolor.errors import InputError
 
-__all__ = ["find", "known_names", "load"]
-
 
 def known_names(own: Mapping[str, str], group: str) -> tuple[str, ...]:
     """All names, this package's own first; nothing is imported for that.

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterable
 from typing import Generic, TypeVar
 
-__all__ = ["UnionFind"]
-
 T = TypeVar("T", bound=Hashable)
 
 

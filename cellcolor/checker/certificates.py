@@ -20,8 +20,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 
-__all__ = ["BUDGET", "VERIFIERS", "BoundVerdict", "verify_bound"]
-
 BUDGET = 200_000
 """Choices that are tried before a certificate is given up; some seconds."""
 

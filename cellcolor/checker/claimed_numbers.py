@@ -14,8 +14,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 
-__all__ = ["claims", "number_problems"]
-
 
 def number_problems(instance: Instance, solution: Solution, segments: int | None) -> list[str]:
     """What is wrong with a solution's numbers, each naming its member.

@@ -12,8 +12,6 @@ from cellcolor.checker.groups import Groups
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = ["ColorRegion", "regions_of_cells", "regions_on_surface"]
-
 ColorRegion = tuple[int, int]
 """A color, and one place in the region that stands for it."""
 

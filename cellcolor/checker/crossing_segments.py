@@ -28,8 +28,6 @@ from cellcolor.checker.filled_surface import WORK, Domain, FilledSurface
 from cellcolor.checker.groups import Groups
 from cellcolor.data.instance import Instance
 
-__all__ = ["TwoRegions"]
-
 MOST_CIRCLES = 10
 """With more independent closed curves in a region nothing is concluded: for n of them 2^n sums have
 to be looked at."""

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from cellcolor.checker.groups import Groups
-from cellcolor.data.instance import OUTSIDE, Instance
-
-__all__ = ["WORK", "Domain", "FilledSurface"]
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 
 Corner = tuple[int, bool]
 """The corner before a dart, or after it."""

@@ -16,9 +16,8 @@ from collections.abc import Callable, Collection, Sequence
 from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.groups import Groups
 from cellcolor.checker.hubs_with_loops import most_links
-from cellcolor.data.instance import OUTSIDE, Instance
-
-__all__ = ["Hubs"]
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 
 
 class Hubs:

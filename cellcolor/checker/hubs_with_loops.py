@@ -14,8 +14,6 @@ from collections.abc import Callable, Sequence
 
 from cellcolor.checker.groups import Groups
 
-__all__ = ["most_links"]
-
 Corner = tuple[int, int]
 """The color of a dart, and that of the next dart of its loop."""
 

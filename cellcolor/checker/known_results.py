@@ -5,8 +5,6 @@ from __future__ import annotations
 from cellcolor.data.instance import Instance, KnownResult
 from cellcolor.data.solution import Solution
 
-__all__ = ["contradictions"]
-
 
 def contradictions(instance: Instance, solution: Solution) -> list[str]:
     """Where a solution that the checker has passed and ``known`` cannot both be right.

@@ -29,8 +29,6 @@ from cellcolor.checker.tangles import Tangled, cannot_be_drawn, is_connected
 from cellcolor.data.bounds.cells import CertifiedCells
 from cellcolor.data.bounds.parts import CertifiedPart, CertifiedParts, CertifiedTangle
 
-__all__ = ["verify_cells", "verify_parts"]
-
 
 def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
     """Verify that fewer color regions do not touch all of the cells.

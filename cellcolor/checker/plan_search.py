@@ -25,8 +25,6 @@ from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.groups import Groups
 from cellcolor.deadline import NEVER, Deadline
 
-__all__ = ["BudgetExceeded", "Conflict", "PlanSearch", "Tangle", "TangledSegment"]
-
 
 @dataclass(frozen=True, slots=True)
 class Conflict:

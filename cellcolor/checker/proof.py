@@ -9,8 +9,6 @@ from cellcolor.checker.plan_search import BudgetExceeded
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline
 
-__all__ = ["Proof", "Refused", "few"]
-
 _NAMED = 20
 
 

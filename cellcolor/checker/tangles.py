@@ -16,8 +16,6 @@ from cellcolor.checker.filled_surface import WORK, Domain, FilledSurface
 from cellcolor.checker.groups import Groups
 from cellcolor.data.instance import Instance
 
-__all__ = ["Area", "Tangled", "cannot_be_drawn", "is_connected"]
-
 Area = frozenset[int]
 """Cells that a segment's color connects."""
 

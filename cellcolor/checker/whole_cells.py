@@ -5,8 +5,6 @@ from __future__ import annotations
 from cellcolor.checker.groups import Groups
 from cellcolor.data.instance import Instance
 
-__all__ = ["segments_of_whole_cells"]
-
 _Node = tuple[int, int]
 """A cell, and one of its colors."""
 

@@ -34,8 +34,6 @@ from cellcolor.lab.runs.table import TableFile
 _LIBRARY = "library"
 """Stands before the families of the library's graphs (docs/library.md)."""
 
-__all__ = ["Request", "command_line", "run_solvers"]
-
 _SHOWN = 60
 """Instances that are listed at the end; more are for ``bench summary``."""
 

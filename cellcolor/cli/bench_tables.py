@@ -21,8 +21,6 @@ from cellcolor.lab.runs.summary import summary_of_runs, summary_of_timings
 from cellcolor.lab.runs.table import TableFile, header_of, read_table
 from cellcolor.lab.runs.timings import START_UP, Timing, start_up_timings
 
-__all__ = ["draw_plots", "measure_start_up", "print_summary"]
-
 _SMALL = "ring"
 """The shipped instance that the start-up is measured with."""
 

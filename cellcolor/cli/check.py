@@ -27,8 +27,6 @@ from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.questions.places import Place
 
-__all__ = ["Request", "check_files"]
-
 
 @dataclass(frozen=True)
 class Request:

@@ -15,8 +15,6 @@ from cellcolor.files.writing import is_folder_or_nothing
 if TYPE_CHECKING:
     from cellcolor.oracle import Improvement, Verdict
 
-__all__ = ["PlanDemands", "check_plan_file"]
-
 _LISTED = 100  # violations
 
 

@@ -11,8 +11,6 @@ from cellcolor.data.solution_verdict import CheckedBound, SolutionVerdict
 from cellcolor.data.wording import count
 from cellcolor.door.subject import Subject
 
-__all__ = ["check_solution_file"]
-
 
 def check_solution_file(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
     """The verdict on a solution's file.

@@ -23,8 +23,6 @@ from cellcolor.door.shipped import library
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
-__all__ = ["import_graph", "list_library", "say_better"]
-
 _INSTANCE = kind_of_format(instance_file.FORMAT)
 
 

@@ -14,8 +14,6 @@ from cellcolor.files.writing import Output, check_output, is_stream, kind_of_for
 if TYPE_CHECKING:
     from cellcolor.painting.paint import Painted
 
-__all__ = ["check_painted", "write_painted"]
-
 _SURFACE = kind_of_format(surface_file.FORMAT)
 _PLAN = kind_of_format(plan_file.FORMAT)
 _ENDING = ".surface.json"

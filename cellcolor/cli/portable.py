@@ -18,8 +18,6 @@ from cellcolor.files.writing import Output, check_output, kind_of_format, write
 from cellcolor.solvers.answers import OutsideAnswer, read_answer
 from cellcolor.solvers.portable import PORTABLE
 
-__all__ = ["answer_file", "export_file"]
-
 _SOLUTION = kind_of_format(solution_file.FORMAT)
 
 

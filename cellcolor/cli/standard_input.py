@@ -10,8 +10,6 @@ from pathlib import Path
 
 from cellcolor.errors import InputError
 
-__all__ = ["STANDARD_INPUT", "input_file", "name_of"]
-
 STANDARD_INPUT = "-"
 _NAME = "standard input"
 

@@ -14,18 +14,6 @@ from typing import Any, TextIO, cast
 
 from cellcolor.files.writing import is_standard_output
 
-__all__ = [
-    "Listener",
-    "apart_from",
-    "complain",
-    "guarded_streams",
-    "print_json",
-    "say",
-    "shortened",
-    "shown",
-    "unheard",
-]
-
 # Control and format characters, lone surrogates, separators of lines and paragraphs: a name with
 # them could move a terminal's cursor, recolor it, or turn the direction of what follows.
 _HIDDEN = ("Cc", "Cf", "Cs", "Zl", "Zp")

@@ -10,8 +10,6 @@ from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import count
 
-__all__ = ["say_plan", "say_solution", "say_trajectory"]
-
 _FAULTS = 3  # of each kind
 _VERTICES = 10
 _SOLVERS = {"cp-sat": "CP-SAT", "cp-sat-model": "CP-SAT"}  # what has proved their bounds

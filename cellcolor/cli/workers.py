@@ -10,8 +10,6 @@ from cellcolor.door.extras import extras_for
 from cellcolor.lab.executors.local import LocalWorkers
 from cellcolor.lab.executors.work import Workers
 
-__all__ = ["progress_bar", "workers_for"]
-
 
 def workers_for(jobs: int, cluster: str | None) -> Workers:
     """Processes of this machine, or those of a Dask cluster.

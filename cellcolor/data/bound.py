@@ -11,8 +11,6 @@ from pydantic import ConfigDict, NonNegativeInt
 from cellcolor.data.wording import count
 from cellcolor.files.validation import json_content, settle
 
-__all__ = ["Bound", "greatest"]
-
 Extent = Literal["surface", "strands"]
 """What a bound holds for: any division of the surface, or those with the solution's strands."""
 

@@ -20,8 +20,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.writing import SIDE_MARKER
 
-__all__ = ["VALID", "CandidateTable"]
-
 VALID = 0
 """The code of candidates that passed all tests, in every table."""
 

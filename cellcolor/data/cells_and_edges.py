@@ -15,8 +15,6 @@ from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
 
-__all__ = ["OUTSIDE", "Cell", "Edge", "check_color_names", "check_graph", "shared_colors"]
-
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 OUTSIDE = -1

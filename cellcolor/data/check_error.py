@@ -10,8 +10,6 @@ from pydantic import ConfigDict, TypeAdapter
 from cellcolor.files.documents import about_a_file, take_body, validate
 from cellcolor.files.validation import settle
 
-__all__ = ["FORMAT", "CheckError"]
-
 FORMAT = "cellcolor/check-error"
 
 

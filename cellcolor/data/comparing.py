@@ -7,8 +7,6 @@ from typing import Any
 
 import numpy as np
 
-__all__ = ["same_members"]
-
 
 def same_members(one: Any, other: Any) -> bool:
     """Whether two dataclasses of one type hold the same; NaN in an array equals NaN."""

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import overload
 
-__all__ = ["DartName", "Strand", "strand_of", "twin"]
-
 DartName = int | tuple[int, int]
 """A dart ``±e``, or ``(±e, strand)`` where an edge or a seam has several parallel strands, which
 are numbered from 1 along ``+e``."""

@@ -19,8 +19,6 @@ from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 from cellcolor.files.paths import path_of
 
-__all__ = ["parse_correction", "read_imcgs"]
-
 _NUMBER = re.compile(r"[+-]?[0-9]{1,9}")
 _CORRECTION = re.compile(r"([0-9]{1,9})=(-1|[0-9]{1,9}),(-1|[0-9]{1,9})")
 

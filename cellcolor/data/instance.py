@@ -28,16 +28,6 @@ from cellcolor.files.validation import json_content, settle
 
 if TYPE_CHECKING:
     import cellcolor
-__all__ = [
-    "FORMAT",
-    "OUTSIDE",
-    "Cell",
-    "Edge",
-    "Instance",
-    "KnownResult",
-    "KnownResults",
-    "SurfaceReference",
-]
 
 FORMAT = "cellcolor/instance"
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)

@@ -14,8 +14,6 @@ from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 
-__all__ = ["ContactPath", "JointPlan"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class JointPlan:

@@ -17,16 +17,6 @@ from cellcolor.errors import InputError
 from cellcolor.files.documents import dump_lines, read_as, take_body, validate
 from cellcolor.files.validation import settle
 
-__all__ = [
-    "FORMAT",
-    "KnownRange",
-    "LibraryEntry",
-    "LibraryIndex",
-    "LowerBound",
-    "OutsideFile",
-    "UpperBound",
-]
-
 FORMAT = "cellcolor/library"
 _WHERE: dict[SearchSpace, str] = {
     "paper": "search space paper",

@@ -10,8 +10,6 @@ from pydantic import ConfigDict, Field, TypeAdapter
 from cellcolor.files.documents import about_a_file, take_body, validate
 from cellcolor.files.validation import settle
 
-__all__ = ["FORMAT", "PlanImprovement", "PlanVerdict", "PlanViolation", "SegmentRange"]
-
 FORMAT = "cellcolor/plan-verdict"
 
 _STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)

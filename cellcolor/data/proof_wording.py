@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
     from cellcolor.data.solution import Solution
 
-__all__ = ["in_words", "reason_of", "witness_in_words"]
-
 
 def in_words(solution: Solution, reason: str | None = None) -> str:
     """Segments, lift-offs and proof, like ``2 segments, 1 lift-off, optimal: proved for …``.

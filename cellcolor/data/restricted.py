@@ -8,10 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Mask
-from cellcolor.data.instance import OUTSIDE, Edge, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
-
-__all__ = ["without_cells", "without_vertices"]
 
 
 def without_cells(instance: Instance, left_out: Collection[int]) -> tuple[Instance, list[int]]:

@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from cellcolor.errors import InputError
 
-__all__ = ["integers", "numbered_rows", "numbers", "rows_of", "rows_of_three", "truths"]
-
 
 def rows_of(content: Any, width: int, member: str) -> NDArray[np.float64]:
     """An array (k, width) of finite float64.

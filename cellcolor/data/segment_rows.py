@@ -8,8 +8,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.shares import Range, Shares, percent
 from cellcolor.data.solution import Solution
 
-__all__ = ["BASES", "SegmentRow", "segment_rows"]
-
 _CELLS_SHOWN = 12
 
 BASES = {"surface": "share of surface", "cells": "share of area", "number": "share of cells"}

@@ -8,8 +8,6 @@ from typing import Literal
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 
-__all__ = ["GIVEN_UP", "UNREACHABLE", "Range", "Shares", "percent", "shares_of"]
-
 UNREACHABLE = "unreachable"
 GIVEN_UP = "given up"
 

@@ -22,8 +22,6 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
 
-__all__ = ["TrajectoryTable", "read_trajectory_csv"]
-
 _POSE = ("x", "y", "z", "nx", "ny", "nz")
 _STATED = ("repeated", "unplanned", "extra_lift_off")
 _OTHERS = ("time_s", "segment", "contact", *_POSE, *_STATED)

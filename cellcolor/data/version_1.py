@@ -8,8 +8,6 @@ from typing import Any
 
 from cellcolor.files.documents import dump_lines
 
-__all__ = ["fingerprint_of_version_1"]
-
 
 def fingerprint_of_version_1(body: dict[str, Any]) -> str:
     """SHA-256 of the text that was written for an instance when there was only version 1."""

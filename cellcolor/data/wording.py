@@ -5,15 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-__all__ = [
-    "count",
-    "in_meters",
-    "listed",
-    "looks_like_degrees",
-    "looks_like_millimeters",
-    "span",
-]
-
 
 def count(number: int, thing: str, things: str | None = None) -> str:
     """``1 segment``, ``2 segments``; the plural has an s unless another one is given."""

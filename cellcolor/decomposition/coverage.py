@@ -7,8 +7,6 @@ import numpy as np
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = ["coverage_of"]
-
 
 def coverage_of(surface: LabelledSurface) -> Coverage | None:
     """How much of a surface is unreachable or given up; None if it has no area at all."""

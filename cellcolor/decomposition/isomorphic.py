@@ -7,13 +7,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 
 if TYPE_CHECKING:
     import networkx as nx
-
-__all__ = ["isomorphic", "without_short_edges"]
 
 _Node = tuple[str, int] | tuple[str, int, int]
 

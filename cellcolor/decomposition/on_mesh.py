@@ -7,12 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve
 from cellcolor.decomposition.coverage import coverage_of
-
-__all__ = ["Decomposition", "locate"]
 
 
 @dataclass(frozen=True, slots=True)

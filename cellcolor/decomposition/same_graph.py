@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Mapping, Sequence
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, ClosedMesh
 from cellcolor.decomposition.cells import loops_of
-
-__all__ = ["wrong_cell"]
 
 _Side = tuple[int, int, tuple[int, ...]]
 """What a dart is besides its number: its cell, the cell across, the joinable colors."""

@@ -30,8 +30,6 @@ if TYPE_CHECKING:
     from cellcolor.pictures.report_page.content import AnsweredScene, Answers
     from cellcolor.questions.explanation import Explanation
 
-__all__ = ["QUESTIONS", "asked_besides", "check_questions", "explain", "save_front", "tradeoff"]
-
 QUESTIONS = ("tradeoff", "explain", "place", "setups")
 """What a plan's page can tell besides."""
 

@@ -19,8 +19,6 @@ from cellcolor.data.trajectory_csv import TrajectoryTable, read_trajectory_csv
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
 
-__all__ = ["ReadTrajectory", "color_numbers", "format_of_claim", "read_claim", "read_trajectory"]
-
 ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
 """A trajectory, or a table that a scene's arm has to complete."""
 

@@ -27,8 +27,6 @@ from cellcolor.questions.placements import PlacedMinimum
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
 
-__all__ = ["ComparedArm", "Comparison", "compare"]
-
 _FARTHER, _ASIDE, _HIGHER = (0.4, 0.8), (-0.3, 0.3), (0.0, 0.5)
 """Where a part may be put by default, as shares of the arm's reach: its middle before and beside
 the robot, and its lowest point above the ground."""

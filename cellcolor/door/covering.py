@@ -20,8 +20,6 @@ from cellcolor.painting.paint import Painted
 if TYPE_CHECKING:
     from cellcolor.tool_paths.cover import Covered
 
-__all__ = ["cover"]
-
 
 def cover(
     surface: LabelledSurface | Painted | str | PathLike[str],

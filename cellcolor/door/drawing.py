@@ -27,8 +27,6 @@ if TYPE_CHECKING:
     from cellcolor.checker.certificates import BoundVerdict
     from cellcolor.pictures.interface import Drawn, Picture, Source
 
-__all__ = ["Drawing", "View", "draw", "kind_of_picture", "kind_of_plot", "picture_of"]
-
 _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
 

@@ -22,8 +22,6 @@ from cellcolor.oracle.joint_verdicts import JointViolation
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult
 
-__all__ = ["AnyPath", "PathColors", "colors_of_joints", "colors_of_path"]
-
 AnyPath: TypeAlias = ContactPath | Trajectory | TrajectoryTable
 """A tool path with its joints."""
 

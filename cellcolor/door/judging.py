@@ -27,8 +27,6 @@ from cellcolor.door.subject import Solvable, Subject, open_subject
 from cellcolor.oracle import ProvenRange, Verdict, prove
 from cellcolor.questions.places import Place
 
-__all__ = ["check", "judge", "judge_trajectory", "proven_range"]
-
 
 @overload
 def check(

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.data.restricted import without_cells, without_vertices
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
@@ -19,8 +20,6 @@ from cellcolor.solvers.interface import Options
 if TYPE_CHECKING:
     from cellcolor.arrays import Array, Mask
     from cellcolor.data.surface import LabelledSurface
-
-__all__ = ["Wanted", "front_on", "left_alone", "rest_of"]
 
 _FOR_FRONT = 0.5  # of the time that is left
 

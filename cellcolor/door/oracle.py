@@ -35,8 +35,6 @@ from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.oracle.proof_cache import ProofCache
 from cellcolor.painting.paint import paint
 
-__all__ = ["AnyPlan", "KeepingOracle", "Oracle"]
-
 AnyPlan: TypeAlias = (
     Plan
     | Solution

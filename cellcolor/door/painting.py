@@ -14,8 +14,6 @@ from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted
 from cellcolor.painting.paint import paint as paint_solution
 
-__all__ = ["paint"]
-
 
 def paint(
     source: Solvable,

@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from cellcolor.frontend.parts.inspected import Inspection
     from cellcolor.frontend.parts.repaired import RepairedPart
 
-__all__ = ["draw_inspection", "inspect", "repair"]
-
 Telling = Callable[[str], None]
 
 

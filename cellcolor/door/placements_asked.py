@@ -24,8 +24,6 @@ from cellcolor.version import __version__
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
 
-__all__ = ["AskedPlacements", "PlacementRow", "PlacementTable"]
-
 _BATCH = 32  # placements a process; reading the scene takes as long as one or two of them
 _ATTEMPTS = 2  # at placements whose process broke down
 _ENDING = 10.0  # s that a process may take beyond its time

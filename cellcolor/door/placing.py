@@ -23,8 +23,6 @@ from cellcolor.questions.placements import Leeway, PlacedMinimum, PlacementMap, 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
 
-__all__ = ["place", "save_map"]
-
 Range = tuple[float, float]
 
 _CLOSER = (0.3, 0.15, 0.08, 0.04, 0.02)

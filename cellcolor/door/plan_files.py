@@ -34,8 +34,6 @@ from cellcolor.files.writing import (
 )
 from cellcolor.painting.paint import Painted
 
-__all__ = ["KINDS", "check_folder", "files_of_motion", "files_so_far", "make_folder", "save"]
-
 _SIDE, _SURFACE = "instance.reasons.npz", "instance.surface.json"
 
 KINDS: dict[str, FileKind] = {

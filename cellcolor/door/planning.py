@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from cellcolor.pictures.report_page.content import AnsweredScene
     from cellcolor.tool_paths.measures import PathMeasures
 
-__all__ = ["PlannedScene", "plan"]
-
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "potpourri3d", "ompl", "toppra")
 _FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
 

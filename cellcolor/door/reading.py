@@ -32,8 +32,6 @@ from cellcolor.files.documents import parse_first_object, read_text
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene, Setup
 
-__all__ = ["read"]
-
 _Value: TypeAlias = (
     LabelledSurface
     | Instance

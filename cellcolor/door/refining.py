@@ -6,8 +6,6 @@ from cellcolor.door.drawing import Drawing
 from cellcolor.door.result import Result
 from cellcolor.errors import InputError
 
-__all__ = ["draw_steps"]
-
 
 def draw_steps(result: Result) -> Drawing:
     """The meshes that a result's ``refinement`` went through, side by side.

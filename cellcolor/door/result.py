@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from cellcolor.door.drawing import Drawing
     from cellcolor.questions.refinement import Refinement
 
-__all__ = ["Result"]
-
 
 @dataclass(frozen=True, repr=False)
 class Result:

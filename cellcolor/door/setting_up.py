@@ -23,8 +23,6 @@ if TYPE_CHECKING:
     from cellcolor.door.planning import PlannedScene
     from cellcolor.frontend import Scene
 
-__all__ = ["ChosenSetUps", "setups"]
-
 _FOR_BUILDING = 0.6  # of the time that is left
 
 

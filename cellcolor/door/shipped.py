@@ -15,8 +15,6 @@ from cellcolor.files.shipped import shipped_folder
 if TYPE_CHECKING:
     from cellcolor.data.library_index import LibraryIndex
 
-__all__ = ["Library", "find_claim", "find_file", "index_file", "library"]
-
 # Of several files of one name the first one's kind is meant: a scene leads to all the others.
 _ENDINGS = (".toml", ".json", ".surface.json")
 _SOLUTION = ".solution.json"

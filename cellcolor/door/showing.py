@@ -12,8 +12,6 @@ from cellcolor.door.subject import Solvable, Subject, open_subject
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 
-__all__ = ["show"]
-
 
 def show(
     source: Solvable | Result,

@@ -32,9 +32,6 @@ if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
     from cellcolor.questions.refinement import Refinement
 
-__all__ = ["build", "decompose", "solve", "start_from"]
-
-
 _RAW_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
 
 

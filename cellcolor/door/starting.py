@@ -31,8 +31,6 @@ if TYPE_CHECKING:
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.setup import Setup
 
-__all__ = ["FoundArm", "Started", "arm_of", "best_place", "new", "part_keys_of"]
-
 _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
 _FAMILIES = ("ur", "eaik")
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "ompl")

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["MARK", "SCENE", "SETUP", "TOOL"]
-
 MARK = "# begun by cellcolor new"
 
 TOOL = """<!-- begun by cellcolor new: a polisher on the axis of the last joint, 100 mm long -->

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, TypeAlias, Union
 from cellcolor.data import instance as instance_file
 from cellcolor.data import surface as surface_file
 from cellcolor.data.candidate_table import CandidateTable
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of, locate
@@ -25,8 +26,6 @@ from cellcolor.files.documents import read_document
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
-
-__all__ = ["Solvable", "Subject", "build_scene", "is_scene", "open_subject", "read_graph"]
 
 Solvable: TypeAlias = Union[
     str, "PathLike[str]", "Scene", "BuildResult", LabelledSurface, Instance, "Subject"

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from cellcolor.painting.paint import Painted
     from cellcolor.tool_paths.measures import PathMeasures
 
-__all__ = ["NothingCovered", "PlanOutOfTime", "UnfinishedPlan"]
-
 
 @dataclass(frozen=True, repr=False, eq=False)
 class UnfinishedPlan:

@@ -7,8 +7,6 @@ from importlib.metadata import PackageNotFoundError, version
 
 from cellcolor.lab.machine import this_machine
 
-__all__ = ["DISTRIBUTIONS", "show_versions"]
-
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
     *("pin", "python-fcl", "scipy", "trimesh", "EAIK", "ompl", "potpourri3d", "toppra"),

@@ -11,8 +11,6 @@ from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.files.writing import FileKind
 
-__all__ = ["Export", "PlannedMotion"]
-
 
 @dataclass(frozen=True)
 class PlannedMotion:

@@ -11,8 +11,6 @@ import numpy as np
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.files.writing import FileKind
 
-__all__ = ["KIND", "joints_csv"]
-
 _COLUMNS = ("time_s", "segment", "contact", "x", "y", "z", "nx", "ny", "nz")
 _STATED = ("repeated", "unplanned", "extra_lift_off")
 

@@ -18,8 +18,6 @@ from cellcolor.errors import InputError
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.files.writing import FileKind
 
-__all__ = ["KIND", "joint_trajectory_yaml"]
-
 _MARK = "# cellcolor: trajectory_msgs/msg/JointTrajectory, rad, rad/s, s\n"
 _NANO = 1_000_000_000
 

@@ -14,8 +14,6 @@ import numpy as np
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.files.writing import FileKind
 
-__all__ = ["GLB", "PLY", "glb", "ply"]
-
 _MARK = "cellcolor/painted-mesh"
 _BARE = "#DDDDDD"  # of vertices without a color, light grey as in the pictures
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from cellcolor.exports import joint_table, joint_trajectory, painted_mesh, tool_poses
 from cellcolor.exports.interface import Export
 
-__all__ = ["EXPORTS"]
-
 EXPORTS = {
     "joints.csv": Export(joint_table.KIND, joint_table.joints_csv),
     "tool_paths.yaml": Export(tool_poses.KIND, tool_poses.tool_paths_yaml),

@@ -17,8 +17,6 @@ from cellcolor.data.tool_paths import ToolPath
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.files.writing import FileKind
 
-__all__ = ["KIND", "tool_paths_yaml"]
-
 _MARK = "# cellcolor: tool paths, a list of paths for each segment, poses in m\n"
 
 KIND = FileKind("a file of tool paths written by cellcolor", re.compile(re.escape(_MARK).encode()))

@@ -6,8 +6,6 @@ import hashlib
 import json
 from typing import Any
 
-__all__ = ["sha256_of"]
-
 
 def sha256_of(content: Any) -> str:
     """The fingerprint of JSON content of lists, objects, integers and text.

@@ -7,8 +7,6 @@ from pathlib import Path
 
 from cellcolor.errors import InputError
 
-__all__ = ["path_of"]
-
 
 def path_of(name: str | PathLike[str]) -> Path:
     """The path that a file's name stands for.

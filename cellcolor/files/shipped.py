@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-__all__ = ["shipped_folder"]
-
 
 def shipped_folder() -> Path:
     """The folder that has ``instances`` and ``models``."""

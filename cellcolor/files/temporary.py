@@ -17,8 +17,6 @@ from types import FrameType
 if sys.platform != "win32":
     import fcntl
 
-__all__ = ["Temporary", "remove_strays", "undisturbed"]
-
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 _TEMPORARY = re.compile(r"\.cellcolor-[0-9a-f]{16}\.tmp")
 

@@ -15,8 +15,6 @@ from pydantic.fields import FieldInfo
 from cellcolor.errors import InputError
 from cellcolor.files.documents import field_name, first_fault
 
-__all__ = ["json_content", "plain", "settle", "validate_python"]
-
 T = TypeVar("T")
 
 _STRICT = ConfigDict(strict=True, allow_inf_nan=False)

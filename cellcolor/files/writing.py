@@ -13,22 +13,6 @@ from pathlib import Path
 from cellcolor.errors import InputError
 from cellcolor.files.temporary import Temporary, remove_strays, undisturbed
 
-__all__ = [
-    "HTML",
-    "PNG",
-    "SIDE_FILE",
-    "SVG",
-    "FileKind",
-    "Output",
-    "check_output",
-    "is_folder",
-    "is_folder_or_nothing",
-    "is_standard_output",
-    "is_stream",
-    "kind_of_format",
-    "write",
-]
-
 MARKER = "cellcolor/picture"
 """The mark of every picture of ours: the ``generator`` of an HTML page, the ``Creator`` of a PNG or
 SVG file. It tells pictures that may be overwritten from those of other programs."""

@@ -35,8 +35,6 @@ from cellcolor.version import __version__
 if TYPE_CHECKING:
     import cellcolor
 
-__all__ = ["BuildResult", "build_surface", "labelled", "result_of"]
-
 _INJECTIVE = (
     "solutions have no names and are distinguished by continuity; a color with two configurations "
     "on one vertex: none found on this part"

@@ -19,8 +19,6 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Judged, Links, Stages, colored_stages, judged_in_place
 
-__all__ = ["OFF", "judged", "run_stages"]
-
 OFF = "tolerance"
 """The reason of a candidate that is valid where the part should stand and not wherever it may."""
 

@@ -19,8 +19,6 @@ from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Judged, Links, Stages
 
-__all__ = ["with_finer_borders"]
-
 _WITH_SLIVERS = 4  # times as long are mesh edges at borders that the sliver policy takes away
 
 

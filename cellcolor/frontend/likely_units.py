@@ -18,8 +18,6 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Motion, Setup
 
-__all__ = ["check_motion", "check_part", "check_setup", "notes_on_units"]
-
 _REACHES = 20  # a wing of 10 m is a part; what is larger than this, or as far away, is none
 _PLAUSIBLE = 0.2  # of the reach: a tool of that radius is a large one
 

@@ -18,8 +18,6 @@ from cellcolor.frontend.reach.sheets import Linking, Sheets, edges_at_once, shee
 from cellcolor.frontend.reach.tracking import Solutions, Tracker
 from cellcolor.frontend.reach.validity import NO_SOLUTION, Candidates
 
-__all__ = ["Nameless", "arranged_in_sheets"]
-
 
 @dataclass(frozen=True)
 class Nameless:

@@ -36,8 +36,6 @@ from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points
 from cellcolor.frontend.tables import in_file
 
-__all__ = ["PreparedPart", "PreparedScene", "prepare"]
-
 
 @dataclass(frozen=True, eq=False)
 class PreparedPart:

@@ -21,8 +21,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-__all__ = ["share_out", "shared"]
-
 _MOST = 16  # processes
 _working = False  # in a child, and while a process does its own share
 

@@ -15,8 +15,6 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.tables import Table
 from cellcolor.registered import find, load
 
-__all__ = ["Registry", "of_kind"]
-
 T = TypeVar("T")
 Kind = TypeVar("Kind", bound=Table)
 

@@ -21,22 +21,6 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.postures import Workplace
 from cellcolor.frontend.reach.validity import Judge
 
-__all__ = [
-    "AddedTest",
-    "Distance",
-    "GroundPlane",
-    "JointRange",
-    "LinkContact",
-    "ObstacleBody",
-    "PartBody",
-    "Relaxation",
-    "Threshold",
-    "ToolBody",
-    "Torques",
-    "relaxations_of",
-    "without",
-]
-
 
 class Relaxation(ABC):
     """One restriction of a scene, which can be left out or weakened.

@@ -16,8 +16,6 @@ from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.survey import Survey
 
-__all__ = ["BuildReport", "ColorReport", "make_report"]
-
 _REMEDIES = {
     "no solution": "move the part nearer to the robot, or turn it towards the tool",
     **{test.name: test.remedy for test in STANDARD_TESTS},

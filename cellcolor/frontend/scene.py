@@ -37,8 +37,6 @@ from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, in_file
 
-__all__ = ["Ground", "Scene"]
-
 _UPRIGHT = (0.0, 0.0, 1.0)
 _LEAST_RISE = 0.01  # of a normal of length 1; a steeper ground is a wall
 

@@ -27,21 +27,6 @@ from cellcolor.frontend.tables import (
     Vector,
 )
 
-__all__ = [
-    "Constraints",
-    "Continuity",
-    "Margins",
-    "MeshCollision",
-    "Motion",
-    "RobotFiles",
-    "Setup",
-    "Slivers",
-    "Task",
-    "Thresholds",
-    "Turn",
-]
-
-
 MeshCollision = Literal["hull", "exact", "capsules"]
 """What stands for a link's mesh: its convex hull, nothing but itself, or capsules around it."""
 _NEWER = (

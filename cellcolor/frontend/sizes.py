@@ -11,16 +11,6 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 
-__all__ = [
-    "MOST_VERTICES",
-    "check_faces",
-    "check_points",
-    "check_refinement",
-    "check_rounding",
-    "check_turns",
-    "check_vertices",
-]
-
 MOST_VERTICES = 250_000
 _MOST_POINTS = 20_000_000  # on all mesh edges; each is tested for up to eight branches
 _MOST_ON_AN_EDGE = 500_000  # they are tested together

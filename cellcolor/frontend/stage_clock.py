@@ -8,8 +8,6 @@ from contextlib import contextmanager
 
 from cellcolor.deadline import Deadline
 
-__all__ = ["Progress", "StageClock"]
-
 Progress = Callable[[str], None]
 """Told the name of each stage as it begins."""
 

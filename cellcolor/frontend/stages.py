@@ -37,17 +37,6 @@ from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.tables import in_file
 from cellcolor.memory import chunks
 
-__all__ = [
-    "TURN_NOT_DEFINED",
-    "Cleaned",
-    "Judged",
-    "Links",
-    "Stages",
-    "colored_stages",
-    "judged_again",
-    "judged_in_place",
-]
-
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""
 

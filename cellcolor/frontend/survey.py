@@ -15,8 +15,6 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["Survey", "survey"]
-
 _POINTS = 500  # of the surface that are looked at
 _SHORT = 1e-3  # by this part of its length a line of sight ends before the surface
 _THIN = 1e-7  # m; radius of a line of sight

@@ -30,22 +30,6 @@ from cellcolor.errors import InputError
 from cellcolor.files.documents import first_fault, read_text
 from cellcolor.files.paths import path_of
 
-__all__ = [
-    "IN_RADIANS",
-    "Angle",
-    "Angles",
-    "Coordinate",
-    "FileTable",
-    "JointAngle",
-    "Length",
-    "NotNegative",
-    "Position",
-    "Positive",
-    "Table",
-    "Vector",
-    "in_file",
-]
-
 Positive = Annotated[FiniteFloat, Field(gt=0)]
 NotNegative = Annotated[FiniteFloat, Field(ge=0)]
 Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]

@@ -29,18 +29,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 
-__all__ = [
-    "INDEX",
-    "SOLUTIONS",
-    "Origin",
-    "entry_of",
-    "graph_files",
-    "graph_of",
-    "problems",
-    "problems_of",
-    "solution_files",
-]
-
 INDEX = "index.json"
 """The index's name in the folder of the library."""
 SOLUTIONS = "solutions"

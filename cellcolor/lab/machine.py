@@ -13,8 +13,6 @@ from pathlib import Path
 from cellcolor.memory import machine_memory
 from cellcolor.version import __version__
 
-__all__ = ["Machine", "this_machine", "this_version"]
-
 
 @dataclass(frozen=True, slots=True)
 class Machine:

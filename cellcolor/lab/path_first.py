@@ -15,8 +15,6 @@ import numpy as np
 from cellcolor.arrays import Array, Mask
 from cellcolor.lab.raster import Raster
 
-__all__ = ["Stroke", "fewest_lift_offs", "fewest_strokes"]
-
 _FULL = 2 * np.pi
 
 

@@ -10,8 +10,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = ["Raster", "raster"]
-
 # A place on the mesh: on the mesh edge from the first vertex to the second, this part of the way.
 _Place = tuple[int, int, float]
 _STEP, _TURN = 0.0025, np.radians(2.0)  # m, rad; samples are not farther apart

@@ -12,8 +12,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["bisected_corners", "cut", "halved", "new_points", "with_longest_sides"]
-
 _Pieces = dict[tuple[bool, bool, bool], list[tuple[int, int, int]]]
 """By which of the sides ab, bc, ca are cut: the corners of the pieces. 0, 1, 2 are a, b, c, and 3,
 4, 5 the new points on ab, bc, ca. A diagonal goes from 7 to 6."""

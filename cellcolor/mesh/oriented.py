@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Index
 from cellcolor.errors import InputError
 
-__all__ = ["directed_edges"]
-
 
 def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[int, int], int]:
     """The third vertex of the triangle on the left of every directed mesh edge.

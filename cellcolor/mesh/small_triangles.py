@@ -11,8 +11,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["everywhere", "small_areas", "small_triangle_at", "small_triangles", "unit_everywhere"]
-
 
 def small_triangles(mesh: TriangleMesh) -> tuple[TriangleMesh, Index]:
     """The mesh of small triangles, and the edge (6 m,) of the mesh that each of them touches.

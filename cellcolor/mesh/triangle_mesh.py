@@ -16,8 +16,6 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
 
-__all__ = ["TriangleMesh", "grouped"]
-
 T = TypeVar("T", bound=NDArray[Any])
 
 

@@ -19,8 +19,6 @@ from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.timing import Speeds, timed
 from cellcolor.motion.transfers import Transfer
 
-__all__ = ["assembled"]
-
 
 @dataclass
 class _Rows:

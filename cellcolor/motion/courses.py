@@ -19,8 +19,6 @@ from cellcolor.motion.samples import Samples, even_places, sampled, with_normals
 from cellcolor.motion.small_triangles import JUMP
 from cellcolor.tool_paths.cover import Covered
 
-__all__ = ["Course", "Courses", "laid_out"]
-
 _ROUNDS = 3  # of paths laid out; what still fails on the last ones is cut out of them
 _FARTHEST = 0.4  # rad, m; of a joint from a sample to the next
 _HALVINGS = 6  # of a step in which one goes farther, or the tool bows

@@ -19,8 +19,6 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.smooth import follow_edges
 from cellcolor.motion.samples import Samples, angles_between
 
-__all__ = ["Followed", "bowed", "follow", "joint_space", "unwound"]
-
 _BOW = 0.3  # of the way between two samples, for the tip: where normals turn fast, steps are short
 _BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
 _ROUNDING = 1e-6  # m

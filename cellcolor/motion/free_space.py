@@ -7,14 +7,13 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward
-from cellcolor.frontend.arm.robot import Body, Robot, wider, wider_body
+from cellcolor.frontend.arm.robot import Robot, wider, wider_body
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.memory import cached
 from cellcolor.motion.following import joint_space
-
-__all__ = ["FreeSpace"]
 
 
 class FreeSpace:

@@ -13,8 +13,6 @@ from cellcolor.frontend.setup import Motion
 from cellcolor.frontend.tables import in_file
 from cellcolor.motion.free_space import FreeSpace
 
-__all__ = ["check_home", "free_near", "home_of"]
-
 _TRIED = 256  # configurations at each distance
 _FIRST, _FARTHER = (
     0.1,

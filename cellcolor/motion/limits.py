@@ -15,8 +15,6 @@ from cellcolor.frontend.setup import Motion
 from cellcolor.frontend.tables import in_file
 from cellcolor.motion.timing import Speeds
 
-__all__ = ["motion_of", "speeds_of"]
-
 
 def motion_of(prepared: PreparedScene) -> Motion:
     """The table of a setup that a motion needs.

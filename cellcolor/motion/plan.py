@@ -32,8 +32,6 @@ from cellcolor.tool_paths.cover import ASKED_FOR, Covered, check_spacing, cover
 from cellcolor.tool_paths.measures import PathMeasures, in_all
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
-__all__ = ["MotionPlan", "OnPaths", "plan_motion"]
-
 OnPaths = Callable[[ToolPaths, tuple[PathMeasures, ...]], None]
 """Given tool paths, and the measures of each."""
 

@@ -7,8 +7,6 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Mask
 
-__all__ = ["beside_itself", "stretches"]
-
 _BESIDE = 0.25  # spacings; passes nearer to each other than that leave the same trace
 _APART = 1.0  # spacings along the path, between places of different passes
 _FINE = 0.05  # spacings, about, between two of the points that are compared

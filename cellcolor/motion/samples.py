@@ -17,16 +17,6 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = [
-    "DISTANCE",
-    "TURN",
-    "Samples",
-    "angles_between",
-    "even_places",
-    "sampled",
-    "with_normals_of",
-]
-
 DISTANCE = 0.001  # m, at most from one sample to the next
 TURN = float(np.deg2rad(1.0))  # rad, the same for the normal
 _ROOM = 0.95  # of both, for rounding and for normals that are not a path's own

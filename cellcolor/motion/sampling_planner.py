@@ -14,8 +14,6 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 
-__all__ = ["sampled_way"]
-
 _BRANCH = 1.0  # rad, the longest new branch of a tree
 
 

@@ -28,8 +28,6 @@ from cellcolor.painting.paint import Painted, paint
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
-__all__ = ["ScenePainting", "color_costs", "paint_scene"]
-
 _TIMES = 4
 """So often is a surface solved at most; then what the scene refuses is only told."""
 _ROOMY = np.pi / 2

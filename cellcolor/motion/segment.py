@@ -18,8 +18,6 @@ from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
 from cellcolor.tool_paths.cover import Covered
 
-__all__ = ["Ground", "SegmentStrokes", "strokes_of"]
-
 Lay = Callable[[int, Collection[tuple[int, int]], Index], Covered]
 """The tool paths of a segment, given walls (mesh edges) and small triangles to leave out."""
 

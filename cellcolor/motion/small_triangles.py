@@ -21,14 +21,6 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import joint_space
 from cellcolor.union_find import UnionFind
 
-__all__ = [
-    "JUMP",
-    "CornerStates",
-    "SmallTriangles",
-    "corner_states",
-    "left_out_parts",
-]
-
 JUMP = "discontinuity"
 """The reason where configurations are valid and the branch jumps between them."""
 

@@ -12,8 +12,6 @@ from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.motion.following import Followed
 from cellcolor.motion.samples import Samples
 
-__all__ = ["Parting", "Stroke", "cut_where_full", "trimmed"]
-
 _SAME = 1e-9  # m; ends of a path that are nearer are one point
 
 

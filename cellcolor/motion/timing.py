@@ -17,8 +17,6 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.errors import RefusedResult
 
-__all__ = ["Speeds", "timed"]
-
 _STEP = 0.01  # of the path's parameter, per sample; TOPP-RA's tolerances suit such a scale
 _FASTEST = 10.0  # s^-1, of the parameter; where neither tool nor joints move
 _ROUNDS = 4  # of TOPP-RA; then the whole motion is stretched

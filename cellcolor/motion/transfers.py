@@ -21,8 +21,6 @@ from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.turns import Visit, chosen_turns
 
-__all__ = ["Transfer", "Transfers"]
-
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
 _COARSE = 0.04  # rad, between samples of a move that is only tried

@@ -11,8 +11,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.frontend.arm.joint_space import JointSpace
 
-__all__ = ["Visit", "chosen_turns"]
-
 _PER_JOINT = 3  # turns of one joint that are tried, those next to the middle of its limits
 _ASIDE = 0.01  # s per rad; of two ways as quick as each other that nearer to the middle is taken
 _UNKNOWN = 1000.0  # s; by so much longer a move counts that there was no time to ask about

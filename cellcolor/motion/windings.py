@@ -48,8 +48,6 @@ from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 
-__all__ = ["PartSteps", "Parts", "Walls", "parts_of", "walls_of"]
-
 _ROOTS = 12  # vertices that trees are grown from, one after the other
 _MARGIN = 0.02  # rad; what samples between corners of small triangles may reach beyond these
 _PER_JOINT = 3  # turns of one joint that are tried at a root

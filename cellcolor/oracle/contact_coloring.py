@@ -13,8 +13,6 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.vertex_contacts import VertexContacts
 
-__all__ = ["ContactColoring", "coloring_of"]
-
 
 @dataclass(frozen=True)
 class ContactColoring:

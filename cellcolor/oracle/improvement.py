@@ -14,8 +14,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.painting.paint import Painted
 
-__all__ = ["BetterPainting", "Improvement", "better_painting"]
-
 
 @dataclass(frozen=True)
 class BetterPainting:

@@ -8,8 +8,6 @@ from cellcolor.checker.vertex_plan import Violation
 from cellcolor.data.wording import count
 from cellcolor.oracle.verdict import Verdict
 
-__all__ = ["JointViolation", "PathVerdict"]
-
 _SHOWN = 3  # vertices that a sentence names
 
 

@@ -23,8 +23,6 @@ from cellcolor.files.fingerprint import sha256_of
 from cellcolor.oracle.ranges import Proof, ProvenRange
 from cellcolor.solvers.interface import STRANDS
 
-__all__ = ["ProofCache"]
-
 
 @dataclass(frozen=True)
 class ProofCache:

@@ -19,8 +19,6 @@ from cellcolor.files.validation import settle
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options
 
-__all__ = ["Proof", "ProvenRange", "prove"]
-
 
 @dataclass(frozen=True, slots=True)
 class ProvenRange:

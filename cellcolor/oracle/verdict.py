@@ -17,8 +17,6 @@ from cellcolor.oracle.ranges import ProvenRange
 if TYPE_CHECKING:
     import cellcolor
 
-__all__ = ["Verdict"]
-
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Verdict:

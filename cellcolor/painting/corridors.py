@@ -20,8 +20,6 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.painting.border_report import Corridor
 from cellcolor.painting.nearby import Nearby
 
-__all__ = ["Room", "within"]
-
 _FAR = 3
 """In tool radii: how far clearances are followed."""
 

@@ -12,8 +12,6 @@ from cellcolor.data.solution import CellDivision
 from cellcolor.decomposition.borders import Curve, Step
 from cellcolor.painting.refined import Refined
 
-__all__ = ["choose_gates", "steps_by_edge", "subcells_on_surface"]
-
 
 def subcells_on_surface(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
     """The sub-cells of a cell that have a place on its border.

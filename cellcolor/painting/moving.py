@@ -30,8 +30,6 @@ from cellcolor.painting.nearby import Nearby
 from cellcolor.painting.paint import Painted
 from cellcolor.painting.relabelling import Relabelling
 
-__all__ = ["border_length", "move_borders"]
-
 _ROUNDS = 12
 """So often are corridors widened, and borders shortened again."""
 

@@ -9,8 +9,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = ["Nearby"]
-
 _RINGS = 19
 """Vertices within two mesh edges of one in a regular mesh, itself among them."""
 

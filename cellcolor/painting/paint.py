@@ -11,9 +11,9 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.checker.cutting_paths import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.comparing import same_members
 from cellcolor.data.darts import Strand
-from cellcolor.data.instance import OUTSIDE
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
@@ -27,8 +27,6 @@ from cellcolor.painting.gates import choose_gates, steps_by_edge, subcells_on_su
 from cellcolor.painting.refined import Refined, interpolated, unrefined
 from cellcolor.painting.trees import TooNarrow, grow_trees
 from cellcolor.union_find import UnionFind
-
-__all__ = ["Painted", "paint"]
 
 
 @dataclass(frozen=True, repr=False, eq=False)

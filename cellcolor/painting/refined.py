@@ -20,8 +20,6 @@ from cellcolor.errors import TooLarge
 from cellcolor.mesh.dividing import halved
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["MOST_VERTICES", "Refined", "interpolated", "unrefined"]
-
 MOST_VERTICES = 250_000
 """No surface is refined beyond that, so that painting it stays within the memory that is promised
 (docs/painting.md has what was measured)."""

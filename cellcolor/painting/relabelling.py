@@ -10,8 +10,6 @@ from cellcolor.deadline import Deadline
 from cellcolor.painting.nearby import Nearby
 from cellcolor.union_find import UnionFind
 
-__all__ = ["Relabelling"]
-
 _LEAST = 1e-6
 """What a move has to gain, as a share of the mean mesh edge."""
 

@@ -20,8 +20,6 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Step
 from cellcolor.union_find import UnionFind
 
-__all__ = ["TooNarrow", "grow_trees"]
-
 _AT_A_WALL, _AT_A_PIECE = 10, 1000
 """What a way pays for a vertex there; elsewhere it pays 1. It makes long detours round a piece of
 another sub-cell, which has to be reached later, and short ones round other walls."""

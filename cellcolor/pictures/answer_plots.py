@@ -18,8 +18,6 @@ from cellcolor.pictures.palette import FAINT, GREY, INK, LINES
 from cellcolor.questions.front import Front
 from cellcolor.questions.placements import PlacedMinimum, PlacementMap
 
-__all__ = ["render_arms", "render_front", "render_map"]
-
 _UNITS = {"x": "m", "y": "m", "z": "m", "roll": "rad", "pitch": "rad", "yaw": "rad"}
 _LIFT_OFFS, _SHARE = "lift-offs", "share of the whole surface, %"
 

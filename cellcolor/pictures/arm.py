@@ -11,8 +11,9 @@ from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import BuildResult
+from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, forward
-from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.plane import HalfSpace
@@ -20,8 +21,6 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
-
-__all__ = ["ArmPicture", "arm_at", "body_mesh", "obstacle_mesh"]
 
 _AROUND = 20
 _ALONG = 10

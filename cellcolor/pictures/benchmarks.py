@@ -14,8 +14,6 @@ from cellcolor.data.plot import Plot
 from cellcolor.files.writing import MARKER
 from cellcolor.pictures.palette import GREY, INK, LINES
 
-__all__ = ["STYLE", "render_plot", "saved"]
-
 STYLE = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "cellcolor"}
 _DASHES = ("-", "--", ":", "-.")
 _MARKS = "os^vD<>P"

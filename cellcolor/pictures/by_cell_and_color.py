@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
@@ -13,18 +13,6 @@ from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, FAINT, GREY, assign
 from cellcolor.pictures.picture import Picture3D
-
-__all__ = [
-    "CellPicture",
-    "ColorPicture",
-    "bare_classes",
-    "bare_labels",
-    "by_cell",
-    "by_color",
-    "color_key",
-    "neighboring",
-    "shares",
-]
 
 
 class CellPicture:

@@ -15,8 +15,6 @@ from cellcolor.pictures.mesh_picture import SurfaceView, VertexClass, draw_surfa
 from cellcolor.pictures.palette import AREAS, WARNING, assign
 from cellcolor.pictures.picture import Picture3D
 
-__all__ = ["PlanPicture", "by_plan"]
-
 
 class PlanPicture:
     """The surface by the segments of a plan."""

@@ -13,8 +13,6 @@ from cellcolor.pictures.mesh_picture import SurfaceView, VertexClass, draw_surfa
 from cellcolor.pictures.palette import FAINT, REASONS
 from cellcolor.pictures.picture import Picture3D
 
-__all__ = ["ReasonPicture", "by_reason"]
-
 
 class ReasonPicture:
     """Why vertices are out of reach."""

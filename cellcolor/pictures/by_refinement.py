@@ -9,14 +9,12 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Mask
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.wording import count
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, FAINT, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
 from cellcolor.questions.refinement import RefinedStep, Refinement
-
-__all__ = ["draw_refinement"]
 
 _GAP = 0.15  # between two meshes, of the width of one
 _NEW = "cell without a counterpart in the step before"

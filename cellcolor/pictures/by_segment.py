@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.shares import percent, shares_of
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
@@ -21,8 +21,6 @@ from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, assign
 from cellcolor.pictures.picture import Picture3D
-
-__all__ = ["SegmentPicture", "by_solution"]
 
 _CUT = "#666666"
 

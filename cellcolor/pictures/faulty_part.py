@@ -11,8 +11,6 @@ from cellcolor.frontend.parts.inspected import Inspection
 from cellcolor.pictures.palette import FAINT
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
-__all__ = ["faulty_part"]
-
 _MOST = 60_000  # faces that are drawn of a part; of a larger one evenly so many
 _MOST_MARKS = 20_000  # of one kind
 _FILLS = ("#EE6677", "#AA3377", "#4477AA", "#228833", "#CCBB44")  # of faulty faces

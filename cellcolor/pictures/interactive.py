@@ -13,8 +13,6 @@ from cellcolor.files.writing import MARKER
 from cellcolor.pictures.palette import INK
 from cellcolor.pictures.picture import Layer, Picture2D, Picture3D, SpaceLines
 
-__all__ = ["render"]
-
 
 def render(picture: Picture2D | Picture3D) -> bytes:
     """The page; the same picture gives the same bytes."""

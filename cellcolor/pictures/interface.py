@@ -17,8 +17,6 @@ if TYPE_CHECKING:
     from cellcolor.decomposition import Decomposition
     from cellcolor.frontend import BuildResult
 
-__all__ = ["Drawn", "Given", "Picture", "Source"]
-
 Drawn: TypeAlias = Picture2D | Picture3D
 """What a picture consists of, before any library draws it."""
 

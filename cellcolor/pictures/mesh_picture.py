@@ -17,13 +17,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.pictures.palette import INK, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines, Text
 
-__all__ = [
-    "SurfaceView",
-    "VertexClass",
-    "draw_surface",
-    "mesh_picture_parts",
-]
-
 Labels = NDArray[np.int64]
 
 

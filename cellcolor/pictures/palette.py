@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Set
 
-__all__ = ["AREAS", "FAINT", "GREY", "INK", "LINES", "REASONS", "WARNING", "assign"]
-
 AREAS = (
     "#77AADD",
     "#EE8866",

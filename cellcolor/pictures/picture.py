@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 
-__all__ = ["Layer", "Outline", "Picture2D", "Picture3D", "PlaneLine", "SpaceLines", "Text"]
-
 
 @dataclass(frozen=True)
 class Layer:

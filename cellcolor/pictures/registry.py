@@ -10,8 +10,6 @@ from cellcolor.errors import InputError
 if TYPE_CHECKING:
     from cellcolor.pictures.interface import Picture
 
-__all__ = ["PICTURES", "make_picture"]
-
 PICTURES = {
     "arm": "cellcolor.pictures.arm:ArmPicture",
     "cells": "cellcolor.pictures.by_cell_and_color:CellPicture",

@@ -23,8 +23,6 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.palette import INK
 from cellcolor.pictures.picture import Layer, Picture2D, Picture3D
 
-__all__ = ["render"]
-
 _LIGHT = np.array([0.3, -0.5, 0.81])
 _SMALLEST = 3.5
 """Points; what is written in smaller letters is not read."""

@@ -6,10 +6,9 @@ import networkx as nx
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.pictures.palette import INK, LINES
-
-__all__ = ["thumbnail"]
 
 _SIZE = 160.0
 _MARGIN = 8.0

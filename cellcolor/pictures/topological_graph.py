@@ -12,15 +12,14 @@ import networkx as nx
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.data.instance import OUTSIDE, Cell, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.palette import INK, LINES
 from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
-
-__all__ = ["GraphPicture", "draw_graph", "places_on"]
 
 _DEAD = "dead edge"
 _POINTS_WIDE = 480.0

@@ -14,7 +14,7 @@ import numpy as np
 from cellcolor.arrays import Mask
 from cellcolor.data.bounds.kind import Shown
 from cellcolor.data.bounds.kinds import certificate_of
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
@@ -23,8 +23,6 @@ from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Picture3D
-
-__all__ = ["WhyNotFewerPicture"]
 
 _REST = "#F2F2F2"
 """What says nothing here but can be covered."""

@@ -19,7 +19,7 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.arrays import Mask
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.restricted import without_vertices
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
@@ -31,8 +31,6 @@ from cellcolor.solvers import checked
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.interface import PORTFOLIO, Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
-
-__all__ = ["Choice", "choose", "side_by_side"]
 
 _WHOLE = 2**40
 """What all vertices weigh together as integers, for CP-SAT: a share is told to 1e-12."""

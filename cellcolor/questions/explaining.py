@@ -30,8 +30,6 @@ from cellcolor.questions.explanation import BranchHere, Explanation, RelaxedMini
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
-__all__ = ["explained"]
-
 _HALVINGS = 4  # so an amount is known to a sixteenth of itself or better
 _SMALLEST = 512  # a share of the greatest amount that less is not asked about
 _LARGEST_SET = 3

@@ -8,8 +8,6 @@ from typing import Any
 
 from cellcolor.data.wording import count
 
-__all__ = ["BranchHere", "Explanation", "RelaxedMinimum"]
-
 
 @dataclass(frozen=True)
 class RelaxedMinimum:

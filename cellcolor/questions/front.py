@@ -11,8 +11,6 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 
-__all__ = ["Front", "FrontPoint"]
-
 _ROUNDING = 1e-9
 """Of a share: weights are sums of floating-point areas."""
 

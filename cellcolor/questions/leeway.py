@@ -12,8 +12,6 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.questions.placements import Pose
 
-__all__ = ["Displaced", "displaced"]
-
 _FITTED = 4  # times that a displacement is scaled; a turn moves points along arcs
 
 

@@ -15,8 +15,6 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
-__all__ = ["MostCovered", "most_covered"]
-
 
 @dataclass(frozen=True, slots=True)
 class MostCovered:

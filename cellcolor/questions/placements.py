@@ -8,8 +8,6 @@ from typing import Any
 
 from cellcolor.data.wording import count
 
-__all__ = ["VARIABLES", "Leeway", "PlacedMinimum", "PlacementMap", "Placements", "Pose"]
-
 VARIABLES = ("x", "y", "z", "roll", "pitch", "yaw")
 """Of a placement: the position in m, and extrinsic x, y, z angles in rad, as in a scene."""
 

@@ -14,8 +14,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
 
-__all__ = ["Place", "WorldBox", "chosen", "read_place", "read_weights"]
-
 
 @dataclass(frozen=True, slots=True)
 class WorldBox:

@@ -28,19 +28,6 @@ from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
-__all__ = [
-    "Ranges",
-    "around",
-    "check_ranges",
-    "coarse_scene",
-    "distance",
-    "middles",
-    "minima_at",
-    "pose_of",
-    "spread",
-    "stands_in",
-]
-
 Ranges = Mapping[str, tuple[float, float]]
 """From where to where each variable goes; those that are missing stay."""
 

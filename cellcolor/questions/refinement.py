@@ -10,8 +10,6 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 
-__all__ = ["ALIKE", "CROSSING", "RefinedStep", "Refinement"]
-
 ALIKE = 2
 """So many times in a row minimum and graph have to stay the same."""
 

@@ -27,8 +27,6 @@ from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.memory import check_memory
 from cellcolor.questions.refinement import CROSSING, RefinedStep, Refinement
 
-__all__ = ["refined_until_stable"]
-
 _GROWTH = 3  # of the vertices in a step, at least
 _BYTES = 16_000  # for each vertex of a build
 _KEY = "continuity.border_length_m"

@@ -11,8 +11,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.questions.placements import Pose
 
-__all__ = ["SetUp", "SetUpPlan"]
-
 
 @dataclass(frozen=True)
 class SetUp:

@@ -24,8 +24,6 @@ from cellcolor.questions.set_ups import SetUp, SetUpPlan
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
-__all__ = ["Candidates", "candidates_of", "plan_of"]
-
 
 @dataclass(frozen=True)
 class Candidates:

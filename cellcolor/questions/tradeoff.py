@@ -23,8 +23,6 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.model.leaving_out import least_left_out
 from cellcolor.solvers.interface import Options
 
-__all__ = ["few_that_cover", "front_of"]
-
 _WHOLE = 2**40
 """What all cells weigh together as integers, for CP-SAT: a share is told to 1e-12."""
 

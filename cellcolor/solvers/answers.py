@@ -14,8 +14,6 @@ from cellcolor.solvers.linear.coloring import Coloring
 from cellcolor.solvers.linear.reading import joined_and_linked, require_solution
 from cellcolor.solvers.seamed import Seamed
 
-__all__ = ["ANSWERS", "OutsideAnswer", "read_answer"]
-
 
 @dataclass(frozen=True, slots=True)
 class OutsideAnswer:

@@ -23,13 +23,6 @@ from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolve
 from cellcolor.solvers.registry import DEFAULT, make_solver
 from cellcolor.solvers.seamed import Seamed
 
-__all__ = [
-    "check_able",
-    "check_able_to_list",
-    "enumerate_schemes",
-    "solve",
-]
-
 FEW_STEPS = 20_000
 """Choices for each certificate of a result, some seconds; hardly any takes more than a few."""
 

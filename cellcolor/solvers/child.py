@@ -14,8 +14,6 @@ from threading import Thread
 from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError
 
-__all__ = ["Child"]
-
 _LOOKED_AFTER = 0.1
 """Seconds between two looks at the deadline. Python handles a signal, such as Ctrl-C, only then."""
 

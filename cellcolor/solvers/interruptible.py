@@ -11,8 +11,6 @@ from ortools.sat.python import cp_model
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.interface import PORTFOLIO
 
-__all__ = ["make_cp_solver", "make_portfolio", "solve_interruptibly"]
-
 FEW_WORKERS = 2
 """Up to how many workers search in strategies that we name, in turns. With more of them OR-Tools
 chooses; one or two would have its default strategy alone, which hardly ever proves a bound around

@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, number_segments
 
-__all__ = ["division_of_chains"]
-
 
 def division_of_chains(
     instance: Instance, color: Mapping[int, int], after: Mapping[int, int]

@@ -15,8 +15,6 @@ from cellcolor.solvers.linear.formats import mps, opb, wcnf
 from cellcolor.solvers.minizinc.data import minizinc_data
 from cellcolor.solvers.seamed import Seamed
 
-__all__ = ["PORTABLE", "Portable"]
-
 
 @dataclass(frozen=True, slots=True)
 class Portable:

@@ -18,16 +18,6 @@ from cellcolor.version import __version__
 if TYPE_CHECKING:
     from cellcolor.solvers.interface import Solver
 
-__all__ = [
-    "DEFAULT",
-    "GROUP",
-    "OWN_NAMES",
-    "REFERENCE",
-    "make_solver",
-    "solver_names",
-    "solver_version",
-]
-
 GROUP = "cellcolor.solvers"
 """The group of entry points."""
 

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.darts import DartName, Strand
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.errors import TooLarge
 from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
-
-__all__ = ["Seamed"]
 
 MOST_STRANDS = 10_000
 """The models grow with the square of the darts of a cell, so that none would have more."""

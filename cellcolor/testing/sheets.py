@@ -10,8 +10,6 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["Rectangle", "sheet"]
-
 Rectangle = tuple[int, int, int, int]
 """Column and row of a corner and of the opposite one; what lies beyond the sheet is cut off."""
 

@@ -13,8 +13,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.lab.families import planar_graph
 from cellcolor.testing.sheets import sheet
 
-__all__ = ["broken_plans", "instances", "labelled_surfaces", "valid_plans"]
-
 _SEEDS = st.integers(0, 2**31 - 1)
 
 

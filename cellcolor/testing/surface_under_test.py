@@ -16,8 +16,6 @@ from cellcolor.errors import CellcolorError, InputError
 from cellcolor.oracle import ProvenRange, Verdict
 from cellcolor.testing import PICTURES
 
-__all__ = ["SurfaceUnderTest", "surfaces_under_test"]
-
 _SHOWN = 3  # problems of a plan that is not valid
 
 

@@ -15,8 +15,6 @@ from cellcolor.tool_paths.level_lines import LevelLine, level_lines, slice_along
 from cellcolor.tool_paths.sweep import sweep_field
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["lay_back_and_forth"]
-
 _INSET = 0.5  # spacings: how far from the border lines end
 
 

@@ -12,8 +12,6 @@ from cellcolor.tool_paths.joined_loops import join_loops
 from cellcolor.tool_paths.level_lines import Sliced, level_lines, slice_along
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["FINEST", "lay_contours", "lay_loops"]
-
 FINEST = 0.5
 """Longest edge of the meshes that level lines are drawn on, in spacings."""
 _NARROWEST, _WIDEST = 0.85, 1.05  # between which spacings are made to fit, in wanted spacings

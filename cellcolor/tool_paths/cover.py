@@ -21,8 +21,6 @@ from cellcolor.tool_paths.region import Region, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.spurs import with_spurs
 
-__all__ = ["ASKED_FOR", "Covered", "check_spacing", "cover"]
-
 ASKED_FOR = "left out on request"
 """The cause of what is uncovered because it must not be entered."""
 

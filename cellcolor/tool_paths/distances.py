@@ -11,8 +11,6 @@ from scipy.sparse.csgraph import dijkstra
 from cellcolor.arrays import Array, Index
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["Ways", "off_border", "ways_from"]
-
 
 @dataclass(frozen=True, eq=False)
 class Ways:

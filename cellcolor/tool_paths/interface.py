@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from cellcolor.deadline import Deadline
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["Laid", "Pattern"]
-
 
 @dataclass(frozen=True, eq=False)
 class Laid:

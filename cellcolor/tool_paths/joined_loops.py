@@ -16,8 +16,6 @@ from cellcolor.tool_paths.distances import Ways, off_border, ways_from
 from cellcolor.tool_paths.triangles import Triangles
 from cellcolor.union_find import UnionFind
 
-__all__ = ["join_loops"]
-
 _MOST_CANDIDATES = 250  # bridges looked at for one door
 _MOST_TRIED = 2000  # pairs of them
 

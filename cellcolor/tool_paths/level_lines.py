@@ -9,8 +9,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
-__all__ = ["LevelLine", "Sliced", "level_lines", "slice_along"]
-
 _NEAR = 0.02  # of the distance between levels: vertices so near to a level are moved off it
 
 

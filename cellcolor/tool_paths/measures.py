@@ -12,8 +12,6 @@ from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["PathMeasures", "Uncovered", "measure"]
-
 _SAMPLES = 4000  # at which visits are counted, for one path
 _FINE = 8  # samples of the path on each spacing
 _SHARP = np.cos(np.radians(60.0))

@@ -22,8 +22,6 @@ from cellcolor.mesh.small_triangles import small_areas, small_triangles, unit_ev
 from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["Region", "regions_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class Region:

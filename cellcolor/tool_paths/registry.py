@@ -10,8 +10,6 @@ from cellcolor.registered import find, known_names, load
 if TYPE_CHECKING:
     from cellcolor.tool_paths.interface import Pattern
 
-__all__ = ["DEFAULT_PATTERN", "PATTERNS", "find_pattern", "pattern_names"]
-
 _GROUP = "cellcolor.patterns"
 DEFAULT_PATTERN = "contour"
 """The pattern that is used where none is named."""

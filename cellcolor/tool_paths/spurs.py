@@ -11,8 +11,6 @@ from cellcolor.tool_paths.distances import off_border, ways_from
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["with_spurs"]
-
 _FAR = 0.75  # spacings: what is farther from the path is reached by a spur
 _STOP = 0.5  # spacings: a spur ends so far before what it reaches
 _SMALL = 0.1  # spacings squared: smaller places are left as they are, unless they are far away

@@ -8,8 +8,6 @@ from cellcolor.arrays import Array
 from cellcolor.tool_paths.level_lines import slice_along
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["sweep_field"]
-
 
 def sweep_field(mesh: Triangles) -> tuple[Triangles, Array]:
     """A mesh and the distance of its vertices from a line through its middle, m, with a sign.

@@ -11,8 +11,6 @@ from cellcolor.tool_paths.level_lines import slice_along
 from cellcolor.tool_paths.sweep import sweep_field
 from cellcolor.tool_paths.triangles import Triangles
 
-__all__ = ["lay_tree"]
-
 
 def lay_tree(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
     """Cut the region in strips of two spacings, go round each, and join these along a tree.

@@ -19,8 +19,6 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.mesh.dividing import cut, new_points
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["Triangles", "split_at"]
-
 
 @dataclass(frozen=True, eq=False)
 class Triangles(TriangleMesh):

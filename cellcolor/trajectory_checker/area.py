@@ -19,8 +19,6 @@ from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 from cellcolor.trajectory_checker.repeated import Repeated, passes, repeated_stretches
 from cellcolor.trajectory_checker.tolerances import Limits
 
-__all__ = ["FAR", "NEAR", "judge_area", "thinned"]
-
 FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as closely covered
 _VISIT = 0.5  # spacings; a pass so near to a point is a visit of it
 _ALONG = 0.25  # spacings; a pass so near to an earlier one runs along it

@@ -22,8 +22,6 @@ from cellcolor.trajectory_checker.joint_steps import joint_steps
 from cellcolor.trajectory_checker.tolerances import AT_VERTEX, OFF_SURFACE, TILT, TURN
 from cellcolor.trajectory_checker.tool_turn import across_of, turns_off
 
-__all__ = ["AtVertices", "Touches", "at_vertices", "touches"]
-
 
 @dataclass(frozen=True)
 class AtVertices:

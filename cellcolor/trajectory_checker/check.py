@@ -31,8 +31,6 @@ from cellcolor.trajectory_checker.tolerances import OFF_SURFACE, Limits
 from cellcolor.trajectory_checker.tool_turn import across_of, judge_turn
 from cellcolor.trajectory_checker.validity import judge_validity
 
-__all__ = ["check_trajectory"]
-
 _FINE = 0.25  # spacings; the edges of the triangles that area is measured with
 _WITHOUT_SPACING = 0.005  # m; the same where the setup has no spacing
 

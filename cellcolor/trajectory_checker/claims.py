@@ -10,8 +10,6 @@ from cellcolor.data.wording import count
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import FineMesh
 
-__all__ = ["judge_left_out", "judge_lift_offs"]
-
 _AREA_SHARE = 1.25  # of the stated area; the planner measures on another mesh than the judge
 
 

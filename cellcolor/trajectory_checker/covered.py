@@ -17,8 +17,6 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 
-__all__ = ["Reached", "excused", "patches", "reach", "reachable_areas"]
-
 
 @dataclass(frozen=True)
 class Reached:

@@ -15,8 +15,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.tolerances import STEP, STEP_ANGLE
 
-__all__ = ["Dense", "densified", "poses_of"]
-
 _MOST = 3_000_000  # configurations; some hundred bytes each
 _SLACK = 1e-6  # of a step; samples laid out just as far apart as they may need none in between
 

@@ -12,8 +12,6 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault, FaultKind
 
-__all__ = ["FaultList", "stretches"]
-
 _MOST = 100  # of a kind; the rest is counted
 
 

@@ -13,8 +13,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import POSE_ANGLE, POSE_DISTANCE
 
-__all__ = ["judge_poses"]
-
 _ASKED = 50  # samples that a guess at swapped columns has to fit
 
 

@@ -19,8 +19,6 @@ from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.memory import chunks
 
-__all__ = ["FineMesh", "Located", "refined"]
-
 _MOST = 2_000_000  # small triangles; some hundred bytes each
 _NEIGHBORS = 16  # small triangles that are asked at first which of them is nearest to a point
 _PAIR = 1_024  # bytes that a point and a small triangle take

@@ -18,8 +18,6 @@ from cellcolor.trajectory_checker.tolerances import (
     SHARE_OVER_LIMIT,
 )
 
-__all__ = ["JointLimits", "corners", "judge_joints"]
-
 
 @dataclass(frozen=True)
 class JointLimits:

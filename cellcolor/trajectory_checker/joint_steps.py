@@ -10,8 +10,6 @@ import numpy as np
 
 from cellcolor.arrays import Array, Mask
 
-__all__ = ["joint_steps"]
-
 
 def joint_steps(slides: Mask, first: Array, second: Array) -> Array:
     """How far each joint (..., joints) has to move, rad or m, from 0 on."""

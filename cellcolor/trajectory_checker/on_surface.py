@@ -18,8 +18,6 @@ from cellcolor.trajectory_checker.joint_steps import joint_steps
 from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT
 from cellcolor.trajectory_checker.tool_turn import nearest_turns
 
-__all__ = ["branches_of", "judge_contact", "judge_cracks", "judge_dragged"]
-
 _PARTS = 16  # of a step that seems to cross a crack, to see whether it passes by its end
 
 

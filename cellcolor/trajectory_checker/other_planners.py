@@ -12,8 +12,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.trajectory_checker.dense import poses_of
 from cellcolor.trajectory_checker.fault_list import stretches
 
-__all__ = ["completed"]
-
 _REASON = "stated in the table"
 
 

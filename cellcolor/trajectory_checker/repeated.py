@@ -14,8 +14,6 @@ from cellcolor.memory import batches, check_memory
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 
-__all__ = ["Repeated", "passes", "repeated_stretches"]
-
 _PAIR = 192  # bytes that two places take where they are found
 _TOGETHER = 20_000  # places that have at most
 _MOST = 50_000_000  # pairs; more take too long

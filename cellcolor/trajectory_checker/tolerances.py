@@ -5,26 +5,6 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-__all__ = [
-    "ANGLE_ROUNDING",
-    "AT_VERTEX",
-    "BOW",
-    "BOW_OF_SLIDE",
-    "BRANCH",
-    "JUMP",
-    "LEAVING",
-    "OFF_SURFACE",
-    "POSE_ANGLE",
-    "POSE_DISTANCE",
-    "POSE_ROUNDING",
-    "SHARE_OVER_LIMIT",
-    "STEP",
-    "STEP_ANGLE",
-    "TILT",
-    "TURN",
-    "Limits",
-]
-
 STEP = 0.001  # m; between samples whose tips are farther apart, others are put in and tested
 STEP_ANGLE = math.radians(1.0)  # the same for the turn of the tool and of each joint that turns
 

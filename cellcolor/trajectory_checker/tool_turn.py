@@ -15,8 +15,6 @@ from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import TURN
 
-__all__ = ["across_of", "judge_turn", "nearest_turns", "turns_off"]
-
 
 def across_of(robot: Robot, joints: Array, deadline: Deadline = NEVER) -> Array:
     """The tool's x axis (k, 3) in the world, in configurations (k, joints)."""

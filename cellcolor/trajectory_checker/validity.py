@@ -12,15 +12,13 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.arm.robot import Body
+from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
-
-__all__ = ["judge_validity"]
 
 _THIN = 1e-4  # m; radius of the axis of the tool's tip, which must not pass through the object
 

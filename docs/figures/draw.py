@@ -18,7 +18,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
 
-from cellcolor.data.instance import Cell
+from cellcolor.data.cells_and_edges import Cell
 from cellcolor.pictures.palette import INK, WARNING
 from examples import (
     BLUE,

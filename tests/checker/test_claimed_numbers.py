@@ -21,8 +21,9 @@ from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.whole_cells import segments_of_whole_cells
 from cellcolor.data.bound import Bound
+from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import (
     InstanceReference,
     Seam,

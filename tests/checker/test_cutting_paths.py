@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from relabelled import mirrored, renamed, turned
 
 from cellcolor.checker.cutting_paths import cutting_paths
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SearchSpace, number_segments
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose

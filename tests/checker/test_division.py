@@ -9,11 +9,10 @@ from divisions import BLUE, RED, SPLIT, divide, split_solution
 from library import PAPER
 
 from cellcolor.checker.division import check_division, check_solution
-from cellcolor.data.instance import Cell, Edge, Instance
-from cellcolor.data.solution import (
-    DartName,
-    Division,
-)
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.darts import DartName
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division
 
 CROSSING = Instance.read(PAPER / "crossing-zeros.json")
 

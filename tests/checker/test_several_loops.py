@@ -8,12 +8,10 @@ from divisions import BLUE, RED, divide
 from library import PAPER
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.instance import Cell, Edge, Instance
-from cellcolor.data.solution import (
-    DartName,
-    Division,
-    Seam,
-)
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.darts import DartName
+from cellcolor.data.instance import Instance
+from cellcolor.data.solution import Division, Seam
 
 ANNULUS = Instance.read(PAPER / "annulus.json")
 

@@ -28,7 +28,8 @@ from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.crossing_segments import TwoRegions
 from cellcolor.checker.tangles import Tangled, cannot_be_drawn, is_connected
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose, decomposition_of

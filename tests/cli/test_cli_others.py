@@ -13,7 +13,8 @@ from documents import SURFACE
 from library import INSTANCES, PAPER
 
 import cellcolor.cli.check
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline

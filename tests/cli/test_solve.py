@@ -13,7 +13,8 @@ from commands import json_lines, run
 from documents import INSTANCE
 from library import INSTANCES, PAPER
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 
 RING = PAPER / "ring.json"

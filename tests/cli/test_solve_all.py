@@ -18,7 +18,8 @@ from library import PAPER
 import cellcolor.cli.solve
 import cellcolor.solvers.checked
 import cellcolor.solvers.cpsat.schemes.scheme_model
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
 from cellcolor.deadline import OutOfTime
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 from hypothesis import given
 from meshes import surfaces
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 

@@ -18,8 +18,9 @@ from meshes import surfaces
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.bounds.kinds import KINDS
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface

@@ -14,7 +14,8 @@ from isomorphism import isomorphic
 from library import INSTANCES, PAPER
 from meshes import drawn, finer, grid_faces, grid_points, octahedron, surface, surfaces, torus
 
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decompose

@@ -11,7 +11,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from relabelled import turned
 
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.decomposition.isomorphic import isomorphic

@@ -9,7 +9,8 @@ from hypothesis import assume, given
 from library import PAPER
 from meshes import drawn, surfaces
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import Decomposition, decompose, decomposition_of, locate
 from cellcolor.errors import InputError

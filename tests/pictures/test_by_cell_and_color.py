@@ -19,7 +19,8 @@ from pages import (
     vertices_in,
 )
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.pictures.palette import AREAS, assign
 

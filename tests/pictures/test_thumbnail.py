@@ -8,7 +8,8 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 from library import INSTANCES, PAPER
 
-from cellcolor.data.instance import OUTSIDE, Cell, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell
+from cellcolor.data.instance import Instance
 from cellcolor.lab.families import hub
 from cellcolor.pictures.palette import LINES
 from cellcolor.pictures.thumbnail import thumbnail

@@ -18,7 +18,8 @@ from shipped import shipped, wok_file
 
 import cellcolor
 from cellcolor import memory
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, OutOfTime
 from cellcolor.decomposition.isomorphic import isomorphic, without_short_edges

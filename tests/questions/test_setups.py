@@ -21,7 +21,7 @@ from hypothesis import strategies as st
 from shipped import shipped
 
 import cellcolor
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from meshes import drawn
 
 import cellcolor
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.restricted import without_cells
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs, planar_graph

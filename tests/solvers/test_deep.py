@@ -15,7 +15,8 @@ from cellcolor.checker.drawable import can_be_drawn
 from cellcolor.checker.scheme_rules import PaintedCell
 from cellcolor.checker.several_loops import PaintedLoops, unavoidable_join_on_loops
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.lab.families.hubs import hub_minimum
 from cellcolor.solvers.bounds.cover import hard_cells
 from cellcolor.solvers.checked import solve

@@ -10,7 +10,8 @@ from library import PAPER
 from relabelled import mirrored, renamed, turned
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs
 from cellcolor.solvers.checked import solve

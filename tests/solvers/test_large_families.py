@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.data.instance import OUTSIDE, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab.families import (

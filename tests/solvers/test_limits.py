@@ -11,7 +11,8 @@ from library import INSTANCES
 from ortools.sat.python import cp_model
 
 from cellcolor.checker.division import check_division, check_solution
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import count_segments
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose

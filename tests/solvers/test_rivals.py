@@ -12,7 +12,8 @@ from library import PAPER
 from petals import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
 from cellcolor.lab.families import hub, hub_grid, planar_graph

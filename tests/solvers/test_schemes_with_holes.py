@@ -16,7 +16,8 @@ from relabelled import turned
 
 from cellcolor.checker.division import check_scheme
 from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs

@@ -9,8 +9,6 @@ import trimesh
 
 from cellcolor.arrays import Array, Index
 
-__all__ = ["DIRTY", "million", "parts_with"]
-
 Mesh = tuple[Array, Index]
 
 

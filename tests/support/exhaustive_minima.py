@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 from noncrossing import Partitions, coarsest_in, noncrossing, noncrossing_in
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SchemeKey
 
 Blocks = tuple[tuple[int, tuple[int, ...]], ...]

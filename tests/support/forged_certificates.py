@@ -23,23 +23,14 @@ from rooms import ISLAND_BETWEEN, ROUND_A_PETAL
 
 import cellcolor
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import LARGE, MEDIUM, blobs
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
-
-__all__ = [
-    "FORGERIES",
-    "Original",
-    "cells_without_loops",
-    "claims_truth",
-    "forge",
-    "large",
-    "small",
-]
 
 MOST_COLORINGS = 2_000
 SECONDS = 5

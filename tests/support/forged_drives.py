@@ -21,8 +21,6 @@ from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Tr
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 
-__all__ = ["FORGERS", "HONEST", "Forger", "Honest", "dropped_stroke", "resampled"]
-
 Random = np.random.Generator
 # What docs/judging-trajectories.md lets a drive miss, by how many spacings from a pass, and a tenth
 # more, since it is measured at random points.

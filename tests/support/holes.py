@@ -15,7 +15,8 @@ from functools import cache
 
 import networkx as nx
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
 
 Loops = tuple[tuple[int, ...], ...]

@@ -13,8 +13,6 @@ from cellcolor.data.solution import InstanceReference, Solution, count_segments
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.painting.paint import Painted
 
-__all__ = ["assert_whole", "random_solution"]
-
 
 def random_solution(instance: Instance, strands: int, rng: random.Random) -> Solution:
     """A division drawn at random as a solution: legal to draw, whatever it costs."""

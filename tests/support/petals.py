@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 
 
 def hub(*petals: int | tuple[int, ...]) -> Instance:

@@ -15,15 +15,6 @@ from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = [
-    "Colors",
-    "configurations_of",
-    "configurations_without_arm",
-    "largest_set_first",
-    "nearest_along_raster",
-    "random_branches",
-]
-
 Colors = list[int | None]
 _FULL = 2 * np.pi
 

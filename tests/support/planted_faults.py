@@ -17,8 +17,6 @@ from cellcolor.data.trajectory_verdict import Fault, FaultKind, TrajectoryVerdic
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 
-__all__ = ["PLANTERS", "Planted", "found"]
-
 
 @dataclass(frozen=True)
 class Planted:

@@ -17,8 +17,6 @@ from planting import Case, Planted, Planter, Random
 from cellcolor.data.plan import FORMAT, Plan
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = ["PLANTERS"]
-
 Colors = Sequence[int | None]
 
 

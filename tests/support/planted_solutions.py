@@ -9,8 +9,6 @@ from planting import Case, Planted, Planter, Random
 
 from cellcolor.data.solution import CellDivision, Division
 
-__all__ = ["SOLUTION_PLANTERS"]
-
 
 def wrong_number(case: Case, random: Random) -> Planted:
     """A solution that claims more or fewer segments or lift-offs than its division has."""

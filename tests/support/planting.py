@@ -15,8 +15,6 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 
-__all__ = ["Case", "Planted", "Planter", "Random", "caught"]
-
 Random = np.random.Generator
 
 

@@ -8,7 +8,8 @@ from itertools import pairwise
 
 import networkx as nx
 
-from cellcolor.checker.dart_lists import Strand, live_lists
+from cellcolor.checker.dart_lists import live_lists
+from cellcolor.data.darts import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam, SubCell
 

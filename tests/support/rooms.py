@@ -8,7 +8,8 @@ import networkx as nx
 from hypothesis import strategies as st
 from meshes import grid_faces, grid_points, surface
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.lab.families.meshes import make_mesh
 

@@ -10,8 +10,6 @@ import cellcolor
 from cellcolor.frontend import Scene
 from cellcolor.frontend.setup import Motion
 
-__all__ = ["MOTION", "SLIDE", "driven_scara", "scara_scene"]
-
 SLIDE = 2
 """The prismatic joint of the four."""
 MOTION = Motion(

@@ -14,8 +14,6 @@ from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.primitives import CapsuleObstacle, ConeObstacle
 from cellcolor.frontend.parts.placement import rotation_from_rpy
 
-__all__ = ["KINDS", "standing"]
-
 KINDS = ("cone", "capsule", "half-space", "box-grid")
 
 

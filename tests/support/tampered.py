@@ -25,8 +25,6 @@ from cellcolor.deadline import Deadline
 from cellcolor.door.oracle import KeepingOracle
 from cellcolor.oracle import Proof, prove
 
-__all__ = ["TAMPERERS", "Kept", "is_honest", "what_is_wrong"]
-
 Random = np.random.Generator
 Text = str | bytes
 LIMIT = 20.0  # seconds

@@ -8,8 +8,6 @@ from hypothesis import strategies as st
 
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["any_meshes", "bumpy_ball"]
-
 
 @st.composite
 def any_meshes(draw: st.DrawFn) -> TriangleMesh:

@@ -22,15 +22,6 @@ from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.oracle import Verdict
 
-__all__ = [
-    "SORTS",
-    "any_colors",
-    "contradictions",
-    "in_patches",
-    "segments_counted",
-    "valid_plans",
-]
-
 Random = np.random.Generator
 
 

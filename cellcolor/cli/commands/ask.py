@@ -21,8 +21,6 @@ from cellcolor.cli.commands.options import (
     TIME_LIMIT,
 )
 
-__all__ = ["compare", "explain", "place", "setups", "tradeoff"]
-
 _POINTS = click.option(
     "--points",
     metavar="N",

@@ -14,8 +14,6 @@ from cellcolor.solvers.registry import DEFAULT, REFERENCE
 if TYPE_CHECKING:
     from cellcolor.data.solution import SearchSpace
 
-__all__ = ["bench"]
-
 
 def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
     """Numbers and ranges of them, such as ``0-9`` or ``3,7,10-12``."""

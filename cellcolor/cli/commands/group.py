@@ -6,8 +6,6 @@ import click
 
 from cellcolor.version import __version__
 
-__all__ = ["Commands", "cellcolor"]
-
 
 class Commands(click.Group):
     """Lists every command with its first paragraph in full; click would cut it to one line."""

@@ -9,8 +9,6 @@ import click
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.options import PATH
 
-__all__ = ["import_", "library"]
-
 
 @cellcolor.command()
 @click.option("--family", metavar="NAME", help="Only the graphs of this family.")

@@ -25,8 +25,6 @@ from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_nam
 if TYPE_CHECKING:
     from cellcolor.data.solution import SearchSpace
 
-__all__ = ["build", "check", "show", "solve"]
-
 
 def _solver_name(_context: click.Context, _option: click.Parameter, value: str) -> str:
     """Refuse a solver that nobody has registered; none is imported for that."""

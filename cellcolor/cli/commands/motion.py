@@ -21,8 +21,6 @@ from cellcolor.cli.commands.options import (
 )
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
 
-__all__ = ["cover", "paint", "plan"]
-
 
 def _pattern_name(_context: click.Context, _option: click.Parameter, value: str) -> str:
     """Refuse a pattern that nobody has registered; none is imported for that."""

@@ -8,8 +8,6 @@ from typing import Any
 
 import click
 
-__all__ = ["motion_options"]
-
 
 class _Number(click.ParamType):  # type: ignore[type-arg]
     """A finite number."""

@@ -8,21 +8,6 @@ from typing import Any
 
 import click
 
-__all__ = [
-    "CLUSTER",
-    "COVER",
-    "INPUT",
-    "JOBS",
-    "LEFT_ALONE",
-    "METRES",
-    "PATH",
-    "REQUIRED",
-    "SECONDS",
-    "SEED",
-    "TIME_LIMIT",
-    "TOLERANCE",
-]
-
 
 class _Positive(click.FloatRange):
     """A positive, finite number of some unit."""

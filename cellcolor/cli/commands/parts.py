@@ -10,8 +10,6 @@ import click
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.options import METRES, PATH, TIME_LIMIT
 
-__all__ = ["inspect", "new", "repair"]
-
 _PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
 _UNIT = click.option(
     "--unit",

@@ -9,8 +9,6 @@ import click
 from cellcolor.cli.commands.group import cellcolor
 from cellcolor.cli.commands.options import INPUT, PATH
 
-__all__ = ["answer", "export"]
-
 _FORMATS = ("opb", "wcnf", "mps", "dzn", "lp")
 
 

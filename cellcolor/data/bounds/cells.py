@@ -12,8 +12,6 @@ from cellcolor.data.wording import count, listed
 if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
 
-__all__ = ["COVER", "STRANGERS", "CertifiedCells", "marks_of"]
-
 
 @dataclass(frozen=True, slots=True)
 class CertifiedCells(Certificate):

@@ -15,8 +15,6 @@ from cellcolor.files.documents import validate
 if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
 
-__all__ = ["EVERY_CELL", "BoundKind", "Certificate", "Connection", "Mark", "Shown"]
-
 EVERY_CELL = "It holds for the number of segments, where every cell has to be covered."
 """The objective of most kinds of bounds."""
 

@@ -7,8 +7,6 @@ from cellcolor.data.bounds.cells import COVER, STRANGERS
 from cellcolor.data.bounds.kind import EVERY_CELL, BoundKind, Certificate
 from cellcolor.data.bounds.parts import CONFLICTS, HUBS
 
-__all__ = ["KINDS", "certificate_of", "kind_of"]
-
 _STRANDS = (
     "It holds for the number of segments, where every cell has to be covered, in divisions with "
     "the solution's strands."

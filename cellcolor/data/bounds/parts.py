@@ -22,16 +22,6 @@ from cellcolor.data.wording import count, listed
 if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
 
-__all__ = [
-    "CONFLICTS",
-    "HUBS",
-    "CertifiedCrossing",
-    "CertifiedPart",
-    "CertifiedParts",
-    "CertifiedSegment",
-    "CertifiedTangle",
-]
-
 _Cells = tuple[int, ...]
 
 

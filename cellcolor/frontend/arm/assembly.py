@@ -19,8 +19,6 @@ from cellcolor.data.wording import looks_like_degrees
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Urdf, check_urdf
 
-__all__ = ["fix_joints", "mount", "pinocchio_text"]
-
 _FLANGES = ("tool0", "flange", "ee_link", "tool_flange", "wrist_3_link", "link_6")  # of vendors
 
 Vector = tuple[float, float, float]

@@ -14,15 +14,6 @@ from cellcolor.frontend.arm.capsules import capsule_around, capsules_around
 from cellcolor.frontend.arm.polyhedron import Polyhedron, box, convex_hull
 from cellcolor.frontend.setup import MeshCollision
 
-__all__ = [
-    "Body",
-    "Primitive",
-    "StandIn",
-    "box_body",
-    "mesh_bodies",
-    "round_bodies",
-]
-
 _SAME = 1e-6  # m; a sphere's center and a cylinder's end nearer than this are one point
 
 

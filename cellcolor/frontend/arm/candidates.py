@@ -46,8 +46,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
 from cellcolor.memory import chunks
 
-__all__ = ["CALIBRATION", "ClosedForm", "NearIdeal", "exact_solutions", "put_all"]
-
 CALIBRATION = 0.01
 """What a calibrated arm's axes may be off the ideal ones, rad and m; usual is a tenth of it."""
 

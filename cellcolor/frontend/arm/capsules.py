@@ -18,8 +18,6 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.arm.polyhedron import convex_hull
 
-__all__ = ["Capsule", "along_axis", "capsule_around", "capsules_around"]
-
 _ROUNDING = 1e-9  # of the radius, so that no point is left outside by rounding
 
 

@@ -24,8 +24,6 @@ from cellcolor.frontend.arm.kinematics import (
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import Continuity, Setup, Thresholds
 
-__all__ = ["Conditioning", "conditioning", "task_determinants"]
-
 
 @dataclass(frozen=True)
 class Conditioning:

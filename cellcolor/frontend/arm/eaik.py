@@ -33,8 +33,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, nearest_points, signs_of
 from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["EaikKinematics"]
-
 _TOLERANCE = 1e-6  # m and rad; axes farther off are neither parallel nor do they meet
 
 

@@ -13,8 +13,6 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Follower, Urdf, check_follower
 
-__all__ = ["FollowingFrame", "following_frames", "hung_on", "within_limits"]
-
 
 @dataclass(frozen=True)
 class FollowingFrame:

@@ -29,8 +29,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import nearest_points
 from cellcolor.memory import chunks
 
-__all__ = ["Axes", "idealized", "missing", "remark_on_calibration"]
-
 
 @dataclass(frozen=True)
 class Axes:

@@ -14,8 +14,6 @@ from cellcolor.frontend.arm.task_space import FREE_TURN, GIVEN_TURN, TaskSpace
 from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["KINEMATICS", "InverseKinematics"]
-
 
 class InverseKinematics(ABC):
     """The inverse kinematics of one arm with its tool.

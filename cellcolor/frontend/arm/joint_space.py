@@ -12,8 +12,6 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 
-__all__ = ["JointSpace"]
-
 _CIRCLE = 2 * np.pi
 _ROUNDING = 1e-9  # rad or m; a position on its limit is inside
 

@@ -16,23 +16,6 @@ from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
 
-__all__ = [
-    "TASK_JOINTS",
-    "Poses",
-    "bytes_of_poses",
-    "farthest_reach",
-    "forward",
-    "gravity_torques",
-    "manipulability",
-    "signed_task_determinant",
-    "static_torques",
-    "task_determinant",
-    "task_jacobian",
-    "tip_jacobian",
-    "tool_across",
-    "turned",
-]
-
 TASK_JOINTS = FREE_TURN.joints  # a sixth turns about the tool's own axis and does not move the task
 
 

@@ -14,14 +14,6 @@ from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import RobotFiles
 
-__all__ = [
-    "MUST_LIE",
-    "check_tool_on_last_axis",
-    "is_tool_on_last_axis",
-    "locked_angle",
-    "pose_at_zero",
-]
-
 _TOLERANCE = 1e-6  # m and rad
 MUST_LIE = (
     "the tool tip and its z axis must lie on this joint's axis, or the arm is redundant, since the "

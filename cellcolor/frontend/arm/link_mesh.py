@@ -20,8 +20,6 @@ import trimesh
 from cellcolor.arrays import Array, Index
 from cellcolor.errors import InputError
 
-__all__ = ["find_mesh", "load_link_mesh"]
-
 _FORMATS = (".stl", ".obj", ".dae")
 
 

@@ -9,8 +9,6 @@ from pathlib import Path
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.urdf_fields import check_origin, number, triple
 
-__all__ = ["LinkShape", "shapes_of"]
-
 _SIZES = {"cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
 _KINDS = ("box", "capsule", "cylinder", "mesh", "sphere")
 

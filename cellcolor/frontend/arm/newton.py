@@ -21,8 +21,6 @@ from cellcolor.frontend.arm.kinematics import (
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.memory import cached
 
-__all__ = ["REACHED", "SAME", "both_sides_of_folds", "merged", "misses", "nearest", "polished"]
-
 REACHED = 1e-9  # m, and for the unit vector of the tool's direction: what counts as a solution
 _STEPS = 25
 _GOOD = 1e-12  # m and rad; nothing is gained from there on

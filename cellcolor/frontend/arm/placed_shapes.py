@@ -23,8 +23,6 @@ from cellcolor.frontend.arm.link_shapes import LinkShape
 from cellcolor.frontend.arm.urdf import Urdf
 from cellcolor.frontend.setup import MeshCollision
 
-__all__ = ["Shapes", "place_shapes"]
-
 
 @dataclass(frozen=True)
 class Shapes:

@@ -36,8 +36,6 @@ from cellcolor.frontend.arm.task_space import (
 )
 from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["PlanarThree", "PlanarTwo", "Scara", "ScaraWithoutTurn"]
-
 _TOLERANCE = 1e-6  # m and rad; of the arm
 _OFF_PLANE = 1e-4  # m; a point farther from the tip's plane is out of reach
 _TILT = np.radians(0.1)  # the same of a direction

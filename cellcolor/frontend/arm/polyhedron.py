@@ -16,8 +16,6 @@ from scipy.spatial import ConvexHull, QhullError
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.memory import chunks
 
-__all__ = ["Polyhedron", "box", "convex_hull", "one_of_each_part"]
-
 _PAIR = 256  # bytes that a point and a face take
 
 

@@ -23,8 +23,6 @@ from cellcolor.frontend.arm.placed_shapes import Shapes, place_shapes
 from cellcolor.frontend.arm.task_space import FREE_TURN, TaskSpace
 from cellcolor.frontend.arm.urdf import CONTINUOUS, PRISMATIC, Follower, Urdf, load_urdf
 
-__all__ = ["Body", "Robot", "Shapes", "load_robot", "wider", "wider_body"]
-
 _FIX = "give its position under [robot.fixed_joints], as {} = 0.0"
 _NO_FORCE = "or leave the force constraint out: force = false under [constraints] of the setup"
 _WAY_OUT = (

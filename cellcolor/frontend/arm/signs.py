@@ -35,8 +35,6 @@ from cellcolor.frontend.arm.last_joint import pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.memory import cached
 
-__all__ = ["BRANCHES", "Signs", "nearest_points", "signs_of"]
-
 BRANCHES = tuple(
     f"shoulder-{shoulder} elbow-{elbow} wrist-{wrist}"
     for shoulder in ("front", "back")

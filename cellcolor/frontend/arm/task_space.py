@@ -4,16 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-__all__ = [
-    "FREE_IN_PLANE",
-    "FREE_TURN",
-    "GIVEN_IN_PLANE",
-    "GIVEN_TURN",
-    "POSITION",
-    "POSITION_AND_TURN",
-    "TaskSpace",
-]
-
 
 @dataclass(frozen=True)
 class TaskSpace:

@@ -19,17 +19,6 @@ from cellcolor.frontend.arm.signs import nearest_points
 from cellcolor.frontend.arm.task_space import FREE_TURN
 from cellcolor.frontend.setup import Turn
 
-__all__ = [
-    "angle_about",
-    "last_frames",
-    "on_last_axis",
-    "shoulder_of",
-    "turn_at",
-    "turned_about",
-    "with_last_joint",
-    "wrist_of",
-]
-
 _LEAST_SHARE = 1e-6  # of a vector's length that its projection has to have, for a direction
 _LEAST_LENGTH = 1e-6  # m; the same of the way to a point
 

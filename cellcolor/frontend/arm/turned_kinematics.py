@@ -28,8 +28,6 @@ from cellcolor.frontend.arm.tool_pose import (
 )
 from cellcolor.frontend.setup import RobotFiles, Turn
 
-__all__ = ["TurnedKinematics"]
-
 _PARALLEL = 1e-6  # rad
 
 

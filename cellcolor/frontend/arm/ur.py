@@ -36,8 +36,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import Signs, signs_of
 from cellcolor.frontend.setup import RobotFiles
 
-__all__ = ["BRANCHES", "UrGeometry", "UrKinematics", "solve_inverse", "ur_geometry"]
-
 BRANCHES = tuple(
     f"shoulder-{shoulder} elbow-{elbow} wrist-{wrist}"
     for shoulder in ("left", "right")

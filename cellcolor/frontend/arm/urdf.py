@@ -19,17 +19,6 @@ from cellcolor.files.documents import read_text
 from cellcolor.frontend.arm.link_shapes import LinkShape, shapes_of
 from cellcolor.frontend.arm.urdf_fields import check_origin, finite, named, number, triple
 
-__all__ = [
-    "CONTINUOUS",
-    "PRISMATIC",
-    "Follower",
-    "Urdf",
-    "check_follower",
-    "check_urdf",
-    "load_urdf",
-    "parse_urdf",
-]
-
 CONTINUOUS, PRISMATIC = "continuous", "prismatic"
 _MOVING = ("revolute", CONTINUOUS, PRISMATIC)
 _THING = ("inertial", "visual")  # what a link that is more than a frame has

@@ -8,8 +8,6 @@ from pathlib import Path
 
 from cellcolor.errors import InputError
 
-__all__ = ["check_origin", "finite", "named", "number", "triple"]
-
 
 def named(file: Path, xml: ET.Element, tag: str) -> dict[str, ET.Element]:
     """The elements with a tag by their names, each of which stands once.

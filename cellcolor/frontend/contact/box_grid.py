@@ -19,8 +19,6 @@ from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length
 
-__all__ = ["BoxGridObstacle"]
-
 _FARTHEST = 1_000_000  # a cell's number may be at most so far from 0
 _MOST_SIDES = 375_000  # with two triangles each; as many as a mesh of 250,000 vertices has at most
 _NEIGHBORS = 8  # nearest cells that are looked at for each point

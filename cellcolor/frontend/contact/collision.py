@@ -19,17 +19,6 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.fcl_bodies import bodies_touch, body_poses, lowest_points
 from cellcolor.frontend.contact.plane import HalfSpace
 
-__all__ = [
-    "body_ends",
-    "gap_between",
-    "hits_ground",
-    "hits_itself",
-    "longest_steps",
-    "segment_distance",
-    "tracked_points",
-    "tracked_steps",
-]
-
 _ROUNDING = 1e-6  # m; of boxes around solids
 _DEPTH = 0.00065  # m; a tool of 20 mm radius may move by 10 mm, the upper arm by 17
 

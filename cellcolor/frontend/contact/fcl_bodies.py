@@ -14,18 +14,6 @@ from cellcolor.frontend.arm.kinematics import Poses
 from cellcolor.frontend.arm.polyhedron import Polyhedron
 from cellcolor.frontend.contact.plane import HalfSpace
 
-__all__ = [
-    "Placed",
-    "Thing",
-    "bodies_touch",
-    "body_poses",
-    "body_shape",
-    "lowest_points",
-    "mesh_model",
-    "points_of",
-    "touch_thing",
-]
-
 _MODELS: WeakKeyDictionary[Polyhedron, fcl.BVHModel] = WeakKeyDictionary()
 
 

@@ -20,8 +20,6 @@ from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.frontend.parts.surface import Faces
 
-__all__ = ["HalfSpaceObstacle"]
-
 _DRAWN, _VERTICES = 2.0, 441  # side of the square that is drawn, m, in squares of 0.1 m
 
 

@@ -15,8 +15,6 @@ from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.tables import Positive
 
-__all__ = ["OBSTACLES", "MeshObstacle", "Obstacle"]
-
 
 class Obstacle(Placement):
     """A thing that neither the arm nor the tool may touch, and its place.

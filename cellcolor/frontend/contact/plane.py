@@ -8,8 +8,6 @@ import numpy as np
 
 from cellcolor.arrays import Array
 
-__all__ = ["HalfSpace"]
-
 
 @dataclass(frozen=True)
 class HalfSpace:

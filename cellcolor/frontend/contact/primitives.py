@@ -17,15 +17,6 @@ from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.tables import Length
 
-__all__ = [
-    "BoxObstacle",
-    "CapsuleObstacle",
-    "ConeObstacle",
-    "CylinderObstacle",
-    "Primitive",
-    "SphereObstacle",
-]
-
 
 class Primitive(Obstacle):
     """A filled shape that is centered on its position."""

@@ -23,9 +23,10 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses
 from cellcolor.frontend.arm.polyhedron import one_of_each_part
-from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.fcl_bodies import (
     Thing,
     body_poses,
@@ -36,8 +37,6 @@ from cellcolor.frontend.contact.fcl_bodies import (
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-
-__all__ = ["Distances", "Solid", "mesh_solid", "sample_mesh"]
 
 _FINEST = 0.002  # m; half a slice that is left to fcl rather than halved again
 _FINEST_AROUND = 0.02  # m; the same of the capsule around a solid, which is not close anyway

@@ -14,8 +14,6 @@ from cellcolor.frontend.arm.body import Body, StandIn
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.solids import sample_mesh
 
-__all__ = ["StandInReport", "report_on"]
-
 _SAMPLES = 50_000  # of each surface, at most about so many
 _SLACK = 0.0005  # m; wanted distance of a surface's points to the nearest sample
 _FAR = 0.02  # m; a hull that is farther off its mesh is warned of

@@ -12,14 +12,13 @@ from collections.abc import Iterable
 import numpy as np
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import longest_steps
 from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.parts.surface import Faces, Surface, along_edges
 from cellcolor.memory import batches
-
-__all__ = ["Tip"]
 
 _POINT = 1_024  # bytes that a point on an edge takes
 

@@ -17,8 +17,6 @@ from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.part import Part
 from cellcolor.frontend.parts.surface import Faces, Surface
 
-__all__ = ["ArraysObject"]
-
 
 def _coordinates(value: Any) -> Array:
     vertices: Array = np.array(value, dtype=np.float64)

@@ -19,24 +19,6 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
-__all__ = [
-    "MOST_EDGES",
-    "against_the_others",
-    "border_groups",
-    "borders",
-    "fans",
-    "filling",
-    "flat_faces",
-    "inside_out",
-    "merged",
-    "repeated_corners",
-    "repeated_faces",
-    "split",
-    "turned",
-    "used",
-    "without_flat",
-]
-
 _SAME = 1e-8  # of the mesh's size; vertices so near to each other are in one place
 _FLAT = 1e-6  # of the longest side's square; a doubled area that counts as none
 _PASSES = 30

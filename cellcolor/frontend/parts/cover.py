@@ -18,8 +18,6 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.tables import IN_RADIANS, Position, Table, Vector
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["Cover"]
-
 Angle = Annotated[FiniteFloat, Field(gt=0, le=float(np.pi)), IN_RADIANS]
 
 

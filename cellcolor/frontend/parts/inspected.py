@@ -19,8 +19,6 @@ from cellcolor.frontend.parts.repaired import check_known_size, in_words
 from cellcolor.frontend.parts.repairing import Mending, Telling, mended
 from cellcolor.frontend.parts.surface import Faces
 
-__all__ = ["Inspection", "inspect_mesh"]
-
 _SHOWN = 3  # places of one fault in a printed inspection
 _STORED = 100  # places of one fault in a JSON document
 

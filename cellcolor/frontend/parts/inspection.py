@@ -29,16 +29,6 @@ from cellcolor.frontend.parts.surface import SHARP, Faces
 from cellcolor.memory import chunks
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = [
-    "MOST_FACES",
-    "Component",
-    "FaultyPlaces",
-    "Hole",
-    "MeshFacts",
-    "crossing_pairs",
-    "facts_of",
-]
-
 Telling = Callable[[str], None]
 Place = tuple[float, float, float]
 

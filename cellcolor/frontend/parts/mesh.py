@@ -24,8 +24,6 @@ from cellcolor.frontend.parts.surface import Faces, Surface, refine
 from cellcolor.frontend.sizes import check_vertices
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["mesh_surface", "summed_normals"]
-
 _FARTHEST, _SMALLEST = 1e6, 1e-6  # m
 
 

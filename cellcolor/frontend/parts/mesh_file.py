@@ -27,8 +27,6 @@ from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import check_faces
 from cellcolor.frontend.tables import Positive
 
-__all__ = ["UNITS", "MeshObject", "likely_unit", "load_mesh", "read_mesh", "read_obj"]
-
 _MOST_BYTES = 200_000_000  # some millions of triangles; reading takes ten times as much memory
 _HEADER = 4096  # bytes; where a PLY file names its elements
 

@@ -10,8 +10,6 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.tables import Table
 
-__all__ = ["PARTS", "Part"]
-
 
 class Part(Table):
     """An object in its own frame: the keys of its table, and the surface that they describe.

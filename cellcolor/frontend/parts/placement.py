@@ -9,8 +9,6 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.frontend.tables import Angles, Position, Table
 
-__all__ = ["Placement", "rotation_from_rpy", "rpy_from_rotation"]
-
 
 class Placement(Table):
     """Pose of a thing in the world; angles extrinsic x, y, z."""

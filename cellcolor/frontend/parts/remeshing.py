@@ -31,16 +31,6 @@ from cellcolor.frontend.parts.surface import SHARP, Faces, refine
 from cellcolor.frontend.sizes import MOST_VERTICES
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = [
-    "Deviation",
-    "expected_vertices",
-    "fold_angle",
-    "folds",
-    "length_for",
-    "remeshed",
-    "unfolded",
-]
-
 _CHILD = Path(__file__).with_name("remesh_child.py")
 _ASK = 0.2  # s, between two looks at the time
 _LONGEST = 4 / 3  # of the wanted length: edges of a border above that are halved first

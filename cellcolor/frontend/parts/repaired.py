@@ -26,8 +26,6 @@ from cellcolor.frontend.parts.surface import Faces
 from cellcolor.frontend.sizes import MOST_VERTICES
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["MOST_FACES", "RepairedPart", "check_known_size", "repair_mesh"]
-
 MOST_FACES = 3_000_000  # a kilobyte each
 _SUGGESTED = 60_000  # vertices of a mesh that is too large, remeshed
 

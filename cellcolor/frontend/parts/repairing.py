@@ -29,8 +29,6 @@ from cellcolor.frontend.parts.mesh import summed_normals
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["LEAST_SHARE", "Change", "Mending", "Telling", "area_of", "mended"]
-
 LEAST_SHARE = 0.01
 """Components with less than this share of the largest one's area are dropped, if not asked."""
 

@@ -20,8 +20,6 @@ from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.sizes import check_rounding
 from cellcolor.memory import at_once
 
-__all__ = ["longest_beside_sharp", "rounded"]
-
 _ROWS = 1000  # vertices that are rounded together
 _AROUND = 640  # bytes that a face takes for each vertex that it is around
 _SAME = 1e-9  # of the radius; a ball that is smaller by less is no smaller

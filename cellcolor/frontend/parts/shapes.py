@@ -15,17 +15,6 @@ from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.sizes import MOST_VERTICES, check_vertices
 from cellcolor.frontend.tables import IN_RADIANS, Length
 
-__all__ = [
-    "CapObject",
-    "PipeObject",
-    "RectangleObject",
-    "disc_mesh",
-    "grid_mesh",
-    "pipe",
-    "rectangle",
-    "spherical_cap",
-]
-
 
 class _Sampled(Part):
     """A shape whose mesh is made here."""

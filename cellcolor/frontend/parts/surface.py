@@ -15,8 +15,6 @@ from cellcolor.frontend.sizes import check_refinement, check_vertices
 from cellcolor.mesh.dividing import bisected_corners, halved, with_longest_sides
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
-__all__ = ["SHARP", "Faces", "Surface", "along_edges", "bisected", "refine"]
-
 Faces = NDArray[np.int64]
 
 SHARP = float(np.radians(30.0))

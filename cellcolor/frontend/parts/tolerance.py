@@ -11,8 +11,6 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy, rpy_from_rotation
 from cellcolor.frontend.tables import Table
 
-__all__ = ["Tolerance"]
-
 _SEED = 0
 
 

@@ -12,8 +12,6 @@ from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import body_ends, hits_itself, segment_distance
 
-__all__ = ["always_touching", "check_capsules"]
-
 _TRIED = 100  # configurations
 _HARDLY_ANY = 0.9  # of them overlap
 

@@ -16,8 +16,6 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.memory import batches, check_memory
 
-__all__ = ["at_domain_border", "bytes_of_point", "remains_valid", "strides"]
-
 _ROUNDS = 20  # each at least halves a step that is too long; what is left then is a jump
 
 Test = Callable[[Array, Array, NDArray[np.intp]], tuple[Mask, Array]]

@@ -21,15 +21,6 @@ from cellcolor.frontend.reach.smooth import Measure, Probe, follow_edges
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.mesh.triangle_mesh import grouped
 
-__all__ = [
-    "Coloring",
-    "color_nodes",
-    "find_cracks",
-    "link",
-    "node_links",
-    "stays_in_limits",
-]
-
 _ROUNDING = 1e-9  # rad, m; an angle on its limit is inside
 
 

@@ -18,8 +18,6 @@ from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.setup import Setup
 
-__all__ = ["Postures", "Workplace"]
-
 
 @dataclass(frozen=True, eq=False)
 class Workplace:

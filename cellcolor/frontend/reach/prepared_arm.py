@@ -15,7 +15,8 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.conditioning import Conditioning, conditioning, task_determinants
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
 from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
-from cellcolor.frontend.arm.robot import Robot, Shapes, load_robot, wider
+from cellcolor.frontend.arm.placed_shapes import Shapes
+from cellcolor.frontend.arm.robot import Robot, load_robot, wider
 from cellcolor.frontend.arm.task_space import TaskSpace
 from cellcolor.frontend.arm.tool_pose import turn_at
 from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
@@ -25,8 +26,6 @@ from cellcolor.frontend.reach.tracking import Tracker
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import in_file
 from cellcolor.memory import chunks
-
-__all__ = ["PreparedArm", "prepare_arm"]
 
 _MOST_SOLUTIONS = 16  # of six revolute joints
 

@@ -47,8 +47,6 @@ from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_neares
 from cellcolor.memory import at_once
 from cellcolor.mesh.triangle_mesh import grouped
 
-__all__ = ["MOST_SHEETS", "Linking", "Sheets", "edges_at_once", "sheets_of"]
-
 T = TypeVar("T", bound=np.generic)
 
 MOST_SHEETS = 60

@@ -23,8 +23,6 @@ from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.setup import Slivers
 from cellcolor.mesh.triangle_mesh import grouped
 
-__all__ = ["SliverReport", "clean"]
-
 Branches = int
 """A set of branches, a bit each: on one vertex a color is told by its branch."""
 Border = dict[Branches, int]

@@ -19,16 +19,6 @@ from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.setup import Continuity
 from cellcolor.memory import chunks
 
-__all__ = [
-    "Measure",
-    "Motions",
-    "Probe",
-    "bytes_of_following",
-    "follow_edges",
-    "joint_step",
-    "shorter_way",
-]
-
 _TRUSTED = 0.5  # rad; a step in which a joint moves farther is always looked into
 _HALVINGS = 10  # of the probe spacing; what is too fast on the last one is a jump
 

@@ -16,8 +16,6 @@ from cellcolor.frontend.contact.collision import hits_ground, hits_itself
 from cellcolor.frontend.reach.postures import Postures
 from cellcolor.frontend.reach.validity_interface import ValidityTest
 
-__all__ = ["STANDARD_TESTS", "StandardTest"]
-
 
 class StandardTest(ValidityTest):
     """One of the tests that a setup can leave out by the constraint that it belongs to.

@@ -27,8 +27,6 @@ from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.reach.smooth import Measure, Motions, joint_step, shorter_way
 from cellcolor.memory import chunks
 
-__all__ = ["Solutions", "Tracker", "clearly_nearest"]
-
 
 @dataclass(frozen=True)
 class Solutions:

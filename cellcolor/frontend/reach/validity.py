@@ -21,8 +21,6 @@ from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
 from cellcolor.frontend.reach.validity_interface import ValidityTest
 from cellcolor.memory import cached, check_memory
 
-__all__ = ["NO_SOLUTION", "Candidates", "Judge", "Verdicts", "turned_into_limits"]
-
 NO_SOLUTION = 1
 """The code where a branch does not reach the pose, so that there is nothing to test."""
 _NAMES = ("valid", "no solution")  # of the codes that no test stands for

@@ -10,8 +10,6 @@ from cellcolor.frontend.reach.postures import Postures
 from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.tables import Table
 
-__all__ = ["VALIDITY_TESTS", "ValidityTest"]
-
 
 class ValidityTest(Table):
     """A test that candidates pass or fail.

@@ -16,8 +16,6 @@ from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import DEFAULT, REFERENCE
 
-__all__ = ["Finding", "MeshFinding", "compare_on_mesh", "compare_solvers", "complaint"]
-
 CONTENDERS = (DEFAULT, REFERENCE, "cp-sat-model")
 """Whose minima are compared: also the full CP-SAT model without plans, which settle most instances
 before it is built."""

@@ -10,8 +10,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import SMALL
 
-__all__ = ["KINDS", "Case", "draw_case"]
-
 KINDS = tuple(SMALL)
 """What a campaign takes its instances from, in turn."""
 

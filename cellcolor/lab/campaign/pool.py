@@ -22,8 +22,6 @@ from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 from cellcolor.lab.executors.alone import Ended, Limits
 from cellcolor.lab.executors.work import Task, Workers, as_they_end
 
-__all__ = ["Outcome", "Wrong", "outcomes_of_campaign"]
-
 SHRINK_SECONDS = 60.0
 """Seconds that are spent on making one disagreement small."""
 

@@ -7,10 +7,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from typing import TypeVar
 
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import Crack, LabelledSurface
-
-__all__ = ["shrink_instance", "shrink_surface"]
 
 _Subject = TypeVar("_Subject")
 

@@ -8,8 +8,6 @@ from dataclasses import dataclass, field
 
 from cellcolor.lab.campaign.pool import Outcome
 
-__all__ = ["Summary", "Tally"]
-
 _BINS: tuple[tuple[int, str], ...] = (
     (1, "1"),
     (2, "2"),

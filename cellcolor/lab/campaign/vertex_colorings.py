@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from cellcolor.data.surface import LabelledSurface
 
-__all__ = ["fewest_by_vertices"]
-
 _Front = tuple[tuple[int, int], ...]
 """Color and number of the segment of each painted vertex that still has unpainted neighbors."""
 

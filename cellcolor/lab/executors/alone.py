@@ -23,8 +23,6 @@ from typing import IO, Any, Literal
 
 from cellcolor.lab.machine import Machine, this_machine
 
-__all__ = ["End", "Ended", "Limits", "run_alone", "watch"]
-
 End = Literal["done", "failed", "timeout", "memory", "crashed", "stopped"]
 """How a piece of work ended: it came back; it raised an error; it was killed for its time or for
 its memory; it broke down or somebody else killed it; the watcher was told to stop."""

@@ -16,8 +16,6 @@ from cellcolor.errors import InputError
 from cellcolor.lab.executors.alone import Ended, run_alone
 from cellcolor.lab.executors.work import Task, Workers
 
-__all__ = ["ClusterWorkers"]
-
 _PATIENCE = 10.0
 """Seconds in which a scheduler has to answer."""
 

@@ -9,8 +9,6 @@ from types import TracebackType
 from cellcolor.lab.executors.alone import Ended, run_alone
 from cellcolor.lab.executors.work import Task, Workers
 
-__all__ = ["LocalWorkers"]
-
 
 class LocalWorkers(Workers):
     """Each piece of work in a process of its own on this machine, watched by a thread.

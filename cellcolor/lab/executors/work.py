@@ -12,8 +12,6 @@ from typing import Any, Protocol, TypeVar
 from cellcolor.errors import CellcolorError
 from cellcolor.lab.executors.alone import Ended, Limits
 
-__all__ = ["Task", "Workers", "as_they_end"]
-
 _Name = TypeVar("_Name")
 
 

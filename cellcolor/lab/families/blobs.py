@@ -10,8 +10,6 @@ from cellcolor.errors import InputError
 from cellcolor.lab.families.cracks import crack_paths
 from cellcolor.lab.families.meshes import grid_faces
 
-__all__ = ["blobs"]
-
 
 def blobs(
     seed: int,

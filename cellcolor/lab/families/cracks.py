@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from cellcolor.data.surface import Crack
 
-__all__ = ["crack_paths"]
-
 
 def crack_paths(
     rng: np.random.Generator,

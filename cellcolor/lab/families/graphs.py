@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import random
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
-
-__all__ = ["planar_graph"]
 
 
 def planar_graph(

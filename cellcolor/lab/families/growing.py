@@ -8,8 +8,6 @@ from cellcolor.errors import InputError
 from cellcolor.lab.families.blobs import blobs
 from cellcolor.lab.families.hubs import hub, hub_grid
 
-__all__ = ["growing_blobs", "growing_hub", "growing_hub_grid"]
-
 _COLORS = 4
 _OF_A_SIZE = 3
 """Hubs with the same number of petals."""

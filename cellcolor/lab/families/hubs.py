@@ -9,10 +9,9 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance, KnownResult, KnownResults
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance, KnownResult, KnownResults
 from cellcolor.errors import InputError
-
-__all__ = ["cover_tree", "hub", "hub_grid", "hub_minimum", "hub_with_loops", "wide_hub"]
 
 
 def hub(seed: int, petals: int, colors: int) -> Instance:

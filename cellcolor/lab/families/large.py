@@ -17,16 +17,6 @@ from cellcolor.lab.families.meshes import Topology
 from cellcolor.lab.families.parts import part
 from cellcolor.lab.families.voronoi import voronoi
 
-__all__ = [
-    "large_hub",
-    "large_hub_grid",
-    "large_hub_with_loops",
-    "large_part",
-    "large_patches",
-    "large_tree",
-    "large_voronoi",
-]
-
 
 def large_voronoi(topology: Topology) -> Callable[[int], LabelledSurface]:
     """Voronoi regions on a surface of that topology."""

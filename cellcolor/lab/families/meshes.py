@@ -9,8 +9,6 @@ from numpy.typing import NDArray
 
 from cellcolor.errors import InputError
 
-__all__ = ["SHAPES", "Mesh", "Topology", "grid_faces", "make_mesh", "sphere"]
-
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 """Vertices, (n, 3) in metres, and faces, (m, 3), counter-clockwise seen from outside."""
 

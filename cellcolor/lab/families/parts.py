@@ -12,8 +12,6 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import sphere
 
-__all__ = ["part"]
-
 BRANCH_COUNT = 8
 CREASES = 4
 ROUGHNESS = (0.3, 0.2, 0.15, 0.12, 0.1, 0.08, 0.06, 0.05, 0.04, 0.03, 0.02, 0.01, 0.0)

@@ -10,8 +10,6 @@ from cellcolor.lab.families import growing, large, medium, small
 from cellcolor.lab.families.blobs import blobs
 from cellcolor.lab.families.meshes import SHAPES
 
-__all__ = ["GROWING", "LARGE", "MEDIUM", "SMALL", "Family"]
-
 Family = Callable[[int], Instance | LabelledSurface]
 """The instance that a family makes of a seed, always the same of the same seed."""
 

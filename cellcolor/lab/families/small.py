@@ -18,8 +18,6 @@ from cellcolor.lab.families.blobs import blobs
 from cellcolor.lab.families.graphs import planar_graph
 from cellcolor.lab.families.hubs import hub, hub_grid
 
-__all__ = ["bearable", "small_hub", "small_hub_grid"]
-
 MOST_SMALL_CELLS = 10
 MOST_CELL_DARTS = 9
 """Live darts of a cell."""

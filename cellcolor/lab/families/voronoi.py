@@ -12,8 +12,6 @@ from cellcolor.lab.families.cracks import crack_paths
 from cellcolor.lab.families.meshes import Topology, make_mesh
 from cellcolor.mesh.oriented import directed_edges
 
-__all__ = ["voronoi"]
-
 Regions = list[int]
 """The Voronoi region of each vertex."""
 

@@ -7,8 +7,6 @@ from itertools import groupby
 
 from cellcolor.lab.runs.row import Row
 
-__all__ = ["compared", "disagreements"]
-
 
 def disagreements(rows: Iterable[Row]) -> list[str]:
     """A line for each instance on which two runs contradict each other, and for each result that

@@ -8,8 +8,6 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import solver_version
 
-__all__ = ["Contestant", "contestant"]
-
 
 @dataclass(frozen=True, slots=True)
 class Contestant:

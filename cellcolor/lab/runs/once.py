@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError, RefusedResult, SolverMissing, TooLarge
 from cellcolor.lab.executors.alone import Limits
 from cellcolor.lab.executors.work import Task
 from cellcolor.lab.runs.row import Status
-
-__all__ = ["Answered", "Solve", "answer", "task_of"]
 
 _START_UP = 20.0
 """Seconds for the start of a process and its imports, on a busy machine."""

@@ -9,8 +9,6 @@ from pydantic import ConfigDict
 
 from cellcolor.data.solution import SearchSpace
 
-__all__ = ["FINISHED", "Key", "Row", "Status"]
-
 Status = Literal[
     "optimal",
     "feasible",

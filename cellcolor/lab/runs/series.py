@@ -19,8 +19,6 @@ from cellcolor.lab.runs.statistics import (
     strongest,
 )
 
-__all__ = ["cactus", "growth", "plots_of", "profile", "scatter"]
-
 _LEAST = 0.001
 """Seconds; quicker ones are drawn there, since a logarithmic axis has no zero."""
 

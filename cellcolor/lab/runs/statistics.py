@@ -11,17 +11,6 @@ from typing import TypeVar
 from cellcolor.lab.runs.row import Row
 from cellcolor.solvers.registry import DEFAULT
 
-__all__ = [
-    "by",
-    "common",
-    "contestants_of",
-    "median_seconds",
-    "par2",
-    "ratios",
-    "solve_seconds",
-    "strongest",
-]
-
 _NOISE = 0.01
 """Seconds. Shorter times are not distinguished: they would measure the clock, not the solver."""
 

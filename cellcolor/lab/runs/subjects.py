@@ -12,8 +12,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
 
-__all__ = ["SETS", "Specimen", "families_like", "family_names", "of_family", "taking_turns"]
-
 SETS: Mapping[str, Mapping[str, Family]] = {
     "small": SMALL,
     "medium": MEDIUM,

@@ -19,8 +19,6 @@ from cellcolor.lab.runs.statistics import (
 )
 from cellcolor.lab.runs.timings import Timing
 
-__all__ = ["markdown_table", "summary_of_runs", "summary_of_timings"]
-
 _OPEN_SHOWN = 40
 
 

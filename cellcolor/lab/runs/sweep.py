@@ -17,8 +17,6 @@ from cellcolor.lab.runs.once import Answered, Solve, task_of
 from cellcolor.lab.runs.row import Key, Row, Status
 from cellcolor.lab.runs.subjects import Specimen
 
-__all__ = ["Experiment", "Sweep"]
-
 _STATUS: dict[str, Status] = {"timeout": "timeout", "memory": "memory"}
 """Of runs that did not come back; all the others have crashed."""
 

@@ -18,8 +18,6 @@ from pydantic import TypeAdapter
 from cellcolor.errors import InputError
 from cellcolor.files.documents import validate
 
-__all__ = ["TableFile", "header_of", "read_table"]
-
 _R = TypeVar("_R")
 
 

@@ -12,8 +12,6 @@ from pydantic import ConfigDict
 
 from cellcolor.lab.executors.alone import Ended, Limits, watch
 
-__all__ = ["START_UP", "Timing", "start_up_timings", "timing"]
-
 _LIMITS = Limits(120.0)
 
 START_UP: dict[str, tuple[str, ...]] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
@@ -17,8 +17,6 @@ from cellcolor.questions.explanation import Explanation
 from cellcolor.questions.front import Front, FrontPoint
 from cellcolor.questions.placements import Placements, Pose
 from cellcolor.questions.set_ups import SetUpPlan
-
-__all__ = ["answer_cards", "answer_modes"]
 
 _LEFT_OUT, _DIVIDED = "#CC3311", "#666666"
 _MOST_PLACES = 5

@@ -14,8 +14,6 @@ from cellcolor.pictures.report_page.answers import answer_cards
 from cellcolor.pictures.report_page.content import Card, MotionReport
 from cellcolor.pictures.report_page.verdict_cards import coverage_card, verdict_card
 
-__all__ = ["cards_of"]
-
 
 def cards_of(report: MotionReport) -> tuple[Card, ...]:
     """All of them, those with nothing to tell left out."""

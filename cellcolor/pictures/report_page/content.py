@@ -18,8 +18,6 @@ from cellcolor.questions.placements import Placements
 from cellcolor.questions.set_ups import SetUpPlan
 from cellcolor.tool_paths.measures import PathMeasures
 
-__all__ = ["AnsweredScene", "Answers", "Card", "MotionReport"]
-
 
 @dataclass(frozen=True)
 class Card:

@@ -18,8 +18,6 @@ from cellcolor.pictures.report_page.verdict_cards import badges_of
 from cellcolor.pictures.report_page.viewer_data import MOST_FRAMES, viewer_data
 from cellcolor.version import __version__
 
-__all__ = ["render_page"]
-
 _SHORT = 14  # characters
 _SCRIPTS = ("viewer.js", "camera.js", "space.js", "charts.js", "player.js")
 

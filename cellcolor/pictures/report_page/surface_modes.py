@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.data.instance import OUTSIDE
+from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import Decomposition
 from cellcolor.frontend import BuildResult
@@ -15,8 +15,6 @@ from cellcolor.pictures.by_cell_and_color import bare_classes, bare_labels, neig
 from cellcolor.pictures.by_reason import by_reason
 from cellcolor.pictures.mesh_picture import Labels, VertexClass
 from cellcolor.pictures.palette import AREAS, assign
-
-__all__ = ["SurfaceMode", "proof_mode", "reach_mode", "segment_fills", "segment_mode"]
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,6 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.data.trajectory import Trajectory
 
-__all__ = ["frames_of", "least_until_next", "straightened"]
-
 
 def frames_of(trajectory: Trajectory, most: int) -> Index:
     """Samples, ascending, at about equal travel of the joints, of time where they rest.

@@ -7,8 +7,6 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.pictures.report_page.content import Card, MotionReport
 
-__all__ = ["badges_of", "coverage_card", "verdict_card"]
-
 _SHOWN = 12  # faults
 
 

@@ -34,8 +34,6 @@ from cellcolor.pictures.report_page.surface_modes import (
 )
 from cellcolor.pictures.report_page.thinning import frames_of, least_until_next, straightened
 
-__all__ = ["MOST_FRAMES", "viewer_data"]
-
 MOST_FRAMES = 1500
 _MOST_DOTS = 40  # for parts that are left out
 _MOST_POINTS = 12_000  # of the path that is drawn

@@ -19,8 +19,6 @@ from cellcolor.solvers.bounds.merged_cells import merge_cells
 from cellcolor.solvers.bounds.polygons import PolygonSurface, spanning_tree
 from cellcolor.union_find import UnionFind
 
-__all__ = ["Conflict", "MergedCell", "Parting", "RegionPair", "Side", "conflicts"]
-
 MergedCell = frozenset[int]
 """The cells that a merged cell consists of; a segment touches it where it touches one of them."""
 

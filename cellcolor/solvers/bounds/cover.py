@@ -20,8 +20,6 @@ from cellcolor.union_find import UnionFind
 if TYPE_CHECKING:
     from ortools.sat.python import cp_model
 
-__all__ = ["Cover", "Region", "color_regions", "greedy_strangers", "hard_cells", "set_cover"]
-
 Region = tuple[int, frozenset[int]]
 """A color region: the color, and its cells."""
 

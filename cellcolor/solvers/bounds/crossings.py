@@ -7,8 +7,6 @@ from collections.abc import Sequence
 
 from cellcolor.data.instance import Instance
 
-__all__ = ["enough_crossings"]
-
 
 def enough_crossings(
     instance: Instance,

@@ -10,8 +10,6 @@ from cellcolor.solvers.bounds.merged_cells import MergedCells
 from cellcolor.solvers.bounds.polygons import PolygonSurface, spanning_tree
 from cellcolor.union_find import UnionFind
 
-__all__ = ["Domain", "Domains"]
-
 
 @dataclass(frozen=True, slots=True)
 class Domain:

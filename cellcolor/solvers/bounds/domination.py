@@ -9,8 +9,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.bounds.cover import color_regions
 
-__all__ = ["LeftOut", "drop_dominated", "left_out"]
-
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:

@@ -14,8 +14,6 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.solvers.bounds.links import links_bound
 
-__all__ = ["HubBound", "hub_bound", "joinable_colors"]
-
 FEWEST_DARTS = 4
 """Live darts of a hub; around a cell with fewer no two connections can cross."""
 

@@ -17,16 +17,6 @@ from cellcolor.arrays import Index
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.union_find import UnionFind
 
-__all__ = [
-    "MOST_ENTRIES",
-    "Group",
-    "Grouping",
-    "best_grouping",
-    "links_bound",
-    "most_links",
-    "recursion_size",
-]
-
 MOST_ENTRIES = 50_000_000
 """Of a recursion's tables, eight bytes each."""
 

@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from cellcolor.data.instance import Instance
 from cellcolor.union_find import UnionFind
 
-__all__ = ["MergedCells", "merge_cells"]
-
 
 @dataclass(frozen=True, slots=True)
 class MergedCells:

@@ -8,8 +8,6 @@ from collections.abc import Iterable, Mapping
 from cellcolor.solvers.bounds.merged_cells import MergedCells
 from cellcolor.union_find import UnionFind
 
-__all__ = ["PolygonSurface", "spanning_tree"]
-
 
 class PolygonSurface:
     """What two regions cover, and its borders.

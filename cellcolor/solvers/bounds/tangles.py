@@ -19,8 +19,6 @@ from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.bounds.domains import Domain, Domains
 from cellcolor.solvers.bounds.merged_cells import MergedCells
 
-__all__ = ["Tangle", "TangledSegment", "Tangles", "Touching"]
-
 MOST_EQUATIONS = 5_000
 """With more of them nothing is concluded from a plan."""
 

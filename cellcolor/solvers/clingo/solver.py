@@ -24,8 +24,6 @@ from cellcolor.solvers.joined_chains import division_of_chains
 if TYPE_CHECKING:
     from clingo import Model, Symbol
 
-__all__ = ["ClingoSolver", "asp_facts"]
-
 MODEL = shipped_folder() / "models" / "constraints" / "coloring.lp"
 """The answer set program."""
 

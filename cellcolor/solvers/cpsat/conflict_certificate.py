@@ -16,8 +16,6 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.domination import LeftOut
 from cellcolor.solvers.cpsat.search import PartSearch
 
-__all__ = ["MOST_CONFLICTS", "conflict_certificate"]
-
 MOST_CONFLICTS = 2_000
 """With more of them a certificate would be large, and searching it slow."""
 

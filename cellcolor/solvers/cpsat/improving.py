@@ -12,8 +12,6 @@ from cellcolor.solvers.cpsat.routes.dropping import FRUITLESS, drop_segments
 from cellcolor.solvers.cpsat.routes.recoloring import FEW_MOVES
 from cellcolor.solvers.cpsat.windows import improve
 
-__all__ = ["Improving"]
-
 WIDE_GAP, SHARE_OF_ROUTES = 2, 1 / 4
 """Segments above the bound from which other routes are tried before models; and what part of the
 time that is left one kind of them gets before the other has its turn."""

@@ -10,8 +10,6 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, make_portfolio, solve_interruptibly
 
-__all__ = ["Runner", "SolveWithSeed"]
-
 STRATEGIES = "core_max_lp", "max_lp"
 """Of one or two workers. Both use the full linear relaxation; the first one raises the bound by
 cores, sets of literals of which some must cost a segment."""

@@ -25,8 +25,6 @@ from cellcolor.solvers.cpsat.model.painting import canonical, moved
 from cellcolor.solvers.cpsat.part_state import FEW_STRANDS, PartState
 from cellcolor.solvers.interface import PORTFOLIO
 
-__all__ = ["ModelSearch"]
-
 TRIAL_EFFORT = 2.0
 """Deterministic seconds a worker for a model that is not the widest: its bound proves nothing."""
 

@@ -23,8 +23,6 @@ from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.solvers.cpsat.routes.recoloring import recolor
 from cellcolor.solvers.interface import Options
 
-__all__ = ["FEW_STRANDS", "PartState"]
-
 FEW_STRANDS = 2
 """Strands of a seam in the first models. More would only be needed if their result did not meet the
 lower bound."""

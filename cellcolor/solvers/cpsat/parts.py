@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cellcolor.data.instance import OUTSIDE, Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 from cellcolor.union_find import UnionFind
-
-__all__ = ["ConnectedPart", "seam_places", "split"]
 
 Loops = tuple[tuple[tuple[int, ...], ...], ...]
 """For each cell its loops with live darts, each as these darts (``Instance.live_loops``)."""

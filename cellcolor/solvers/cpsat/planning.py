@@ -17,8 +17,6 @@ from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
 
-__all__ = ["Planning"]
-
 PLAN_EFFORT, MORE_EFFORT = 0.05, 2.0
 """Deterministic seconds for a plan; most take a hundredth of the first number. The second one is
 for plans that were left undecided, before the full model is tried."""

@@ -17,8 +17,6 @@ from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.solvers.cpsat.planning import Planning
 from cellcolor.solvers.interface import Options
 
-__all__ = ["PartSearch"]
-
 FEW_DARTS = 10
 """The live darts of a cell up to which planning comes before counting links."""
 

@@ -32,8 +32,6 @@ from cellcolor.solvers.cpsat.schemes.enumeration import optimal_schemes
 from cellcolor.solvers.cpsat.search import PartSearch
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
-__all__ = ["CpSatSolver", "model_alone"]
-
 RESERVES = 4
 """The search ends before the deadline by so many times what it takes to put a division together:
 that is needed once more for the answer, then by the checker, and for writing the file."""

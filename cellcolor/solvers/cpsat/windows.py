@@ -23,8 +23,6 @@ from cellcolor.solvers.cpsat.model_runs import SolveWithSeed
 from cellcolor.solvers.cpsat.routes.dropping import drop_segments
 from cellcolor.union_find import UnionFind
 
-__all__ = ["improve"]
-
 WINDOW_SIZES = (1_000, 2_000, 4_000, 8_000)
 """Terms of a window's model, about: it is solved in some tenths of a second."""
 

@@ -17,8 +17,6 @@ from dataclasses import dataclass
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.dfs.graph import GraphCell
 
-__all__ = ["CellScheme", "DartKnowledge", "cell_schemes", "code", "divisions", "zero_colors"]
-
 DartKnowledge = tuple[int, int | None] | None
 """What is known of an edge from the cell beyond it: ``(1, color)``, ``(0, color)`` when the other
 side certainly shows that color, ``(0, None)`` when it may show either of two, None if unsolved."""

@@ -7,8 +7,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.errors import InputError
 
-__all__ = ["literal_cost"]
-
 
 def literal_cost(instance: Instance, division: Division) -> int:
     """What ``Δcost = 1 - j`` adds up to when j counts distinct solved *cells*.

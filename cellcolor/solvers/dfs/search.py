@@ -17,8 +17,6 @@ from cellcolor.solvers.dfs.graph import GraphCell
 from cellcolor.solvers.dfs.segment_counts import SegmentCounts
 from cellcolor.solvers.dfs.zero_darts import zeros_fit
 
-__all__ = ["Search"]
-
 _REMEMBERED = 5000
 """Longer lists of cell schemes are enumerated anew each time, so that memory stays small."""
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-__all__ = ["SegmentCounts"]
-
 
 class SegmentCounts:
     """Sub-cells joined into segments: a union-find whose last steps can be taken back.

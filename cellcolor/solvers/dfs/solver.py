@@ -8,8 +8,9 @@ from itertools import islice
 from typing import TypeVar
 
 from cellcolor.data.bound import Bound
+from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.darts import DartName
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
@@ -17,8 +18,6 @@ from cellcolor.solvers.dfs.cell_schemes import CellScheme
 from cellcolor.solvers.dfs.graph import GraphCell, Graphs
 from cellcolor.solvers.dfs.search import Search
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
-
-__all__ = ["ReferenceSolver"]
 
 _T = TypeVar("_T")
 _Blocks = list[tuple[int, list[DartName]]]

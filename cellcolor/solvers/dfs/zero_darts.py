@@ -14,8 +14,6 @@ from cellcolor.data.darts import DartName, twin
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, zero_colors
 from cellcolor.solvers.dfs.graph import GraphCell
 
-__all__ = ["zeros_fit"]
-
 Literal = int
 """``+n`` or ``-n``: variable n (from 1) is true, or false."""
 

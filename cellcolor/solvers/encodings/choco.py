@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from pychoco.variables.boolvar import BoolVar
     from pychoco.variables.intvar import IntVar
 
-__all__ = ["ChocoSolver"]
-
 MOST_MEMORY = 3 * 2**30
 """Bytes of memory that the process may take; then it ends, and what it has found is kept."""
 

@@ -16,8 +16,6 @@ from cellcolor.errors import InputError, TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions
 from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 
-__all__ = ["Pair", "Problem"]
-
 Pair = tuple[int, int]
 """Two darts of one cell, the one that comes first in its list first."""
 

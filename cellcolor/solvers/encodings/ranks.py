@@ -23,8 +23,6 @@ from cellcolor.solvers.bounds.links import most_links
 from cellcolor.solvers.encodings.problem import Pair, Problem
 from cellcolor.solvers.encodings.solving import Encoding, EncodingSolver
 
-__all__ = ["Ranks", "RanksSolver"]
-
 
 class Ranks(Encoding):
     """The model; each constraint group is a method, in the order in which they are called."""

@@ -18,9 +18,6 @@ from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.interruptible import make_portfolio, solve_interruptibly
 from cellcolor.solvers.joined_chains import division_of_chains
 
-__all__ = ["Encoding", "EncodingSolver"]
-
-
 STRATEGIES = "core", "default_lp"
 """Of one or two workers. Cores, sets of literals of which some must cost a segment, raise the
 bound; the default strategy finds divisions, as none is at hand beforehand here."""

@@ -15,8 +15,6 @@ from cellcolor.errors import InputError, TooLarge
 from cellcolor.solvers.linear.constraints import Model
 from cellcolor.solvers.linear.regions import Region, color_regions
 
-__all__ = ["MOST_TERMS", "Coloring", "estimated_terms"]
-
 MOST_TERMS = 5_000_000
 """The most literals that the constraints of a model may have: some 100 MB as a file, and below 2 GB
 in a solver that holds it a few times over."""

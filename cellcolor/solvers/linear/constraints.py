@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
 
-__all__ = ["Literals", "Model"]
-
 Literals = tuple[int, ...]
 """Variables, counted from 1; a negative number stands for the variable's negation."""
 

@@ -7,8 +7,6 @@ from collections.abc import Iterator
 
 from cellcolor.solvers.linear.constraints import Literals, Model
 
-__all__ = ["mps", "opb", "wcnf"]
-
 _SHOWN = ("joined", "link")
 """The variables that a solution is read off, which comments explain."""
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-__all__ = ["say", "say_solution"]
-
 
 def say(line: str) -> None:
     """Print a line at once."""

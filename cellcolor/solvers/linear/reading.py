@@ -7,8 +7,6 @@ from collections.abc import Collection
 from cellcolor.errors import InputError
 from cellcolor.solvers.linear.coloring import Coloring
 
-__all__ = ["joined_and_linked", "require_solution"]
-
 
 def require_solution(coloring: Coloring, true: Collection[int]) -> None:
     """Refuse values that break a constraint of the model.

@@ -6,8 +6,6 @@ from typing import NamedTuple
 
 from cellcolor.data.instance import Instance
 
-__all__ = ["Region", "color_regions"]
-
 
 class Region(NamedTuple):
     """A color region of two cells or more.

@@ -32,8 +32,6 @@ from cellcolor.solvers.linear.coloring import Coloring
 from cellcolor.solvers.linear.formats import mps, wcnf
 from cellcolor.solvers.linear.reading import joined_and_linked
 
-__all__ = ["HighsSolver", "MaxSatSolver", "ScipSolver"]
-
 
 @dataclass
 class _Heard:

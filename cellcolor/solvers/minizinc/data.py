@@ -7,8 +7,6 @@ from collections.abc import Iterable
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError, TooLarge
 
-__all__ = ["minizinc_data"]
-
 _MOST_PAIRS = 30_000
 """The most pairs of darts of one cell: the model has a constraint for each, and MiniZinc takes a
 second and 10 MB to write down some thousand of them."""

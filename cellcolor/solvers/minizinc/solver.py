@@ -27,8 +27,6 @@ from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains
 from cellcolor.solvers.minizinc.data import minizinc_data
 
-__all__ = ["MODEL", "ChuffedSolver", "GecodeSolver"]
-
 MODEL = shipped_folder() / "models" / "constraints" / "coloring.mzn"
 """The model."""
 

@@ -15,7 +15,8 @@ from trimesh import Trimesh
 from trimesh.proximity import closest_point_naive
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.robot import Body, Robot
+from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.fcl_bodies import body_poses, body_shape
 from cellcolor.frontend.contact.primitives import BoxObstacle
 from cellcolor.frontend.contact.solids import Solid, mesh_solid, sample_mesh

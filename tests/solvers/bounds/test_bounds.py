@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from library import PAPER
 from vertex_minima import vertex_minimum
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover

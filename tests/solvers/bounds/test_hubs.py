@@ -12,7 +12,8 @@ from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.hubs import Hubs
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.lab.families import hub, hub_grid, hub_with_loops, planar_graph
 from cellcolor.lab.families.hubs import hub_minimum
 from cellcolor.solvers.bounds.hubs import hub_bound

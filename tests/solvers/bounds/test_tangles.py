@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from rooms import ISLAND_BETWEEN, ROUND_A_PETAL, can_be_drawn, room, rooms
 from vertex_minima import vertex_minimum
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose

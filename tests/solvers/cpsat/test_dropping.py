@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 from petals import hub
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph, voronoi

@@ -8,7 +8,8 @@ from queue import SimpleQueue
 import pytest
 from dart_graphs import graph_of
 
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.errors import TooLarge

@@ -12,7 +12,8 @@ from library import INSTANCES, PAPER
 from petals import hub
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph

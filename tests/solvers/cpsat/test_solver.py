@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose

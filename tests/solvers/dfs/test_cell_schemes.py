@@ -9,7 +9,8 @@ import pytest
 from exhaustive_minima import any_scheme
 from library import PAPER
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.solvers.dfs import ReferenceSolver, code, divisions
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell

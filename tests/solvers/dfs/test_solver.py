@@ -12,7 +12,8 @@ from reference import SOLVER, SURFACE, segments
 from relabelled import turned_loop
 
 from cellcolor.data.bound import Bound
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError

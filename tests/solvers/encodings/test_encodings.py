@@ -14,7 +14,8 @@ from ortools.sat.python import cp_model
 from petals import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import count_segments
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, TooLarge

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.union_find import UnionFind
-
-__all__ = ["count_cuts", "unseamed"]
 
 
 def count_cuts(instance: Instance, graph: DartGraph, painting: Painting) -> int:

@@ -23,8 +23,6 @@ from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical
 from cellcolor.solvers.cpsat.model.seams import Seamed, SeamWriter
 from cellcolor.solvers.cpsat.model_runs import Runner
 
-__all__ = ["FewestCuts"]
-
 
 class FewestCuts:
     """Among the divisions with a number of segments, one with the fewest cutting paths.

@@ -16,8 +16,6 @@ from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.solvers.cpsat.parts import ConnectedPart
 
-__all__ = ["divide_hubs"]
-
 
 def divide_hubs(
     part: ConnectedPart,

@@ -15,8 +15,6 @@ from typing import NamedTuple
 from cellcolor.data.darts import Strand
 from cellcolor.data.solution import Seam
 
-__all__ = ["Area", "lead_seams"]
-
 
 class Area(NamedTuple):
     """The area of a group.

@@ -19,8 +19,6 @@ from typing import NamedTuple
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.bounds.links import Group, Grouping, best_grouping
 
-__all__ = ["many_links"]
-
 CANDIDATES = 12
 """Pairs of darts that are tried for each merger."""
 

@@ -16,8 +16,6 @@ from cellcolor.solvers.bounds.links import best_grouping
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.variables import Variables
 
-__all__ = ["DEFINING", "REDUNDANT", "Group", "first_petal", "fixed_roots"]
-
 Group = Callable[[cp_model.CpModel, DartGraph, Variables, Sequence[Region]], None]
 
 

@@ -21,19 +21,6 @@ from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.solvers.cpsat.model.variables import Variables, make_variables
 
-__all__ = [
-    "LARGEST_MODEL",
-    "SECONDS_A_TERM",
-    "Model",
-    "add_hint",
-    "fewest_subcells",
-    "full_model",
-    "model_size",
-    "not_built",
-    "read_painting",
-    "seams_size",
-]
-
 MANY_DARTS = 300
 """In a cell with more darts than this, terms are not counted one by one. Any two of its darts are
 then taken to have a color in common, so that the number is too large rather than too small."""

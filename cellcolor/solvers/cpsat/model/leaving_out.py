@@ -24,8 +24,6 @@ from cellcolor.solvers.cpsat.model.full import (
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.interface import Options
 
-__all__ = ["least_left_out"]
-
 
 def least_left_out(
     instance: Instance,

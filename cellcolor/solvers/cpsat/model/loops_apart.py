@@ -15,7 +15,8 @@ from itertools import combinations, permutations
 
 from ortools.sat.python import cp_model
 
-from cellcolor.data.instance import Cell, Instance
+from cellcolor.data.cells_and_edges import Cell
+from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, first_petal
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
@@ -23,8 +24,6 @@ from cellcolor.solvers.cpsat.model.full import fewest_subcells, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.solvers.cpsat.model.variables import Variables, make_variables
 from cellcolor.union_find import UnionFind
-
-__all__ = ["Apart", "ApartModel", "build_apart", "loops_apart", "read_apart"]
 
 GROUPS = tuple(group for group in (*DEFINING, *REDUNDANT) if group is not first_petal)
 """Without ``first_petal``: a loop with a single live dart may be bridged to others."""

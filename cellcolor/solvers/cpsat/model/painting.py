@@ -10,17 +10,6 @@ from cellcolor.data.solution import Division, number_segments
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.union_find import UnionFind
 
-__all__ = [
-    "Block",
-    "Painting",
-    "canonical",
-    "colored_segments",
-    "division_of",
-    "moved",
-    "painting_of",
-    "segments_of",
-]
-
 
 @dataclass(slots=True)
 class Block:

@@ -13,8 +13,9 @@ from dataclasses import dataclass, replace
 
 from ortools.sat.python import cp_model
 
+from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.darts import Strand
-from cellcolor.data.instance import Cell, Edge, Instance
+from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import TooLarge
@@ -36,8 +37,6 @@ from cellcolor.solvers.cpsat.model.full import (
 )
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.union_find import UnionFind
-
-__all__ = ["SeamWriter", "Seamed", "Solve"]
 
 Solve = Callable[[cp_model.CpModel], tuple[cp_model.CpSolver, cp_model.CpSolverStatus]]
 """Runs a model."""

@@ -13,8 +13,6 @@ from ortools.sat.python import cp_model
 
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 
-__all__ = ["Variables", "make_variables"]
-
 
 @dataclass(frozen=True, slots=True)
 class Variables:

@@ -23,8 +23,6 @@ from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import RefinedGraph, held_nodes, refined
 from cellcolor.solvers.cpsat.routes.segment_plans import PlannedSegment, SegmentPlan
 
-__all__ = ["FRUITLESS", "drop_segments"]
-
 ROUNDS = 20
 """Rounds of routing a plan; most that can be routed take a few."""
 

@@ -9,8 +9,6 @@ from ortools.sat.python import cp_model
 
 from cellcolor.solvers.bounds.tangles import Tangle
 
-__all__ = ["PartedCells", "PlanCells", "PlanModel"]
-
 PartedCells = Mapping[
     tuple[int, int], Sequence[tuple[Sequence[frozenset[int]], Sequence[frozenset[int]]]]
 ]

@@ -27,8 +27,6 @@ from cellcolor.solvers.cpsat.routes.sectors import (
     refined,
 )
 
-__all__ = ["FEW_MOVES", "Recoloring", "recolor"]
-
 ONE_MORE = 0.0013
 """The chance that a division with one segment more is kept."""
 

@@ -20,8 +20,6 @@ from cellcolor.solvers.cpsat.model.painting import Painting
 from cellcolor.solvers.cpsat.routes.sectors import RefinedGraph, painting_of_nodes
 from cellcolor.solvers.cpsat.routes.segment_plans import SegmentPlan
 
-__all__ = ["route"]
-
 FIRST_PRICE, PRICE_FACTOR, HIGHEST_PRICE = 0.5, 1.3, 50.0
 """What a node costs for each other net that uses it, in units of an unused node. The price begins
 low, so that nets find their shortest ways, and rises by the factor after each round with nodes that

@@ -9,8 +9,6 @@ from itertools import pairwise
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 
-__all__ = ["RefinedGraph", "held_nodes", "node_colors", "painting_of_nodes", "refined"]
-
 
 @dataclass(frozen=True, slots=True)
 class RefinedGraph:

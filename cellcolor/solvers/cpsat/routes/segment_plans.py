@@ -23,8 +23,6 @@ from cellcolor.solvers.bounds.tangles import Tangle, Tangles, Touching
 from cellcolor.solvers.cpsat.model_runs import SolveWithSeed
 from cellcolor.solvers.cpsat.routes.plan_model import PartedCells, PlanCells, PlanModel
 
-__all__ = ["PlannedSegment", "Planner", "SegmentPlan", "Undecided"]
-
 
 @dataclass(frozen=True, slots=True)
 class PlannedSegment:

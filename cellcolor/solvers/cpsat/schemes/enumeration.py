@@ -26,8 +26,6 @@ from cellcolor.solvers.cpsat.schemes.several_loops import unconnected_differ
 from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
 from cellcolor.solvers.interface import Options
 
-__all__ = ["optimal_schemes"]
-
 _AHEAD = 100
 """Schemes that are found ahead of whoever takes them. With so many waiting the search pauses."""
 _READING = 5e-6

@@ -21,8 +21,6 @@ from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.solvers.cpsat.schemes.several_loops import literals_on_loops, same_blocks
 
-__all__ = ["MOST_SCHEME_LITERALS", "SchemeModel", "check_size"]
-
 MOST_SCHEME_LITERALS = 20_000_000
 """Literals in the constraints that grow with the cube of a cell's darts. So many take some
 gigabytes during the search; a larger model is not built."""

@@ -12,8 +12,6 @@ from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.union_find import UnionFind
 
-__all__ = ["SchemeVariables", "literals_on_loops", "same_blocks", "unconnected_differ"]
-
 Together = dict[tuple[int, int], cp_model.IntVar]
 """Per two darts of a cell, the lower first: they are in one block."""
 

@@ -15,8 +15,6 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block
 
-__all__ = ["zeros_can_differ"]
-
 
 def zeros_can_differ(
     graph: DartGraph, painting: Sequence[Sequence[Block]], deadline: Deadline = NEVER
