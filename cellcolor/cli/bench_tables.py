@@ -46,7 +46,7 @@ def print_summary(tables: Sequence[Path]) -> Exit:
 def draw_plots(tables: Sequence[Path], folder: Path) -> Exit:
     """Draw what tables of solvers say."""
     with extras_for("plots"):
-        from cellcolor.pictures.benchmarks import render_plot
+        from cellcolor.pictures.plots import render_plot
     rows, _ = _read(tables)
     if not rows:
         raise InputError(str(tables[0]), None, "has no runs of solvers")

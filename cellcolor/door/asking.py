@@ -87,7 +87,7 @@ def save_front(front: Front, path: str | PathLike[str]) -> None:
     file = path_of(path)
     kind = kind_of_plot(file)
     with extras_for("plots"):
-        from cellcolor.pictures.answer_plots import render_front
+        from cellcolor.pictures.plots import render_front
     write([Output(file, kind, [render_front(front, file.suffix[1:])])])
 
 

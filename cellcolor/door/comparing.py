@@ -108,7 +108,7 @@ class Comparison:
         file = path_of(path)
         kind = kind_of_plot(file)
         with extras_for("plots"):
-            from cellcolor.pictures.answer_plots import render_arms
+            from cellcolor.pictures.plots import render_arms
         shares = {row.arm: row.shares for row in self.arms}
         write([Output(file, kind, [render_arms(self.name, shares, file.suffix[1:])])])
 

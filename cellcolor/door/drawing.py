@@ -20,12 +20,11 @@ from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, write
-from cellcolor.pictures.interface import Given
-from cellcolor.pictures.registry import make_picture
+from cellcolor.pictures.picture import Picture2D, Picture3D
+from cellcolor.pictures.registry import Picture, make_picture
 
 if TYPE_CHECKING:
     from cellcolor.checker.certificates import BoundVerdict
-    from cellcolor.pictures.interface import Drawn, Picture, Source
 
 _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
@@ -38,7 +37,7 @@ class Drawing:
         picture: what it consists of.
     """
 
-    picture: Drawn
+    picture: Picture2D | Picture3D
 
     def render(self, suffix: str) -> bytes:
         """The bytes of a file that ends in ``.html``, ``.png`` or ``.svg``.
@@ -127,7 +126,7 @@ def picture_of(view: View) -> Picture:
         InputError: there is no such picture, or an option is missing or too much.
     """
     picture = make_picture(view.name)
-    options: dict[Source, object] = {
+    options: dict[str, object] = {
         "color": view.color,
         "vertex": view.vertex,
         "branch": view.branch,
@@ -172,7 +171,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     def checked() -> tuple[Solution, tuple[BoundVerdict, ...]]:
         return _checked(subject, view.solution, on_surface="verdicts" in picture.needs)
 
-    make: dict[Source, Callable[[], object]] = {
+    make: dict[str, Callable[[], object]] = {
         "build": subject.build,
         "surface": lambda: subject.surface,
         "graph": subject.graph,
@@ -188,7 +187,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     if "surface" in picture.needs and not subject.names_surface:
         message = f"{subject.why_no_surface}; only the graph can be shown (--graph)"
         raise InputError(file, "surface", message)
-    asked: dict[Source, object] = {
+    asked: dict[str, object] = {
         "color": view.color,
         "vertex": view.vertex,
         "branch": view.branch,
@@ -201,7 +200,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     parts = {part: make[part]() for part in make if part in picture.needs}
     parts |= {part: make[part]() for part in picture.takes if part not in missing}
     try:
-        return Drawing(picture.draw(Given(parts)))
+        return Drawing(picture.draw(**parts))
     except InputError as error:
         raise (error if error.file or file is None else error.in_file(file)) from error
 

@@ -216,7 +216,7 @@ def save_map(found: Placements, path: str | PathLike[str]) -> None:
     file = path_of(path)
     kind = kind_of_plot(file)
     with extras_for("plots"):
-        from cellcolor.pictures.answer_plots import render_map
+        from cellcolor.pictures.plots import render_map
     picture = render_map(found.name, found.map, found.here, found.best, file.suffix[1:])
     write([Output(file, kind, [picture])])
 

@@ -18,7 +18,6 @@ from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.obstacle import Obstacle
 from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh
-from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
@@ -30,40 +29,22 @@ Triangles = NDArray[np.int64]
 _Mesh = tuple[Array, Triangles]
 
 
-class ArmPicture:
-    """The arm on a vertex."""
+def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
+    """The arm on a vertex, in the configuration that was found valid there.
 
-    needs: tuple[Source, ...] = ("build", "vertex", "branch")
-    takes: tuple[Source, ...] = ()
-
-    def draw(self, given: Given) -> Picture3D:
-        """The arm in the configuration that was found valid there.
-
-        Raises:
-            InputError: the branch has no valid configuration on the vertex.
-        """
-        result, vertex, branch = given.build, given.vertex, given.branch
-        reasons = result.reasons[vertex].tolist()
-        if reasons[branch] != VALID:
-            valid = [n for n, r in zip(result.branches, reasons, strict=True) if r == VALID]
-            message = (
-                f"{result.branches[branch]!r} is not valid on vertex {vertex}: "
-                f"{result.reason_names[reasons[branch]]}; valid there: {', '.join(valid) or 'none'}"
-            )
-            raise InputError(None, "branch", message)
-        return arm_at(result, vertex, branch)
-
-
-def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
-    """The arm with its tool on a vertex.
-
-    Args:
-        result: what the front end found; the branch has a solution on the vertex.
-        vertex: index of a vertex.
-        branch: index of a branch.
+    Raises:
+        InputError: the branch has no valid configuration on the vertex.
     """
-    scene, robot = result.scene, result.robot
-    configuration = result.configurations[vertex, branch]
+    reasons = build.reasons[vertex].tolist()
+    if reasons[branch] != VALID:
+        valid = [n for n, r in zip(build.branches, reasons, strict=True) if r == VALID]
+        message = (
+            f"{build.branches[branch]!r} is not valid on vertex {vertex}: "
+            f"{build.reason_names[reasons[branch]]}; valid there: {', '.join(valid) or 'none'}"
+        )
+        raise InputError(None, "branch", message)
+    scene, robot = build.scene, build.robot
+    configuration = build.configurations[vertex, branch]
     poses = forward(robot, configuration[None])
 
     links: dict[str, list[_Mesh]] = {}
@@ -73,14 +54,14 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
         _layer(link, _LINKS[number % len(_LINKS)], _joined(meshes))
         for number, (link, meshes) in enumerate(links.items())
     ]
-    mesh = (result.surface.vertices, result.surface.faces)
+    mesh = (build.surface.vertices, build.surface.faces)
     layers.append(_layer("object", FAINT, mesh))
     if scene.solid_object is not None:
         solid = scene.solid_object.surface(scene.folder).placed(scene.placement)
         layers.append(_layer("collision object", "#999933", (solid.vertices, solid.faces)))
-    size = float(np.ptp(result.surface.vertices, axis=0).max())
+    size = float(np.ptp(build.surface.vertices, axis=0).max())
     points, triangles = _capsule(np.zeros(3), np.zeros(3), 0.02 * size)
-    target = result.surface.vertices[vertex]
+    target = build.surface.vertices[vertex]
     layers.append(_layer(f"vertex {vertex}", WARNING, (points + target, triangles)))
     if scene.obstacle:
         meshes = [obstacle_mesh(obstacle, scene.folder) for obstacle in scene.obstacle]
@@ -96,7 +77,7 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
     )
     place = ", ".join(f"{value:.3f}" for value in target)
     return Picture3D(
-        f"{scene.name}: vertex {vertex}, {result.branches[branch]}",
+        f"{scene.name}: vertex {vertex}, {build.branches[branch]}",
         tuple(layers),
         ground,
         (),
@@ -105,7 +86,7 @@ def arm_at(result: BuildResult, vertex: int, branch: int) -> Picture3D:
             f"Joints: {joints}",
             f"Vertex [m]: {place}",
         ),
-        _free_view(robot, poses, result.surface.vertex_normals[vertex]),
+        _free_view(robot, poses, build.surface.vertex_normals[vertex]),
     )
 
 

@@ -1,26 +1,64 @@
-"""Every picture by name; ``cellcolor show --view NAME`` draws it (docs/how-to/add-a-picture.md)."""
+"""Every picture by name; ``cellcolor show --view NAME`` draws it (docs/how-to/add-a-picture.md).
+
+A picture is a function. The names of its parameters say what it is drawn of:
+
+=================  =============================================================================
+``surface``        the labelled surface
+``graph``          the topological graph
+``decomposition``  the topological graph, and where it lies on the surface
+``solution``       a solution of the graph with a division, which the checker has found valid
+``verdicts``       what came of verifying the bounds of this solution on the surface
+``plan``           one color for each vertex of the surface, valid or not
+``reasons``        what became of every candidate of the scene that the surface was built from
+``build``          all that the front end found when it built the scene
+``color``          the number of a color of the surface
+``branch``         the number of an inverse-kinematic branch
+``vertex``         the index of a vertex of the surface
+=================  =============================================================================
+
+A parameter with a default is passed only where there is such a thing.
+"""
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
 from importlib.metadata import EntryPoint
 from typing import TYPE_CHECKING
 
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
-    from cellcolor.pictures.interface import Picture
+    from cellcolor.pictures.picture import Picture2D, Picture3D
 
 PICTURES = {
-    "arm": "cellcolor.pictures.arm:ArmPicture",
-    "cells": "cellcolor.pictures.by_cell_and_color:CellPicture",
-    "color": "cellcolor.pictures.by_cell_and_color:ColorPicture",
-    "graph": "cellcolor.pictures.topological_graph:GraphPicture",
-    "plan": "cellcolor.pictures.by_plan:PlanPicture",
-    "reasons": "cellcolor.pictures.by_reason:ReasonPicture",
-    "segments": "cellcolor.pictures.by_segment:SegmentPicture",
-    "why": "cellcolor.pictures.why_not_fewer:WhyNotFewerPicture",
+    "arm": "cellcolor.pictures.arm:draw_arm",
+    "cells": "cellcolor.pictures.surface_pictures:draw_cells",
+    "color": "cellcolor.pictures.surface_pictures:draw_color",
+    "graph": "cellcolor.pictures.topological_graph:draw_graph",
+    "plan": "cellcolor.pictures.surface_pictures:draw_plan",
+    "reasons": "cellcolor.pictures.surface_pictures:draw_reasons",
+    "segments": "cellcolor.pictures.surface_pictures:draw_segments",
+    "why": "cellcolor.pictures.why_not_fewer:draw_why",
 }
-"""The class of each, as ``module:name``; it is imported when somebody asks for the picture."""
+"""The function of each, as ``module:name``; it is imported when somebody asks for the picture."""
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture's function, and the names of its parameters.
+
+    Attributes:
+        draw: called with parts by name. It raises InputError where these parts cannot be drawn
+            together, and names the part.
+        needs: what it cannot be drawn without.
+        takes: what it uses besides, where there is such a thing.
+    """
+
+    draw: Callable[..., Picture2D | Picture3D]
+    needs: tuple[str, ...]
+    takes: tuple[str, ...]
 
 
 def make_picture(name: str) -> Picture:
@@ -32,5 +70,8 @@ def make_picture(name: str) -> Picture:
     """
     if name not in PICTURES:
         raise InputError(None, "view", f"there is no {name!r}; there are {', '.join(PICTURES)}")
-    picture: Picture = EntryPoint(name, PICTURES[name], "").load()()
-    return picture
+    draw = EntryPoint(name, PICTURES[name], "").load()
+    parameters = inspect.signature(draw).parameters.values()
+    needs = tuple(one.name for one in parameters if one.default is one.empty)
+    takes = tuple(one.name for one in parameters if one.default is not one.empty)
+    return Picture(draw, needs, takes)

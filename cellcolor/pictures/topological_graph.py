@@ -17,7 +17,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
-from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.palette import INK, LINES
 from cellcolor.pictures.picture import Outline, Picture2D, PlaneLine
 
@@ -29,65 +28,55 @@ _Text = tuple[str, Array, float]
 """A text, its place (2,), and its size in points."""
 
 
-class GraphPicture:
-    """The topological graph."""
-
-    needs: tuple[Source, ...] = ("graph",)
-    takes: tuple[Source, ...] = ("surface", "decomposition")
-
-    def draw(self, given: Given) -> Picture2D:
-        """The graph, its nodes near where their cells are if there is a surface."""
-        if "surface" not in given:
-            return draw_graph(given.graph)
-        return draw_graph(given.graph, places_on(given.surface, given.decomposition))
-
-
-def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
-    """The graph as a drawing.
-
-    Args:
-        instance: the graph.
-        places: (cells, 2) where the nodes should be about; None: anywhere.
-    """
-    radii = np.array([0.8 + 0.08 * sum(map(len, cell.loops)) for cell in instance.cells])
-    centers = _layout(instance, places, radii)
+def draw_graph(
+    graph: Instance,
+    surface: LabelledSurface | None = None,
+    decomposition: Decomposition | None = None,
+) -> Picture2D:
+    """The graph, its nodes about where their cells are if there is a surface."""
+    places = None
+    if surface is not None and decomposition is not None:
+        places = _places_on(surface, decomposition)
+    radii = np.array([0.8 + 0.08 * sum(map(len, cell.loops)) for cell in graph.cells])
+    centers = _layout(graph, places, radii)
     low, high = (centers - radii[:, None], centers + radii[:, None]) if len(radii) else ([], [])
     extent = float((np.max(high, axis=0) - np.min(low, axis=0)).max()) if len(radii) else 1.0
     unit = extent / _POINTS_WIDE  # one point of the printed picture
     angles: dict[int, float] = {}
     owner: dict[int, int] = {}
-    for cell in instance.cells:
-        angles |= _ring(instance, cell.id, centers)
+    for cell in graph.cells:
+        angles |= _ring(graph, cell.id, centers)
         owner |= {dart: cell.id for loop in cell.loops for dart in loop}
 
     def port(dart: int) -> tuple[Array, Array]:
-        direction = np.array([np.cos(angles[dart]), np.sin(angles[dart])])
+        direction = _direction(angles[dart])
         return centers[owner[dart]] + radii[owner[dart]] * direction, direction
 
     lines: list[PlaneLine] = []
     texts: list[_Text] = []
-    for edge in instance.edges:
+    for edge in graph.edges:
         sides = [dart for dart in (edge.id, -edge.id) if dart in owner]
-        path = (
-            _path(*port(sides[0]), *port(sides[1])) if len(sides) == 2 else _stub(*port(sides[0]))
-        )
-        colors = instance.joinable(edge.id)
+        start, out = port(sides[0])
+        path = np.array([start, start + 0.3 * out])  # the end of an edge to the outside
+        if len(sides) == 2:
+            path = _path(start, out, *port(sides[1]))
+        colors = graph.joinable(edge.id)
         if not colors:
             lines.append(PlaneLine(_DEAD, "#777777", path, 1.0, dashed=True))
         for place, color in enumerate(colors):
             shifted = _beside(path, (place - (len(colors) - 1) / 2) * 2.2 * unit)
-            name = f"{color}: {instance.colors[color]}"
+            name = f"{color}: {graph.colors[color]}"
             lines.append(PlaneLine(name, LINES[color % len(LINES)], shifted, 2.0))
-        if len(instance.colors) > len(LINES) and colors:
+        if len(graph.colors) > len(LINES) and colors:
             texts.append((",".join(map(str, colors)), path[len(path) // 2], 6.0))
 
     outlines: list[Outline] = []
-    for cell in instance.cells:
+    for cell in graph.cells:
         shapes, numbers = _node(cell, centers[cell.id], float(radii[cell.id]), angles, unit)
         outlines += shapes
         texts += numbers
     # The legend has the colors in their order, dead edges last.
-    order = [f"{color}: {name}" for color, name in enumerate(instance.colors)] + [_DEAD]
+    order = [f"{color}: {name}" for color, name in enumerate(graph.colors)] + [_DEAD]
     lines.sort(key=lambda line: order.index(line.name))
     notes = [
         "Node: a cell; its rim: the colors available there.",
@@ -95,10 +84,10 @@ def draw_graph(instance: Instance, places: Array | None = None) -> Picture2D:
         "as seen from outside; black bars separate the loops of a cell with holes.",
         "Edge: one line for each joinable color. Positions mean nothing.",
     ]
-    if len(instance.colors) > len(LINES):
+    if len(graph.colors) > len(LINES):
         notes.append("Line colors repeat: the numbers on the edges identify the colors.")
-    cells, edges = count(len(instance.cells), "cell"), count(len(instance.edges), "edge")
-    title = f"{instance.name}: {cells}, {edges}"
+    cells, edges = count(len(graph.cells), "cell"), count(len(graph.edges), "edge")
+    title = f"{graph.name}: {cells}, {edges}"
     return Picture2D(title, tuple(lines), tuple(outlines), tuple(texts), tuple(notes))
 
 
@@ -135,7 +124,7 @@ def _node(
     return shapes, texts
 
 
-def places_on(surface: LabelledSurface, decomposition: Decomposition) -> Array:
+def _places_on(surface: LabelledSurface, decomposition: Decomposition) -> Array:
     """The middles (cells, 2) of the cells, as seen from before the surface.
 
     Args:
@@ -250,11 +239,6 @@ def _path(start: Array, out: Array, end: Array, into: Array) -> Array:
         (1 - t) ** 3 * start + 3 * t * (1 - t) ** 2 * a + 3 * t**2 * (1 - t) * b + t**3 * end
     )
     return path
-
-
-def _stub(start: Array, out: Array) -> Array:
-    """The end of an edge to the outside."""
-    return np.array([start, start + 0.3 * out])
 
 
 def _beside(path: Array, offset: float) -> Array:

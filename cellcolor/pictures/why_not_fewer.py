@@ -12,14 +12,15 @@ from itertools import combinations, cycle
 import numpy as np
 
 from cellcolor.arrays import Mask
+from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.data.bounds.kind import Shown
 from cellcolor.data.bounds.kinds import certificate_of
 from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
-from cellcolor.pictures.interface import Given, Source
 from cellcolor.pictures.mesh_picture import Labels, SurfaceView, VertexClass, draw_surface
 from cellcolor.pictures.palette import AREAS, FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Picture3D
@@ -30,29 +31,27 @@ _TAKEN_AWAY = LINES[0]
 _WAYS = (LINES[0], LINES[5])
 
 
-class WhyNotFewerPicture:
-    """What proves that no division of the surface has fewer segments."""
+def draw_why(
+    surface: LabelledSurface,
+    decomposition: Decomposition,
+    solution: Solution,  # noqa: ARG001 - the verdicts are of its bounds
+    verdicts: tuple[BoundVerdict, ...],
+) -> Picture3D:
+    """The cells, or one conflict, that the certificate of the greatest bound names.
 
-    needs: tuple[Source, ...] = ("surface", "decomposition", "solution", "verdicts")
-    takes: tuple[Source, ...] = ()
-
-    def draw(self, given: Given) -> Picture3D:
-        """The cells, or one conflict, that the certificate of the greatest bound names.
-
-        Raises:
-            InputError: no certificate of the solution proves more than one segment.
-        """
-        surface, decomposition = given.surface, given.decomposition
-        proved = [v.bound for v in given.verdicts if v.outcome == "verified" and v.bound.value > 1]
-        surface_bounds = [bound for bound in proved if bound.holds_for == "surface"]
-        bound = max(surface_bounds, key=lambda bound: bound.value, default=None)
-        certificate = None if bound is None else certificate_of(bound)
-        if bound is None or certificate is None:
-            message = "none above 1 has a certificate, so there is nothing to see"
-            raise InputError(None, "bounds", message)
-        title = f"{surface.name}: why {count(bound.value, 'segment')} at least"
-        shown = certificate.shown(bound.value, decomposition.instance)
-        return draw_surface(surface, _view(surface, decomposition, title, shown))
+    Raises:
+        InputError: no certificate of the solution proves more than one segment.
+    """
+    proved = [v.bound for v in verdicts if v.outcome == "verified" and v.bound.value > 1]
+    surface_bounds = [bound for bound in proved if bound.holds_for == "surface"]
+    bound = max(surface_bounds, key=lambda bound: bound.value, default=None)
+    certificate = None if bound is None else certificate_of(bound)
+    if bound is None or certificate is None:
+        message = "none above 1 has a certificate, so there is nothing to see"
+        raise InputError(None, "bounds", message)
+    title = f"{surface.name}: why {count(bound.value, 'segment')} at least"
+    shown = certificate.shown(bound.value, decomposition.instance)
+    return draw_surface(surface, _view(surface, decomposition, title, shown))
 
 
 def _view(

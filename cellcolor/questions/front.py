@@ -52,13 +52,22 @@ class FrontPoint:
         """Whether it covers the most of any division of the surface."""
         return self.proved and self.holds_for_surface
 
-    def __str__(self) -> str:
-        text = f"{count(self.lift_offs, 'lift-off')}: {100 * self.covered_share:.1f} %"
+    @property
+    def in_short(self) -> str:
+        """Number and share, as text."""
+        return f"{count(self.lift_offs, 'lift-off')}: {100 * self.covered_share:.1f} %"
+
+    @property
+    def proof(self) -> str:
+        """What is proved of it, as text."""
         if self.proved_for_surface:
-            return f"{text}, proved for any division of the surface"
+            return "proved for any division of the surface"
         if self.proved:
-            return f"{text}, proved in the search space paper"
-        return f"{text}, at most {100 * self.at_most_share:.1f} %"
+            return "proved in the search space paper"
+        return f"at most {100 * self.at_most_share:.1f} %"
+
+    def __str__(self) -> str:
+        return f"{self.in_short}, {self.proof}"
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""

@@ -14,7 +14,7 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decomposition_of
 from cellcolor.decomposition.borders import ClosedMesh
-from cellcolor.pictures.by_segment import by_solution
+from cellcolor.pictures.surface_pictures import by_solution
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options
 

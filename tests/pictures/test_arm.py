@@ -51,7 +51,7 @@ class TestScene:
     def test_nothing_is_read_again(self, monkeypatch: pytest.MonkeyPatch) -> None:
         """Scene, setup and robot are in the build: their files may have gone."""
         from cellcolor.frontend import build_surface
-        from cellcolor.pictures.arm import arm_at
+        from cellcolor.pictures.arm import draw_arm
 
         result = build_surface(INSTANCES / "scenes" / "square.toml")
         vertex, branch = (int(k) for k in np.argwhere(result.node_color >= 0)[0])
@@ -63,7 +63,7 @@ class TestScene:
         monkeypatch.setattr("io.open", read)
         monkeypatch.setattr("pathlib.Path.open", read)
         monkeypatch.setattr("pathlib.Path.read_text", read)
-        picture = arm_at(result, vertex, branch)
+        picture = draw_arm(result, vertex, branch)
         assert {"object", f"vertex {vertex}"} < {layer.name for layer in picture.layers}
 
     def test_arm(self, tmp_path: Path) -> None:
@@ -126,11 +126,11 @@ class TestScene:
         from shipped import shipped
 
         from cellcolor.frontend import build_surface
-        from cellcolor.pictures.arm import arm_at
+        from cellcolor.pictures.arm import draw_arm
 
         ground = {"height_m": -0.5, "normal": (-1.0, 0.0, 2.0)}
         result = build_surface(shipped("square", 100).varied(ground=ground))
         vertex, branch = (int(k) for k in np.argwhere(result.node_color >= 0)[0])
-        (lines,) = arm_at(result, vertex, branch).lines
+        (lines,) = draw_arm(result, vertex, branch).lines
         ends = lines.ends.reshape(-1, 3)
         np.testing.assert_allclose(ends[:, 2], -0.5 + 0.5 * ends[:, 0], atol=1e-12)

@@ -27,10 +27,10 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import Fault
 from cellcolor.files.writing import HTML
 from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.pictures.report_page.cards import badges_of
 from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.report_page.page import render_page
-from cellcolor.pictures.report_page.thinning import frames_of, least_until_next, straightened
-from cellcolor.pictures.report_page.verdict_cards import badges_of
+from cellcolor.pictures.report_page.viewer_data import frames_of, straightened
 
 HOSTILE = "</script><b>&\"'{{DATA}}"
 
@@ -276,11 +276,6 @@ def test_frames_keep_the_ends_of_strokes(count: int, most: int, rng: object) -> 
     wanted |= {end for first, after in trajectory.strokes for end in (first, after - 1)}
     assert wanted <= set(frames.tolist())
     assert len(frames) <= max(most, 0) + len(wanted)
-    values = joints[:, 0]
-    least = least_until_next(values, frames)
-    for number, frame in enumerate(frames):
-        after = frames[number + 1] if number + 1 < len(frames) else count
-        assert least[number] == values[frame:after].min()
 
 
 @given(

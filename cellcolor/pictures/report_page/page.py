@@ -12,9 +12,8 @@ from cellcolor.data.proof_wording import in_words, witness_in_words
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.files.writing import MARKER
-from cellcolor.pictures.report_page.cards import cards_of
+from cellcolor.pictures.report_page.cards import badges_of, cards_of
 from cellcolor.pictures.report_page.content import Card, MotionReport
-from cellcolor.pictures.report_page.verdict_cards import badges_of
 from cellcolor.pictures.report_page.viewer_data import MOST_FRAMES, viewer_data
 from cellcolor.version import __version__
 

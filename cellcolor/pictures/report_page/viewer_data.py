@@ -1,13 +1,13 @@
-"""The arrays that the page's scripts draw from."""
+"""The arrays that the page's scripts draw from; no more samples than can be seen on it."""
 
 from __future__ import annotations
 
 import base64
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index
 from cellcolor.data.candidate_table import VALID
@@ -24,15 +24,15 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.pictures.arm import body_mesh, obstacle_mesh
 from cellcolor.pictures.mesh_picture import SurfaceView, draw_surface
-from cellcolor.pictures.report_page.answers import answer_modes
 from cellcolor.pictures.report_page.content import MotionReport
 from cellcolor.pictures.report_page.surface_modes import (
     SurfaceMode,
+    front_mode,
     proof_mode,
     reach_mode,
     segment_mode,
 )
-from cellcolor.pictures.report_page.thinning import frames_of, least_until_next, straightened
+from cellcolor.questions.front import Front
 
 MOST_FRAMES = 1500
 _MOST_DOTS = 40  # for parts that are left out
@@ -50,18 +50,24 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
     surface = report.built.surface
     modes = [reach_mode(report.built)]
     witness = () if report.solution is None else report.solution.witness
-    proof = proof_mode(surface, report.decomposition, witness)
-    modes += [proof] if proof is not None else []
+    if len(witness) > 1:
+        modes.append(proof_mode(surface, report.decomposition, witness))
     answered = report.answered
     if answered is not None and len(answered.surface.vertices) == len(surface.vertices):
-        modes += answer_modes(answered)
+        modes += [
+            front_mode(answered.surface, answered.decomposition, point)
+            for answer in answered.answers
+            if isinstance(answer, Front)
+            for point in answer
+        ]
     if painted is not None:  # its surface may be finer
         surface, given = painted.surface, painted.stands_for
         modes = [replace(mode, labels=mode.labels[given]) for mode in modes]
         modes.insert(0, segment_mode(painted))
     frames = frames_of(trajectory, MOST_FRAMES)
     vertices, faces = surface.vertices, surface.faces
-    lift, ground = 0.05 * _edge(vertices, faces), prepared.workplace.ground
+    first_edges = np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1)
+    lift, ground = 0.05 * float(first_edges.mean()), prepared.workplace.ground
     return {
         "mesh": {"vertices": _packed(vertices, "f4"), "faces": _packed(faces, "u4")},
         "modes": [_mode(surface, mode) for mode in modes],
@@ -209,7 +215,13 @@ def _still(report: MotionReport) -> Trajectory:
 
 
 def _frames(prepared: PreparedScene, trajectory: Trajectory, frames: Index) -> dict[str, Any]:
-    measures = _conditioning(prepared.robot, trajectory.joints)
+    robot = prepared.robot
+    poses = forward(robot, trajectory.joints)
+    linear, angular = tip_jacobian(poses)
+    measures = {
+        "determinant": task_determinant(linear, angular, poses.tool_axis, robot.task),
+        "manipulability": manipulability(linear, robot.task),
+    }
     return {
         "samples": len(trajectory.times),
         "times": _packed(trajectory.times[frames], "f4"),
@@ -217,30 +229,23 @@ def _frames(prepared: PreparedScene, trajectory: Trajectory, frames: Index) -> d
         "contact": _packed(trajectory.contact[frames], "u1"),
         "segment": _packed(trajectory.segment[frames], "i2"),
         "unplanned": _packed(np.isin(frames, trajectory.unplanned), "u1"),
-    } | {name: _packed(least_until_next(own, frames), "f4") for name, own in measures.items()}
-
-
-def _conditioning(robot: Robot, configurations: Array) -> dict[str, Array]:
-    """Both measures (k,) in m^3 of configurations (k, joints)."""
-    poses = forward(robot, configurations)
-    linear, angular = tip_jacobian(poses)
-    return {
-        "determinant": task_determinant(linear, angular, poses.tool_axis, robot.task),
-        "manipulability": manipulability(linear, robot.task),
+    } | {
+        # The least value until before the next frame, so that no dip is left out.
+        name: _packed(np.minimum.reduceat(own, frames), "f4")
+        for name, own in measures.items()
     }
-
-
-def _finite(limits: Array) -> list[float | None]:
-    """Limits (joints,), null where a joint has none."""
-    return [limit if np.isfinite(limit) else None for limit in limits.tolist()]
 
 
 def _limits(prepared: PreparedScene) -> dict[str, Any]:
     least, robot = prepared.arm.conditioning, prepared.robot
     tested = prepared.setup.constraints.conditioning
+    lower, upper = (
+        [limit if np.isfinite(limit) else None for limit in limits.tolist()]
+        for limits in (robot.lower, robot.upper)
+    )
     return {
-        "lower": _finite(robot.lower),
-        "upper": _finite(robot.upper),
+        "lower": lower,
+        "upper": upper,
         "determinant": least.min_task_determinant if tested else None,
         "manipulability": least.min_manipulability if tested else None,
     }
@@ -267,11 +272,6 @@ def _places(trajectory: Trajectory, vertices: Array, normals: Array) -> list[dic
     return marks
 
 
-def _edge(vertices: Array, faces: NDArray[np.int64]) -> float:
-    """The mean length of the first edges of the faces, m."""
-    return float(np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1).mean())
-
-
 def _eye(surface: LabelledSurface) -> Array:
     """A unit vector from the scene to the eye: much of the part's outside, and the arm beside it.
 
@@ -288,3 +288,57 @@ def _eye(surface: LabelledSurface) -> Array:
     score = seen - 0.15 * np.abs(flat @ away) + 0.05 * (flat @ away)
     best: Array = eyes[np.argmax(score)]
     return best
+
+
+def frames_of(trajectory: Trajectory, most: int) -> Index:
+    """Samples, ascending, at about equal travel of the joints, of time where they rest.
+
+    The ends of strokes and of moves that were not planned are always among them.
+
+    Args:
+        trajectory: one sample or more.
+        most: how many, besides the ends.
+    """
+    count = len(trajectory.times)
+    inside = [end for first, after in trajectory.strokes for end in (first, after - 1)]
+    inside += [end for sample in trajectory.unplanned for end in (sample, sample + 1)]
+    ends = np.array([0, count - 1, *inside], dtype=np.int64)
+    if count <= most:
+        return np.arange(count)
+    travel = np.abs(np.diff(trajectory.joints, axis=0)).max(axis=1)
+    steps = travel / (travel.sum() or 1.0) + 0.2 * np.diff(trajectory.times) / trajectory.seconds
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    even = np.searchsorted(along, np.linspace(0, along[-1], most))
+    return np.unique(np.concatenate([ends, np.minimum(even, count - 1)]))
+
+
+def straightened(points: Array, kept: Index, tolerance: float) -> Index:
+    """Points, ascending, whose polyline passes all points (k, 3) within a tolerance, m.
+
+    By halving at the farthest point (Douglas and Peucker, Algorithms for the reduction of the
+    number of points required to represent a digitized line, 1973).
+
+    Args:
+        points: of a polyline, two or more.
+        kept: points that stay in any case.
+        tolerance: m.
+    """
+    chosen = np.zeros(len(points), dtype=bool)
+    chosen[[0, len(points) - 1]] = True
+    chosen[kept] = True
+    stops = np.flatnonzero(chosen).tolist()
+    pieces = list(pairwise(stops))
+    while pieces:
+        first, last = pieces.pop()
+        if last - first < 2:
+            continue
+        between = points[first + 1 : last] - points[first]
+        way = points[last] - points[first]
+        share = np.clip(between @ way / (way @ way or 1.0), 0, 1)
+        far = np.linalg.norm(between - share[:, None] * way, axis=1)
+        worst = int(np.argmax(far))
+        if far[worst] > tolerance:
+            middle = first + 1 + worst
+            chosen[middle] = True
+            pieces += [(first, middle), (middle, last)]
+    return np.flatnonzero(chosen)

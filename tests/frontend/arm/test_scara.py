@@ -47,7 +47,7 @@ from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.setup import RobotFiles, Turn
 from cellcolor.motion.scene_painting import color_costs
-from cellcolor.pictures.arm import arm_at
+from cellcolor.pictures.arm import draw_arm
 from examples import examples
 
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
@@ -307,7 +307,7 @@ def test_it_is_painted_and_drawn_with_its_units(built: BuildResult) -> None:
     assert (costs[~valid] == 1).all() and (costs[valid] < 1).all()
     vertex, branch = np.argwhere(valid)[0]
     q = built.configurations[vertex, branch]
-    picture = arm_at(built, int(vertex), int(branch))
+    picture = draw_arm(built, int(vertex), int(branch))
     assert any(f"{1000 * q[2]:.1f} mm" in note for note in picture.notes)
 
 

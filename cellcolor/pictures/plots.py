@@ -1,7 +1,8 @@
-"""Pictures of answers, with Matplotlib: fronts, maps of placements, and arms beside each other."""
+"""Curves, bars and maps with Matplotlib: measurements, fronts, placements, arms compared."""
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
 
 import matplotlib as mpl
@@ -10,16 +11,75 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.colors import BoundaryNorm, ListedColormap
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
+from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter
 
 from cellcolor.arrays import Array
-from cellcolor.pictures.benchmarks import STYLE, saved
+from cellcolor.data.plot import Plot
+from cellcolor.files.writing import MARKER
 from cellcolor.pictures.palette import FAINT, GREY, INK, LINES
 from cellcolor.questions.front import Front
 from cellcolor.questions.placements import PlacedMinimum, PlacementMap
 
+_STYLE = {"font.size": 9, "svg.fonttype": "none", "svg.hashsalt": "cellcolor"}
+_DASHES = ("-", "--", ":", "-.")
+_MARKS = "os^vD<>P"
 _UNITS = {"x": "m", "y": "m", "z": "m", "roll": "rad", "pitch": "rad", "yaw": "rad"}
 _LIFT_OFFS, _SHARE = "lift-offs", "share of the whole surface, %"
+
+
+def render_plot(plot: Plot, kind: str) -> bytes:
+    """The plot's file; the same plot gives the same bytes.
+
+    Args:
+        plot: what to draw.
+        kind: ``png`` or ``svg``.
+    """
+    with mpl.rc_context(_STYLE):
+        figure, (axes,) = _figure(1)
+        _draw(axes, plot)
+        axes.set_title(plot.title, loc="left")
+        axes.set_xlabel(plot.x)
+        axes.set_ylabel(plot.y)
+        axes.grid(True, color="#DDDDDD", linewidth=0.5)
+        figure.legend(loc="outside right upper", frameon=False, fontsize=8)
+        if plot.note:
+            figure.supxlabel(plot.note, fontsize=7, x=0.01, ha="left")
+        return _saved(figure, kind)
+
+
+def _draw(axes: Axes, plot: Plot) -> None:
+    """Curves, each told from the others by color and by dashes or marks."""
+    axes.set_xscale("log" if plot.log_x else "linear")
+    axes.set_yscale("log" if plot.log_y else "linear")
+    if plot.diagonal:
+        ends = [value for curve in plot.curves for point in curve.points for value in point]
+        if ends:
+            axes.plot([min(ends), max(ends)], [min(ends), max(ends)], color=GREY, linewidth=0.8)
+    for number, curve in enumerate(plot.curves):
+        mark = _MARKS[(number + number // len(LINES)) % len(_MARKS)]
+        xs, ys = ([point[axis] for point in curve.points] for axis in (0, 1))
+        color = LINES[number % len(LINES)]
+        if plot.joined == "points":
+            axes.scatter(
+                xs, ys, s=14, marker=mark, color=color, edgecolor=INK, linewidth=0.3,
+                label=curve.label,
+            )  # fmt: skip
+            continue
+        style = _DASHES[number // len(LINES) % len(_DASHES)]
+        if plot.joined == "steps":
+            axes.step(xs, ys, where="post", color=color, linestyle=style, label=curve.label)
+        else:
+            axes.plot(
+                xs, ys, color=color, linestyle=style, marker=mark, markersize=3, label=curve.label
+            )
+    for axis, logarithmic in ((axes.xaxis, plot.log_x), (axes.yaxis, plot.log_y)):
+        if logarithmic:
+            low, high = axis.get_view_interval()
+            # On a long axis labels of more would run into each other.
+            subs = (1,) if high > 1000 * low else (1, 2, 5)
+            axis.set_major_locator(LogLocator(subs=subs, numticks=12))
+            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            axis.set_minor_formatter(NullFormatter())
 
 
 def render_arms(part: str, shares: Mapping[str, Sequence[float]], kind: str) -> bytes:
@@ -31,7 +91,7 @@ def render_arms(part: str, shares: Mapping[str, Sequence[float]], kind: str) -> 
         kind: ``png`` or ``svg``.
     """
     most = max(map(len, shares.values()), default=0)
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(_STYLE):
         figure, (axes,) = _figure(1)
         width = 0.8 / max(len(shares), 1)
         for number, (arm, own) in enumerate(shares.items()):
@@ -48,7 +108,7 @@ def render_arms(part: str, shares: Mapping[str, Sequence[float]], kind: str) -> 
         axes.set_ylim(0, 105)
         axes.set_xticks(range(most))
         figure.legend(loc="outside right upper", frameon=False, fontsize=8)
-        return saved(figure, kind)
+        return _saved(figure, kind)
 
 
 def render_front(front: Front, kind: str) -> bytes:
@@ -61,7 +121,7 @@ def render_front(front: Front, kind: str) -> bytes:
     at = [point.lift_offs for point in front]
     covered = [100 * point.covered_share for point in front]
     most = [100 * point.at_most_share for point in front]
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(_STYLE):
         figure, (axes,) = _figure(1)
         for point, x, y in zip(front, at, covered, strict=True):
             color = LINES[0] if point.proved_for_surface else LINES[1]
@@ -80,7 +140,7 @@ def render_front(front: Front, kind: str) -> bytes:
         if not front.proved_for_surface:
             note += " Other color: not proved to be the most, for any division of the surface."
         figure.supxlabel(note, fontsize=7, x=0.01, ha="left")
-        return saved(figure, kind)
+        return _saved(figure, kind)
 
 
 def render_map(
@@ -102,7 +162,7 @@ def render_map(
         [np.nan if r is None or r.lift_offs is None else 100 * r.covered_share for r in tiled.rows]
     )
     marks = [("+", here), *((str(number), row) for number, row in enumerate(best, 1))]
-    with mpl.rc_context(STYLE):
+    with mpl.rc_context(_STYLE):
         figure, axes = _figure(2)
         for own, values, title in zip(axes, (lift_offs, shares), (_LIFT_OFFS, _SHARE), strict=True):
             own.set_title(f"{name}: {title}" if own is axes[0] else title, loc="left")
@@ -120,13 +180,7 @@ def render_map(
         if len(tiled.ranges) == 2:
             note += " +: where it stands. Numbers: the best placements."
         figure.supxlabel(note, fontsize=7, x=0.01, ha="left")
-        return saved(figure, kind)
-
-
-def _figure(count: int) -> tuple[Figure, Sequence[Axes]]:
-    figure = Figure(figsize=(8, 5) if count == 1 else (11, 5), dpi=150, layout="constrained")
-    FigureCanvasAgg(figure)
-    return figure, [figure.add_subplot(1, count, number + 1) for number in range(count)]
+        return _saved(figure, kind)
 
 
 def _curve(axes: Axes, tiled: PlacementMap, values: Array, title: str) -> None:
@@ -173,3 +227,17 @@ def _mark(axes: Axes, tiled: PlacementMap, row: PlacedMinimum, text: str) -> Non
         axes.annotate(
             text, (place[0], place[1]), fontsize=7, ha="center", va="center", color=INK, bbox=box
         )
+
+
+def _figure(count: int) -> tuple[Figure, Sequence[Axes]]:
+    figure = Figure(figsize=(8, 5) if count == 1 else (11, 5), dpi=150, layout="constrained")
+    FigureCanvasAgg(figure)
+    return figure, [figure.add_subplot(1, count, number + 1) for number in range(count)]
+
+
+def _saved(figure: Figure, kind: str) -> bytes:
+    """A figure's file, which says by what it was made and not when."""
+    stream = io.BytesIO()
+    metadata = {"Creator": MARKER} | ({"Date": None} if kind == "svg" else {})
+    figure.savefig(stream, format=kind, metadata=metadata)
+    return stream.getvalue()
