@@ -5,7 +5,7 @@ A scene's surface begins with about 500 vertices. Once its mesh edges are bisect
 with the scene: short enough that the first surface has at most a tenth of the vertices of the
 second. Both are solved, and their topological graphs, which the scenes' sliver policy has made
 simpler, are compared by a test of isomorphism that shares nothing with the decomposition
-(``tests/support/isomorphism.py``). Names of colors are no part of that: where a branch has several,
+(``tests/support/relabelled.py``). Names of colors are no part of that: where a branch has several,
 they are numbered by how much area each covers.
 
 The two meshes have the same start, since a crossing of two borders is a point where four cells
@@ -42,7 +42,7 @@ from cellcolor.solvers.interface import Options
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "tests" / "support"))
 
-from isomorphism import isomorphic  # noqa: E402
+from relabelled import isomorphic  # noqa: E402
 
 START = 500  # vertices
 SECONDS = 300.0  # to solve

@@ -7,7 +7,7 @@
 random configurations, and of a fiftieth as many near each kind of singularity, 1e-2, 1e-4, 1e-7 and
 0 rad from it. Of the SCARA the other solver is Newton's method on Pinocchio's Jacobian from 16
 starts for each pose, and near singularities only lost ones are counted. Of the calibrated arm it is
-Newton's method from 240 starts (tests/support/many_starts.py), and a line says how often its
+Newton's method from 240 starts (tests/support/solution_sets.py), and a line says how often its
 solutions were found. ``scenes`` builds and solves; ``benchmarks/motions.py SCENE`` plans motions on
 the same ones and judges them. Without names: all arms, and all scenes in instances/arms.
 docs/arms.md has what came out.
@@ -47,8 +47,7 @@ OFF = (1e-2, 1e-4, 1e-7, 0.0)  # rad
 
 def solutions(name: str, poses: int) -> str:
     """A row: how the arm's family and another solver agree, ssik or many starts."""
-    from near_singular import KINDS, near_singular
-    from solution_sets import Arm
+    from solution_sets import KINDS, Arm, near_singular
 
     arm = Arm.of(Setup.read(ROBOTS / f"{name}_polishing.toml"))
     judge = ByStarts(arm) if name == CALIBRATED else None
@@ -73,7 +72,7 @@ class ByStarts:
     """An arm against Newton's method from many starts, and how often that found each solution."""
 
     def __init__(self, arm: Arm) -> None:
-        from many_starts import ManyStarts
+        from solution_sets import ManyStarts
 
         self.arm, self.other = arm, ManyStarts.of(arm.robot.model)
         self.poses = 0
@@ -94,7 +93,7 @@ class ByStarts:
 
     def said(self) -> str:
         """How complete the starts were, of solutions that are compared."""
-        from many_starts import estimated_missing
+        from solution_sets import estimated_missing
 
         hits = np.concatenate(self.hits)
         few = [int(np.count_nonzero(hits == often)) for often in range(1, 6)]

@@ -31,23 +31,20 @@ sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 import numpy as np
 from planners import (
+    SORTS,
     Colors,
+    any_colors,
     configurations_of,
+    contradictions,
+    in_patches,
     largest_set_first,
     nearest_along_raster,
     random_branches,
-)
-from planted_plans import PLANTERS
-from planting import Case, caught
-from tampered import TAMPERERS, Kept, is_honest, what_is_wrong
-from valid_plans import (
-    SORTS,
-    any_colors,
-    contradictions,
-    in_patches,
     segments_counted,
     valid_plans,
 )
+from planted_plans import PLANTERS, Case, caught
+from tampered import TAMPERERS, Kept, is_honest, what_is_wrong
 
 import cellcolor
 from cellcolor.arrays import Array

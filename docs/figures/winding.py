@@ -13,8 +13,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests" / "support"))
-from motions import planned_scene
-from rings import ring_scene
+from motions import planned_scene, ring_scene
 
 from cellcolor.motion.following import follow
 from cellcolor.motion.samples import sampled

@@ -12,8 +12,8 @@ from pathlib import Path
 import odd_jobs
 import pytest
 from commands import run
+from guides import install
 from library import PAPER
-from plugins import install
 
 from cellcolor import library
 from cellcolor.lab.runs.row import Row

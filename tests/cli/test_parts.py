@@ -10,8 +10,7 @@ import pytest
 
 pytest.importorskip("trimesh", reason="the extra 'frontend' is not installed")
 
-from box import obj
-from dirty import DIRTY
+from dirty import DIRTY, obj
 
 import cellcolor
 from cellcolor.cli import main

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from isomorphism import isomorphic
 from library import PAPER
+from relabelled import isomorphic
 
 from cellcolor.data.imcgs import read_imcgs
 from cellcolor.data.instance import Instance

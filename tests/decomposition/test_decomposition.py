@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from isomorphism import isomorphic
 from library import INSTANCES, PAPER
 from meshes import drawn, finer, grid_faces, grid_points, octahedron, surface, surfaces, torus
+from relabelled import isomorphic
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance

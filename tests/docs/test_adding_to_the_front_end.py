@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from guides import followed
 from shipped import TOP, shipped
-from toy_distribution import followed
 
 from cellcolor.data.candidate_table import VALID, CandidateTable
 from cellcolor.errors import InputError

@@ -11,8 +11,7 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 import pytest
-from guides import ROOT, Block, blocks, follow, run
-from plugins import install
+from guides import ROOT, Block, blocks, follow, install, run
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface

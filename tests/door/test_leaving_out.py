@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from commands import json_lines, run
-from exhaustive_fronts import front_by_subsets
+from exhaustive_minima import front_by_subsets
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from meshes import drawn

@@ -10,9 +10,9 @@ import zipfile
 from pathlib import Path
 
 import pytest
+from guides import build_wheel
 from library import INSTANCES, PAPER
 from shipped import ROBOTS, SCENES, TOP
-from wheels import build_wheel
 
 import cellcolor
 from cellcolor.cli import main

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from box import BOX, OUTWARD, obj
+from dirty import BOX, OUTWARD, obj
 from shipped import ROBOTS, WOK
 
 from cellcolor.cli import main

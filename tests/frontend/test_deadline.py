@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from box import BOX, OUTWARD, obj
+from dirty import BOX, OUTWARD, obj
 from shipped import shipped
 
 from cellcolor.cli import main

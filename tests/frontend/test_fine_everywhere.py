@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from isomorphism import isomorphic
+from relabelled import isomorphic
 from shipped import shipped
 
 from cellcolor.deadline import NEVER

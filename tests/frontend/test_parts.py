@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from covers import covers
+from exhaustive_minima import covers
 from library import INSTANCES
 from shipped import TOP
 

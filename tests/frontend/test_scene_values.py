@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import trimesh
-from box import obj
+from dirty import obj
 from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import ValidationError

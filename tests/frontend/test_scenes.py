@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from covers import covers
+from exhaustive_minima import covers
 from reasons import Reason
 from shipped import SCENES, shipped
 

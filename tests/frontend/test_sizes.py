@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from box import BOX, OUTWARD, obj
+from dirty import BOX, OUTWARD, obj
 from hypothesis import given
 from hypothesis import strategies as st
 

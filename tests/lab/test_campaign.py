@@ -12,9 +12,9 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
-from here_workers import HereWorkers
+from exhaustive_minima import vertex_minimum
 from library import PAPER
-from vertex_minima import vertex_minimum
+from odd_jobs import HereWorkers
 
 from cellcolor.cli import main
 from cellcolor.data.bound import Bound, greatest

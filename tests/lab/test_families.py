@@ -6,8 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
-from exhaustive_minima import minimum
-from noncrossing import noncrossing
+from exhaustive_minima import minimum, noncrossing
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance

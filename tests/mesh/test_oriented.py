@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-import walking
+import triangles
 from hypothesis import given
 from hypothesis import strategies as st
 from meshes import grid_faces
@@ -30,7 +30,7 @@ def answer(find: Callable[[Faces, int], object], faces: Faces, count: int) -> ob
 def test_any_few_faces(faces: list[list[int]], count: int) -> None:
     """The same triangles, or the same sentence: most of these meshes are faulty."""
     array = np.array(faces)
-    assert answer(directed_edges, array, count) == answer(walking.directed_edges, array, count)
+    assert answer(directed_edges, array, count) == answer(triangles.directed_edges, array, count)
 
 
 @given(st.data())
@@ -52,7 +52,7 @@ def test_good_meshes_with_some_faces_changed(data: st.DataObject) -> None:
     used, faces = np.unique(faces, return_inverse=True)
     faces = faces.reshape(-1, 3)
     count = len(used)
-    expected = answer(walking.directed_edges, faces, count)
+    expected = answer(triangles.directed_edges, faces, count)
     assert answer(directed_edges, faces, count) == expected
 
 
@@ -61,7 +61,7 @@ def test_fans_of_all_sizes(degree: int) -> None:
     """A closed fan about vertex 0, and two of them that touch in their tips."""
     rim = np.arange(degree)
     fan = np.column_stack([np.zeros(degree, dtype=int), 1 + rim, 1 + (rim + 1) % degree])
-    assert directed_edges(fan, degree + 1) == walking.directed_edges(fan, degree + 1)
+    assert directed_edges(fan, degree + 1) == triangles.directed_edges(fan, degree + 1)
     both = np.vstack([fan, np.where(fan > 0, fan + degree, 0)])
     with pytest.raises(InputError, match=f"its {2 * degree} faces"):
         directed_edges(both, 2 * degree + 1)

@@ -11,8 +11,7 @@ pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 pytest.importorskip("coal")
 
 from shipped import shipped
-from standing import KINDS, standing
-from world import PAIRS, World
+from world import KINDS, PAIRS, World, standing
 
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Ground

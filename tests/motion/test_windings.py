@@ -5,8 +5,7 @@ from __future__ import annotations
 import networkx as nx
 import numpy as np
 import pytest
-from motions import Planned, planned_scene
-from rings import ring_scene
+from motions import Planned, planned_scene, ring_scene
 
 from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace

@@ -10,9 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import drawn, surfaces
-from planted_plans import PLANTERS
-from planting import Case, Planted, caught
-from valid_plans import SORTS, contradictions, segments_counted, valid_plans
+from planners import SORTS, contradictions, segments_counted, valid_plans
+from planted_plans import PLANTERS, Case, Planted, caught
 
 import cellcolor
 from cellcolor.data.surface import LabelledSurface

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
-from isomorphism import isomorphic
+from relabelled import isomorphic
 
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.decomposition import decompose

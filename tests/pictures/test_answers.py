@@ -14,7 +14,7 @@ import pytest
 
 pytest.importorskip("pinocchio")
 
-from browser import DESKTOP, opened
+from pages import DESKTOP, opened
 from stand_in import stand_in
 
 import cellcolor

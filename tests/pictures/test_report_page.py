@@ -18,9 +18,9 @@ from hypothesis.extra.numpy import arrays
 
 pytest.importorskip("pinocchio")
 
-from browser import DESKTOP, PHONE, opened
 from documents import Document
-from slides import SLIDE, driven_scara
+from joint_paths import SLIDE, driven_scara
+from pages import DESKTOP, PHONE, opened
 from stand_in import stand_in
 
 from cellcolor.data.trajectory import Trajectory

@@ -7,9 +7,9 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
-import isomorphism
 import numpy as np
 import pytest
+import relabelled
 
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
@@ -63,7 +63,7 @@ def test_it_ends_as_soon_as_two_steps_have_changed_nothing(refined: cellcolor.Re
     same = []
     for before, after in pairwise(steps):
         graphs = [nameless(step.instance) for step in (before, after)]
-        assert after.same_graph == isomorphism.isomorphic(*graphs)
+        assert after.same_graph == relabelled.isomorphic(*graphs)
         assert after.same_minimum == (before.solution.segments == after.solution.segments)
         same.append(bool(after.same_minimum and after.same_but_crossings))
     assert refined.refinement.stable

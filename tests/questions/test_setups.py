@@ -14,8 +14,7 @@ import pytest
 pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
 from commands import json_lines, run
-from exhaustive_fronts import front_by_subsets
-from exhaustive_minima import minimum
+from exhaustive_minima import front_by_subsets, minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from shipped import shipped

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import json_lines, run
-from exhaustive_fronts import front_by_subsets, front_by_vertices
+from exhaustive_minima import front_by_subsets, front_by_vertices
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from meshes import drawn

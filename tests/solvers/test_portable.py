@@ -14,7 +14,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
-from petals import four_colors_in_turn
+from rooms import four_colors_in_turn
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 from commands import run
+from guides import install
 from library import PAPER
-from plugins import install
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError, SolverMissing

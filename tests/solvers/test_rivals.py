@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from library import PAPER
-from petals import four_colors_in_turn
+from rooms import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.cells_and_edges import Cell

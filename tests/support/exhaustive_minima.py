@@ -1,21 +1,82 @@
-"""Minima and optimal schemes straight from their definitions, sharing nothing with any solver.
+"""Partitions of the points on a circle whose blocks can be drawn without crossing.
+
+Minima and optimal schemes straight from their definitions, sharing nothing with any solver.
 
 Everything here is a sweep: cells are painted one after the other, and of all paintings of the
 swept part that look the same from the rest only the cheapest are kept. That is exact without
 bounds, without a search order that matters and without canonical forms.
+
+The most that so many segments cover, by trying everything; it shares nothing with any solver.
+
+Minima over all colorings of a mesh's vertices, by a sweep that never sees the graph.
+
+The fewest color regions that a surface needs, by trying all choices.
 """
 
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-
-from noncrossing import Partitions, coarsest_in, noncrossing, noncrossing_in
+from functools import cache
+from itertools import chain, combinations
 
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
+from cellcolor.data.restricted import without_cells
 from cellcolor.data.solution import SchemeKey
+from cellcolor.data.surface import LabelledSurface
+
+Partitions = Callable[[tuple[object, ...]], tuple[tuple[tuple[int, ...], ...], ...]]
+"""Those of points on a circle, whose colors are given."""
+
+
+@cache
+def noncrossing_in(colors: tuple[object, ...]) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """All non-crossing partitions of points on a circle, each block of points of one color."""
+    partitions: list[list[list[int]]] = [[]]
+    for point, color in enumerate(colors):
+        grown = []
+        for blocks in partitions:
+            grown.append([*blocks, [point]])
+            for i, block in enumerate(blocks):
+                if colors[block[-1]] == color and not any(
+                    block[-1] < other[-1] and any(p < block[-1] for p in other)
+                    for other in blocks
+                    if other is not block
+                ):
+                    grown.append([*blocks[:i], [*block, point], *blocks[i + 1 :]])
+        partitions = grown
+    return tuple(tuple(map(tuple, blocks)) for blocks in partitions)
+
+
+@cache
+def coarsest_in(colors: tuple[object, ...]) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """Those of them in which no two blocks of a color can be united without crossing another.
+
+    United sub-cells of one color are one piece instead of two and join all that both joined, so
+    some division with the fewest segments has such partitions only.
+    """
+
+    def crosses(one: tuple[int, ...], other: tuple[int, ...]) -> bool:
+        gaps = {sum(point < own for own in one) % len(one) for point in other}
+        return len(gaps) > 1
+
+    def can_be_united(blocks: tuple[tuple[int, ...], ...]) -> bool:
+        return any(
+            colors[a[0]] == colors[b[0]]
+            and not any(crosses((*a, *b), other) for other in blocks if other not in (a, b))
+            for a, b in itertools.combinations(blocks, 2)
+        )
+
+    return tuple(blocks for blocks in noncrossing_in(colors) if not can_be_united(blocks))
+
+
+def noncrossing(size: int) -> tuple[tuple[tuple[int, ...], ...], ...]:
+    """All non-crossing partitions of points on a circle: set partitions, crossing ones left out."""
+    return noncrossing_in((None,) * size)
+
 
 Blocks = tuple[tuple[int, tuple[int, ...]], ...]
 """Sub-cells of one cell: color and the places of the darts in state 1."""
@@ -353,3 +414,128 @@ def _zeros_fit(instance: Instance, darts: list[list[int]], painting: dict[int, L
         return False
 
     return split(0, {})
+
+
+def front_by_subsets(instance: Instance, weights: Sequence[float]) -> dict[int, float]:
+    """For each number of segments the greatest weight of cells that have a division with so many.
+
+    Every set of cells is left out once, and the minimum of the others found by a sweep.
+    """
+    cells = range(len(instance.cells))
+    best: dict[int, float] = defaultdict(float)
+    for left_out in chain.from_iterable(combinations(cells, size) for size in cells):
+        rest, kept = without_cells(instance, left_out)
+        segments = minimum(rest)
+        best[segments] = max(best[segments], sum(weights[cell] for cell in kept))
+    return {k: max(best[fewer] for fewer in range(1, k + 1)) for k in range(1, max(best) + 1)}
+
+
+def front_by_vertices(surface: LabelledSurface, weights: Sequence[float]) -> dict[int, float]:
+    """For each number of segments the greatest weight of vertices that so many components have.
+
+    Every vertex is given one of its colors or none, in a sweep over the vertices in their order.
+    Borders run between vertices, so on a coarse mesh less is covered than on the surface.
+    """
+    cracks = {(c.i, c.j): c.colors for c in surface.cracks}
+    neighbors: dict[int, set[int]] = defaultdict(set)
+    for i, j in surface.left_of:
+        neighbors[i].add(j)
+        neighbors[j].add(i)
+    # The painted vertices that later ones touch: color and component of each; None if left out.
+    Colored = tuple[tuple[int, int] | None, ...]
+    frontier: list[int] = []
+    layer: dict[tuple[Colored, int], float] = {((), 0): 0.0}
+    for vertex, colors in enumerate(surface.vertex_colors):
+        painted_now = [*frontier, vertex]
+        kept = [p for p, v in enumerate(painted_now) if any(n > vertex for n in neighbors[v])]
+        grown: dict[tuple[Colored, int], float] = {}
+        for (state, closed), weight in layer.items():
+            for color in (None, *colors):
+                painted = list(state)
+                gained = weight
+                if color is None:
+                    painted.append(None)
+                else:
+                    gained += weights[vertex]
+                    met = {
+                        own[1]
+                        for own, v in zip(state, frontier, strict=True)
+                        if own is not None
+                        and v in neighbors[vertex]
+                        and own[0] == color
+                        and color not in cracks.get((min(v, vertex), max(v, vertex)), ())
+                    }
+                    painted = [
+                        (own[0], -1) if own is not None and own[1] in met else own
+                        for own in painted
+                    ]
+                    painted.append((color, -1))
+                names: dict[int, int] = {}
+                found: list[tuple[int, int] | None] = []
+                for place in kept:
+                    own = painted[place]
+                    found.append(
+                        None if own is None else (own[0], names.setdefault(own[1], len(names)))
+                    )
+                components = {own[1] for own in painted if own is not None}
+                key = tuple(found), closed + len(components) - len(names)
+                grown[key] = max(grown.get(key, 0.0), gained)
+        layer, frontier = grown, [painted_now[p] for p in kept]
+    best: dict[int, float] = defaultdict(float)
+    for (_, segments), weight in layer.items():
+        best[segments] = max(best[segments], weight)
+    return {k: max(best[fewer] for fewer in range(k + 1)) for k in range(1, max(best) + 1)}
+
+
+def vertex_minimum(surface: LabelledSurface) -> int:
+    """The fewest connected components of equal color over all colorings of a mesh's vertices.
+
+    Without the topological graph: vertices one by one in their order, which should be one with a
+    short frontier.
+    """
+    cracks = {(c.i, c.j): c.colors for c in surface.cracks}
+    neighbors: dict[int, set[int]] = defaultdict(set)
+    for i, j in surface.left_of:
+        if surface.vertex_colors[i] and surface.vertex_colors[j]:
+            neighbors[i].add(j)
+            neighbors[j].add(i)
+    reached = [v for v, colors in enumerate(surface.vertex_colors) if colors]
+    frontier: list[int] = []
+    layer: dict[tuple[tuple[int, int], ...], int] = {(): 0}
+    for vertex in reached:
+        painted_now = [*frontier, vertex]
+        kept = [p for p, v in enumerate(painted_now) if any(n > vertex for n in neighbors[v])]
+        touched = [
+            (place, cracks.get((min(v, vertex), max(v, vertex)), ()))
+            for place, v in enumerate(frontier)
+            if v in neighbors[vertex]
+        ]
+        grown: dict[tuple[tuple[int, int], ...], int] = {}
+        for state, cost in layer.items():
+            for color in surface.vertex_colors[vertex]:
+                same = {
+                    state[place][1]
+                    for place, cracked in touched
+                    if state[place][0] == color and color not in cracked
+                }
+                painted = [(c, -1 if s in same else s) for c, s in state]
+                painted.append((color, -1))
+                names: dict[int, int] = {}
+                found = tuple(
+                    (painted[p][0], names.setdefault(painted[p][1], len(names))) for p in kept
+                )
+                closed = len({s for _, s in painted}) - len(names)
+                grown[found] = min(grown.get(found, cost + closed), cost + closed)
+        layer, frontier = grown, [painted_now[p] for p in kept]
+    return min(layer.values())
+
+
+def covers(surface: LabelledSurface, count: int) -> list[set[str]]:
+    """All choices of so many colors that together reach every reachable vertex."""
+    needs = {frozenset(colors) for colors in surface.vertex_colors if colors}
+    chosen = itertools.combinations(range(len(surface.colors)), count)
+    return [
+        {surface.colors[color] for color in colors}
+        for colors in chosen
+        if all(need & set(colors) for need in needs)
+    ]

@@ -1,4 +1,7 @@
-"""Small scenes for plans in joint angles, and paths that touch their vertices one after another."""
+"""Small scenes for plans in joint angles, and paths that touch their vertices one after another.
+
+The small SCARA scene with a motion: a few vertices of the pipe, wide passes.
+"""
 
 from __future__ import annotations
 
@@ -7,12 +10,15 @@ from functools import cache
 import networkx
 import numpy as np
 import pinocchio as pin
-from shipped import shipped
+from shipped import TOP, shipped
 
+import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.data.joint_plan import ContactPath
 from cellcolor.data.plan import Plan
+from cellcolor.frontend import Scene
 from cellcolor.frontend.build import BuildResult, build_surface
+from cellcolor.frontend.setup import Motion
 
 TIP = "tool_tip"
 
@@ -71,3 +77,28 @@ def walk_of(built: BuildResult, plan: Plan) -> tuple[ContactPath, list[int]]:
         contact += [True] * len(walk) + [False]
     joints = np.array([configuration(built, v, colors[v] or 0) for v in vertices])
     return ContactPath(joints, surface.vertices[vertices], np.array(contact)), vertices
+
+
+SLIDE = 2
+"""The prismatic joint of the four."""
+MOTION = Motion(
+    spacing_m=0.02,
+    tool_radius_m=0.03,
+    joint_velocities_rad_per_s=(3.0, 3.0, 0.15, 6.0),
+    joint_accelerations_rad_per_s2=(8.0, 8.0, 2.0, 16.0),
+    retract_m=0.02,
+    clearance_m=0.003,
+)
+
+
+def scara_scene(motion: Motion = MOTION) -> Scene:
+    """The shipped scene with 250 vertices and longer, so that each end has an elbow of its own."""
+    scene = Scene.read(TOP / "instances" / "planar" / "cobra600_pipe.toml")
+    scene = scene.varied(object={"target_vertices": 250, "length_m": 0.54})
+    return scene.with_setup(scene.setup.model_copy(update={"motion": motion}))
+
+
+@cache
+def driven_scara() -> cellcolor.PlannedScene:
+    """Its motion, planned and judged once a session."""
+    return cellcolor.plan(scara_scene())

@@ -16,7 +16,7 @@ from unittest.mock import patch
 
 import numpy as np
 from commands import run
-from valid_plans import any_colors, contradictions, segments_counted
+from planners import any_colors, contradictions, segments_counted
 
 import cellcolor.door.oracle as door
 from cellcolor.data.plan import Plan

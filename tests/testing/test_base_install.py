@@ -11,8 +11,8 @@ import venv
 from pathlib import Path
 
 import pytest
+from guides import TOP, build_wheel
 from library import INSTANCES
-from wheels import TOP, build_wheel
 
 pytestmark = pytest.mark.slow
 

@@ -7,10 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from flat import one_segment, slit, square, whole
 from hypothesis import example, given
 from hypothesis import strategies as st
-from painted_at_random import SHAPES, Painting, painted_at_random
+from painted import SHAPES, Painting, one_segment, painted_at_random, slit, square, whole
 from path_checker import PathChecker
 
 import cellcolor

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from flat import one_segment, slit, square
+from painted import one_segment, slit, square
 
 from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.tool_paths.interface import Laid

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from flat import one_segment, slit, square, whole
 from hypothesis import given
 from hypothesis import strategies as st
-from painted_at_random import SHAPES, painted_at_random
+from painted import SHAPES, one_segment, painted_at_random, slit, square, whole
 
 from cellcolor.mesh.small_triangles import small_areas
 from cellcolor.tool_paths.region import Region, regions_of

@@ -12,8 +12,7 @@ pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 pytest.importorskip("coal")
 
 import rasters
-from standing import KINDS, standing
-from world import World
+from world import KINDS, World, standing
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.prepared import prepare

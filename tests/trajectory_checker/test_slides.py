@@ -12,7 +12,7 @@ pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 pytest.importorskip("coal")
 
 from forged_drives import HONEST, Honest, dropped_stroke, rows_of
-from slides import MOTION, SLIDE, driven_scara, scara_scene
+from joint_paths import MOTION, SLIDE, driven_scara, scara_scene
 
 import cellcolor
 from cellcolor.data.trajectory import Trajectory

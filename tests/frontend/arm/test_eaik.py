@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import set_distance, wrapped
-from near_singular import KINDS, near_singular
+from solution_sets import KINDS, near_singular
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
@@ -49,7 +49,7 @@ def determinants(name: str, five: Array) -> Array:
 
 def same_sets(name: str, q: Array, regular_only: bool = False) -> int:
     """Compare all solutions of the poses of some configurations; how many there were."""
-    from other_solver import Ssik  # only here: ssik may be missing
+    from solution_sets import Ssik  # only here: ssik may be missing
 
     theirs_of, random = Ssik(ROBOTS[name]), np.random.default_rng(3)
     poses, count = forward(ROBOTS[name], q), 0
@@ -79,7 +79,7 @@ def test_solutions_of_ssik_for_five_thousand_poses(name: str) -> None:
     What is more here reaches the pose, as the test of all solutions holds.
     """
     pytest.importorskip("ssik")
-    from other_solver import Ssik
+    from solution_sets import Ssik
 
     q = np.random.default_rng(6).uniform(-np.pi, np.pi, (5000, 6))
     poses, theirs_of = forward(ROBOTS[name], q), Ssik(ROBOTS[name])

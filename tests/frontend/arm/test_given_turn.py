@@ -138,7 +138,7 @@ def test_calibrated_arms_have_whole_solutions_too(family: str) -> None:
 
 def same_as_ssik(family: str, arm: str, tool: str, q: Array) -> int:
     """Compare all solutions of the poses of some configurations; how many there were."""
-    from other_solver import Ssik  # only here: ssik may be missing
+    from solution_sets import Ssik  # only here: ssik may be missing
 
     robot, kinematics = made(family, arm, tool)
     poses, theirs_of, count = tip_frames(robot.model, q), Ssik(robot), 0

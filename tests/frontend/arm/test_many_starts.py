@@ -7,10 +7,17 @@ import pinocchio as pin
 import pytest
 from bent_tools import tip_frame
 from independent import set_distance, wrapped
-from many_starts import JOINTS, ManyStarts, each_once, estimated_missing
-from near_singular import KINDS, near_singular
 from shipped import ROBOTS
-from solution_sets import Arm, Compared
+from solution_sets import (
+    JOINTS,
+    KINDS,
+    Arm,
+    Compared,
+    ManyStarts,
+    each_once,
+    estimated_missing,
+    near_singular,
+)
 
 from cellcolor.arrays import Array, Index
 from cellcolor.frontend.arm.signs import BRANCHES
@@ -60,7 +67,7 @@ def test_poses_and_jacobians_are_pinocchios(name: str) -> None:
 @pytest.mark.parametrize("name", ["ur5e", "irb120"])
 def test_it_finds_all_that_ssik_does(name: str) -> None:
     """Of arms with a closed form, of which there is another solver to say what all are."""
-    from other_solver import Ssik
+    from solution_sets import Ssik
 
     one, q = arm(name), random_joints(25, 2)
     ssik, other = Ssik(one.robot), ManyStarts.of(one.robot.model)

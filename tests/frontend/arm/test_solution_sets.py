@@ -13,8 +13,7 @@ from cellcolor.frontend.setup import Setup
 
 pytest.importorskip("ssik")
 
-from near_singular import KINDS, near_singular
-from solution_sets import Arm
+from solution_sets import KINDS, Arm, near_singular
 
 ARMS = ("ur5", "ur3e", "ur5e", "ur10e", "ur16e", "kr6", "irb120", "tx2_60")
 

@@ -12,8 +12,7 @@ import pytest
 import trimesh
 from meshed_arm import is_inside, link_meshes, write_package
 from shipped import ROBOTS
-from standing import KINDS, standing
-from world import NEIGHBORS
+from world import KINDS, NEIGHBORS, standing
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.kinematics import forward

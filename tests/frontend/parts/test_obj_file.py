@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from box import BOX, OUTWARD, obj
+from dirty import BOX, OUTWARD, obj
 
 from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError

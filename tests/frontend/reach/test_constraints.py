@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from box import BOX, OUTWARD, obj
+from dirty import BOX, OUTWARD, obj
 from reasons import Reason
 
 from cellcolor.errors import InputError

@@ -6,13 +6,12 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 import networkx as nx
+from exhaustive_minima import vertex_minimum
 from hypothesis import given, reject
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import grid_faces, grid_points, surface
-from petals import hub
-from rooms import crossed_rings
-from vertex_minima import vertex_minimum
+from rooms import crossed_rings, hub
 
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from itertools import chain
 
 from drawings import most_links_drawn, walks_and_parts
+from exhaustive_minima import noncrossing
 from hypothesis import given
 from hypothesis import strategies as st
-from noncrossing import noncrossing
 
 from cellcolor.checker import hubs_with_loops
 from cellcolor.deadline import NEVER

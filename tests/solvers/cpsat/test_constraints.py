@@ -9,7 +9,7 @@ from dart_graphs import graph_of
 from exhaustive_minima import minimum
 from library import INSTANCES, PAPER
 from ortools.sat.python import cp_model
-from petals import hub
+from rooms import hub
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface

@@ -9,7 +9,7 @@ from dart_graphs import graph_of
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
-from petals import hub
+from rooms import hub
 
 from cellcolor.checker.division import check_division
 from cellcolor.data.cells_and_edges import Cell, Edge

@@ -8,7 +8,7 @@ from dart_graphs import graph_of
 from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
-from petals import hub
+from rooms import hub
 
 from cellcolor.checker.division import check_division
 from cellcolor.lab.families import planar_graph

@@ -11,7 +11,7 @@ from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
-from petals import hub
+from rooms import hub
 
 import cellcolor
 from cellcolor.checker.division import check_division

@@ -9,7 +9,7 @@ from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
-from petals import hub
+from rooms import hub
 
 from cellcolor.checker.division import check_division
 from cellcolor.data.cells_and_edges import Cell, Edge

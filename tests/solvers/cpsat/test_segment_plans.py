@@ -7,7 +7,7 @@ from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
-from petals import hub
+from rooms import hub
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from library import PAPER
-from petals import four_colors_in_turn
+from rooms import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.cells_and_edges import Cell

@@ -11,7 +11,7 @@ from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from library import PAPER
 from ortools.sat.python import cp_model
-from petals import four_colors_in_turn
+from rooms import four_colors_in_turn
 
 from cellcolor.cli.search_end import Interrupted
 from cellcolor.data.cells_and_edges import Cell, Edge
