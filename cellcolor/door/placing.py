@@ -229,18 +229,18 @@ def _leeway(
     Raises:
         OutOfTime: the deadline came first.
     """
-    from cellcolor.questions.leeway import displaced
+    from cellcolor.questions.placing import displaced
 
     own = scene.covered(NEVER).vertices
     beside = displaced(own, placed.pose, up_to_m, _BESIDE, seed)
     holds, least = 0.0, placed.covered_share
     for first in range(0, _BESIDE, _TOGETHER):
         some = beside[first : first + _TOGETHER]
-        rows = many.minima(scene, "own", [each.pose for each in some])
+        rows = many.minima(scene, "own", [pose for _, pose in some])
         if len(rows) < len(some):
             raise OutOfTime
-        for number, (each, row) in enumerate(zip(some, rows, strict=True), first + 1):
+        for number, ((off, _), row) in enumerate(zip(some, rows, strict=True), first + 1):
             if row.segments is None or row.segments > (placed.segments or 0):
-                return Leeway(holds, each.off_m, number, least)
-            holds, least = each.off_m, min(least, row.covered_share)
+                return Leeway(holds, off, number, least)
+            holds, least = off, min(least, row.covered_share)
     return Leeway(holds, None, _BESIDE, least)

@@ -169,7 +169,7 @@ def _refined(
     if built is None or built.left_alone is not None:
         message = "takes a whole scene: a labelled surface or a graph has nothing to refine"
         raise InputError(file, "refine_until_stable", message)
-    from cellcolor.questions.refining import refined_until_stable  # needs the front end
+    from cellcolor.questions.refinement import refined_until_stable  # needs the front end
 
     built, refinement = refined_until_stable(built, solve_graph, deadline)
     return Subject(subject.path, built, built.surface), refinement

@@ -117,26 +117,19 @@ class _Asked:
         Raises:
             OutOfTime: the deadline came first.
         """
-        try:
-            return self._built_without(what, note)
-        except InputError as error:
-            names, keys = _in_words(what)
-            return RelaxedMinimum(names, keys, None, 1, 0.0, False, f"it cannot be built: {error}")
-
-    def _built_without(self, what: Sequence[Relaxation], note: str) -> RelaxedMinimum:
+        names, keys = _in_words(what)
         prepared, known = without(self._prepared, what), self._coarse.stages
-        reasons: set[str] = set()
-        for one in what:
-            reasons |= one.reasons or set()
         in_place = prepared.scene.tolerance is None
-        if known.named and in_place and all(one.reasons is not None for one in what):
-            found = judged_again(prepared, self._coarse, reasons, self._clock)
-            if _same(found.stages, known):
-                names, keys = _in_words(what)
-                return replace(self.base, relaxed=names, keys=keys, note=note)
-        else:
-            found = judged(prepared, self._clock)
-        return self._solved(*with_finer_borders(prepared, self._clock, found), what, note)
+        try:
+            if known.named and in_place and all(one.reasons is not None for one in what):
+                found = judged_again(prepared, self._coarse, _reasons_of(what), self._clock)
+                if _same(found.stages, known):
+                    return replace(self.base, relaxed=names, keys=keys, note=note)
+            else:
+                found = judged(prepared, self._clock)
+            return self._solved(*with_finer_borders(prepared, self._clock, found), what, note)
+        except InputError as error:
+            return RelaxedMinimum(names, keys, None, 1, 0.0, False, f"it cannot be built: {error}")
 
     def _solved(
         self,
@@ -178,12 +171,11 @@ class _Asked:
         tried: dict[float, RelaxedMinimum] = {}
 
         def enough(amount: float) -> bool:
-            partly = one.by(amount)
-            row = self.without([partly])
+            row = self.without([one.by(amount)])
             tried[amount] = replace(row, relaxed=(one.said_of(amount),))
             return _saves(row, self.base)
 
-        low, high = 0.0, one.most
+        high = one.most
         if not enough(high):
             return None
         while high > one.most / _SMALLEST and enough(high / 2):
@@ -225,9 +217,12 @@ class _Asked:
 
     def _freed(self, what: Sequence[Relaxation]) -> Stages:
         """The stages on the same surface without things that need not be asked about anew."""
-        reasons = frozenset[str]().union(*(one.reasons or () for one in what))
         prepared = without(self._prepared, what)
-        return judged_again(prepared, self._coarse, reasons, self._clock).stages
+        return judged_again(prepared, self._coarse, _reasons_of(what), self._clock).stages
+
+
+def _reasons_of(what: Sequence[Relaxation]) -> frozenset[str]:
+    return frozenset[str]().union(*(one.reasons or () for one in what))
 
 
 def _in_words(what: Sequence[Relaxation]) -> tuple[tuple[str, ...], tuple[str, ...]]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from cellcolor.data.wording import count
@@ -82,13 +82,7 @@ class BranchHere:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        return {
-            "branch": self.branch,
-            "color": self.color,
-            "fails": list(self.fails),
-            "ends_m": self.ends_m,
-            "ends_by": list(self.ends_by),
-        }
+        return asdict(self)
 
     def __str__(self) -> str:
         if self.color is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from cellcolor.data.wording import count
@@ -15,6 +15,17 @@ Pose = tuple[float, float, float, float, float, float]
 """Position in m and angles in rad, in the order of :data:`VARIABLES`."""
 
 _SAME_SHARE = 1e-9
+
+
+def pose_in_words(pose: Pose, turned: str = " turned by", digits: str = ".4g") -> str:
+    """Where a part stands, its angles only where it is turned."""
+    where, angles = (", ".join(format(v, digits) for v in own) for own in (pose[:3], pose[3:]))
+    return f"({where}) m" + (f"{turned} ({angles}) rad" if any(pose[3:]) else "")
+
+
+def pose_document(pose: Pose) -> dict[str, list[float]]:
+    """The members of a JSON object that say where a part stands."""
+    return {"position_m": list(pose[:3]), "rpy_rad": list(pose[3:])}
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,12 +54,7 @@ class Leeway:
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
-        return {
-            "holds_m": self.holds_m,
-            "fails_m": self.fails_m,
-            "tried": self.tried,
-            "least_share": self.least_share,
-        }
+        return asdict(self)
 
 
 @dataclass(frozen=True)
@@ -101,8 +107,7 @@ class PlacedMinimum:
         """The JSON object."""
         leeway = {} if self.leeway is None else {"leeway": self.leeway.to_document()}
         return {
-            "position_m": list(self.pose[:3]),
-            "rpy_rad": list(self.pose[3:]),
+            **pose_document(self.pose),
             "lift_offs": self.lift_offs,
             "segments": self.segments,
             "covered_share": self.covered_share,
@@ -112,10 +117,7 @@ class PlacedMinimum:
         } | leeway
 
     def __str__(self) -> str:
-        x, y, z, roll, pitch, yaw = self.pose
-        place = f"({x:.4g}, {y:.4g}, {z:.4g}) m"
-        if roll or pitch or yaw:
-            place += f" turned by ({roll:.4g}, {pitch:.4g}, {yaw:.4g}) rad"
+        place = pose_in_words(self.pose)
         if self.lift_offs is None:
             return f"{place}: {self.refused or 'not solved in time'}"
         proof = "" if self.proved_for_surface else " (not proved)"

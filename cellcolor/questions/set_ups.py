@@ -9,7 +9,7 @@ from typing import Any
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
-from cellcolor.questions.placements import Pose
+from cellcolor.questions.placements import Pose, pose_document, pose_in_words
 
 
 @dataclass(frozen=True)
@@ -35,17 +35,13 @@ class SetUp:
         return {
             "number": self.number,
             "scene": self.scene,
-            "position_m": list(self.pose[:3]),
-            "rpy_rad": list(self.pose[3:]),
+            **pose_document(self.pose),
             "segments": self.segments,
             "covered_share": self.covered_share,
         }
 
     def __str__(self) -> str:
-        x, y, z, roll, pitch, yaw = self.pose
-        place = f"({x:.4g}, {y:.4g}, {z:.4g}) m"
-        if roll or pitch or yaw:
-            place += f" turned by ({roll:.4g}, {pitch:.4g}, {yaw:.4g}) rad"
+        place = pose_in_words(self.pose)
         segments = count(self.segments, "segment")
         return f"{self.scene} at {place}: {segments}, {100 * self.covered_share:.1f} %"
 

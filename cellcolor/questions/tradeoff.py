@@ -1,9 +1,10 @@
 """``cellcolor.tradeoff``: for each number of lift-offs the largest share that can be covered.
 
-The best k color regions bound what k segments cover (:mod:`cellcolor.questions.most_covered`). If
-the cells that these regions cover, and no others, are solved with k segments, that is the most for
-any division of the surface. Where regions are in each other's way it is not, and a CP-SAT model in
-which cells may be left out settles it for the search space ``paper``.
+Every segment lies in one color region, so k segments cover at most what the best k color regions
+cover together: a maximum-coverage problem. If the cells that these regions cover, and no others,
+are solved with k segments, that is the most for any division of the surface. Where regions are in
+each other's way it is not, and a CP-SAT model in which cells may be left out settles it for the
+search space ``paper``.
 """
 
 from __future__ import annotations
@@ -11,17 +12,19 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
 
+from ortools.sat.python import cp_model
+
 from cellcolor.data.instance import Instance
 from cellcolor.data.restricted import without_cells
 from cellcolor.data.solution import Solution
-from cellcolor.deadline import OutOfTime
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.questions.front import Front, FrontPoint
-from cellcolor.questions.most_covered import most_covered
 from cellcolor.solvers import checked
-from cellcolor.solvers.bounds.cover import color_regions
+from cellcolor.solvers.bounds.cover import Region, color_regions
 from cellcolor.solvers.cpsat.model.leaving_out import least_left_out
 from cellcolor.solvers.interface import Options
+from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
 _WHOLE = 2**40
 """What all cells weigh together as integers, for CP-SAT: a share is told to 1e-12."""
@@ -106,17 +109,17 @@ def few_that_cover(
     for segments in range(1, solution.surface_lower_bound):
         if segments >= best.segments:
             break
-        most = most_covered(regions, whole, segments, (), options.deadline)
-        if most is None or most.at_most < share * total:
+        cells, at_most = _most_covered(regions, whole, segments, (), options.deadline) or ((), 0)
+        if at_most < share * total:
             continue
         least = segments if least is None else least
-        left_out = tuple(sorted(set(range(len(whole))) - most.cells))
-        if most.weight < share * total or not left_out:
+        left_out = tuple(sorted(set(range(len(whole))) - set(cells)))
+        covered = sum(whole[cell] for cell in cells) / total
+        if covered < share or not left_out:
             continue
         rest, _ = without_cells(instance, left_out)
         part = checked.solve(rest, replace(options, deadline=options.deadline.share(0.5)))
         if part.segments is not None and part.segments < best.segments:
-            covered = most.weight / total
             best = FrontPoint(part.segments, covered, 1.0, left_out, part, False)
     return best, solution.surface_lower_bound if least is None else least
 
@@ -148,30 +151,27 @@ class _Asked:
             OutOfTime: the deadline came before anything was known.
         """
         deadline = self._options.deadline
-        best = most_covered(self._regions, self._weights, segments, self._required, deadline)
+        best = _most_covered(self._regions, self._weights, segments, self._required, deadline)
         if best is None:
             return None
+        cells, at_most = best
         total = sum(self._weights)
-        at_most = best.at_most
         if self._whole.surface_lower_bound > segments:
             # Not everything: some cell is left out, and it is left out whole.
             at_most = min(at_most, total - min(self._weights))
-        found = self._covering(best.cells, segments)
+        found = self._covering(cells, segments)
         holds_for_surface = True
         if found is None or found[0] < at_most:
             paper = least_left_out(
                 self._instance, self._weights, segments, self._required, self._options
             )
             if paper is not None:
-                cells = frozenset(range(len(self._weights))) - paper[0]
-                other = self._covering(cells, segments)
+                other = self._covering(set(range(len(self._weights))) - paper[0], segments)
                 found = max(filter(None, (found, other)), key=lambda one: one[0], default=None)
                 if paper[1] < at_most:
                     at_most, holds_for_surface = paper[1], False
         if found is None:
-            if fewer is None:
-                return None
-            return replace(fewer, segments=segments)
+            return None if fewer is None else replace(fewer, segments=segments)
         weight, left_out, solution = found
         return FrontPoint(
             segments, weight / total, at_most / total, left_out, solution, holds_for_surface
@@ -190,6 +190,62 @@ class _Asked:
         if solution.segments is None or solution.segments > segments:
             return None
         return sum(self._weights[cell] for cell in cells), left_out, solution
+
+
+def _most_covered(
+    regions: Sequence[Region],
+    weights: Sequence[int],
+    segments: int,
+    required: Collection[int],
+    deadline: Deadline,
+) -> tuple[Collection[int], int] | None:
+    """The cells that a few color regions cover, of the greatest weight.
+
+    Args:
+        regions: the color regions.
+        weights: of each cell, 0 or more.
+        segments: how many regions may be chosen.
+        required: cells that one of them has to cover.
+        deadline: when to be content with the best found.
+
+    Returns:
+        What they cover, all of it, and the weight that no choice exceeds; None if so few regions
+        do not cover what is required.
+
+    Raises:
+        OutOfTime: the deadline came before any choice was known.
+    """
+    model = cp_model.CpModel()
+    chosen = [model.new_bool_var("") for _ in regions]
+    covering: list[list[cp_model.IntVar]] = [[] for _ in weights]
+    for literal, (_, cells) in zip(chosen, regions, strict=True):
+        for cell in cells:
+            covering[cell].append(literal)
+    model.add(sum(chosen) <= segments)
+    gains = []
+    for cell, literals in enumerate(covering):
+        if cell in required:
+            model.add_bool_or(literals)
+        covered = model.new_bool_var("")
+        model.add_bool_or([~covered, *literals])
+        gains.append(weights[cell] * covered)
+    model.maximize(sum(gains))
+    solver = make_cp_solver(deadline, 1, 0)
+    # As with covers, the linear relaxation is what bounds it.
+    solver.parameters.linearization_level = 2
+    status, interrupt = solve_interruptibly(solver, model)
+    if interrupt is not None:
+        raise interrupt
+    if status == cp_model.INFEASIBLE:
+        return None
+    if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+        raise OutOfTime
+    found: set[int] = set()
+    for literal, (_, cells) in zip(chosen, regions, strict=True):
+        if solver.value(literal):
+            found |= cells
+    weight = sum(weights[cell] for cell in found)
+    return found, max(weight, int(solver.best_objective_bound + 0.5))
 
 
 def _weights(instance: Instance, given: Sequence[float] | None) -> list[float]:

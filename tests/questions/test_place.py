@@ -25,7 +25,6 @@ from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.lab.executors.alone import Ended
 from cellcolor.lab.executors.work import Task, Workers
-from cellcolor.questions.leeway import displaced
 from cellcolor.questions.placements import (
     VARIABLES,
     PlacedMinimum,
@@ -33,7 +32,14 @@ from cellcolor.questions.placements import (
     Placements,
     Pose,
 )
-from cellcolor.questions.placing import around, coarse_scene, distance, minima_at, spread
+from cellcolor.questions.placing import (
+    around,
+    coarse_scene,
+    displaced,
+    distance,
+    minima_at,
+    spread,
+)
 from examples import examples
 
 RANGES = {"x": (0.3, 0.6), "y": (-0.3, 0.1)}
@@ -226,12 +232,13 @@ def test_how_far_a_placement_may_be_off(monkeypatch: pytest.MonkeyPatch) -> None
     assert row.leeway is not None and row.leeway.to_document() == row.to_document()["leeway"]
     own = shipped("wok_obstacle", 80)
     holds, shares = 0.0, [row.covered_share]
-    for number, each in enumerate(displaced(own.covered().vertices, row.pose, 0.2, 6, 0), 1):
-        (beside,) = minima_at(own, [each.pose], np.inf, 1, 0)
+    beside_it = displaced(own.covered().vertices, row.pose, 0.2, 6, 0)
+    for number, (off, pose) in enumerate(beside_it, 1):
+        (beside,) = minima_at(own, [pose], np.inf, 1, 0)
         if beside.segments is None or row.segments is None or beside.segments > row.segments:
-            assert (row.leeway.fails_m, row.leeway.tried) == (each.off_m, number)
+            assert (row.leeway.fails_m, row.leeway.tried) == (off, number)
             break
-        holds = each.off_m
+        holds = off
         shares.append(beside.covered_share)
     else:
         assert row.leeway.fails_m is None and row.leeway.tried == 6
@@ -249,10 +256,10 @@ def test_displacements_are_as_far_as_they_say(pose: Pose, up_to: float, count: i
     start = Placement(position_m=pose[:3], rpy_rad=pose[3:]).placed(vertices)
     found = displaced(vertices, pose, up_to, count, 0)
     assert len(found) == count
-    for number, each in enumerate(found, 1):
-        there = Placement(position_m=each.pose[:3], rpy_rad=each.pose[3:]).placed(vertices)
+    for number, (said, moved) in enumerate(found, 1):
+        there = Placement(position_m=moved[:3], rpy_rad=moved[3:]).placed(vertices)
         off = np.linalg.norm(there - start, axis=1).max()
-        assert off == pytest.approx(each.off_m, abs=1e-9)
+        assert off == pytest.approx(said, abs=1e-9)
         assert off == pytest.approx(up_to * number / count, rel=1e-3)
 
 

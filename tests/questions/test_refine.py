@@ -23,8 +23,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import NEVER, OutOfTime
 from cellcolor.decomposition.isomorphic import isomorphic, without_short_edges
-from cellcolor.questions.refinement import RefinedStep, Refinement
-from cellcolor.questions.refining import refined_until_stable
+from cellcolor.questions.refinement import RefinedStep, Refinement, refined_until_stable
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 

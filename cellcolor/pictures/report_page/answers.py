@@ -6,7 +6,7 @@ from cellcolor.data.wording import count
 from cellcolor.pictures.report_page.content import Answers, Card
 from cellcolor.questions.explanation import Explanation
 from cellcolor.questions.front import Front
-from cellcolor.questions.placements import Placements, Pose
+from cellcolor.questions.placements import Placements, Pose, pose_in_words
 from cellcolor.questions.set_ups import SetUpPlan
 
 _MOST_PLACES = 5
@@ -102,11 +102,7 @@ def _set_ups_card(found: SetUpPlan) -> Card:
 
 
 def _place(pose: Pose) -> str:
-    x, y, z, roll, pitch, yaw = pose
-    place = f"({x:.3f}, {y:.3f}, {z:.3f}) m"
-    if roll or pitch or yaw:
-        place += f", turned by ({roll:.3f}, {pitch:.3f}, {yaw:.3f}) rad"
-    return place
+    return pose_in_words(pose, ", turned by", ".3f")
 
 
 def _number(lift_offs: int | None, proved: bool) -> str:
