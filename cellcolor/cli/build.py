@@ -10,9 +10,8 @@ from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import open_file
 from cellcolor.cli.tables import nothing_to_cover
 from cellcolor.cli.terminal import apart_from, complain, say
-from cellcolor.data import instance as instance_file
-from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import count
 from cellcolor.door.subject import Subject, is_scene
 from cellcolor.errors import InputError
@@ -25,8 +24,8 @@ from cellcolor.files.writing import (
     write,
 )
 
-_INSTANCE = kind_of_format(instance_file.FORMAT)
-_SURFACE = kind_of_format(surface_file.FORMAT)
+_INSTANCE = kind_of_format(Instance.FORMAT)
+_SURFACE = kind_of_format(LabelledSurface.FORMAT)
 
 
 def build_instance(source: Path, output: Path) -> Exit:

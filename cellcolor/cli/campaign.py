@@ -13,8 +13,8 @@ from cellcolor.cli.exits import Exit
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain
 from cellcolor.cli.workers import progress_bar, workers_for
-from cellcolor.data import instance as instance_file
-from cellcolor.data import surface as surface_file
+from cellcolor.data.instance import Instance
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.temporary import remove_strays
 from cellcolor.files.writing import Output, is_folder_or_nothing, kind_of_format, write
@@ -52,13 +52,13 @@ def run_campaign(
 def _keep(outcome: Outcome, seed: int, output: Path) -> None:
     """Write each disagreement to a file of its own."""
     for wrong in outcome.wrong:
-        mesh = json.loads(wrong.document)["format"] == surface_file.FORMAT
+        mesh = json.loads(wrong.document)["format"] == LabelledSurface.FORMAT
         name = f"campaign_{seed}_{outcome.number}{'.surface' if mesh else ''}.json"
         try:
             output.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise InputError(str(output), None, error.strerror or "cannot be made") from error
-        kind = kind_of_format(surface_file.FORMAT if mesh else instance_file.FORMAT)
+        kind = kind_of_format(LabelledSurface.FORMAT if mesh else Instance.FORMAT)
         write([Output(output / name, kind, [wrong.document.encode()])])
         complain(f"{output / name}: {wrong.message}")
 

@@ -15,10 +15,10 @@ from cellcolor.cli.progress import judge_progress_of
 from cellcolor.cli.standard_input import STANDARD_INPUT, input_file, name_of
 from cellcolor.cli.terminal import complain, print_json
 from cellcolor.cli.verdict_lines import say_plan, say_solution, say_trajectory
-from cellcolor.data import plan as plan_file
-from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.check_error import CheckError
+from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
+from cellcolor.data.trajectory import Trajectory
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.claims import format_of_claim, read_trajectory
 from cellcolor.door.leaving_out import left_alone
@@ -67,11 +67,11 @@ def check_files(request: Request) -> Exit:
 
 def _check(request: Request, claim: Path) -> Exit:
     form = format_of_claim(claim)  # anything else is read as a solution
-    if form != plan_file.FORMAT and (option := request.demands.first_option):
+    if form != Plan.FORMAT and (option := request.demands.first_option):
         raise InputError(None, option, f"goes with a plan; {name_of(request.claim)} is none")
-    if form == trajectory_file.FORMAT:
+    if form == Trajectory.FORMAT:
         return _check_trajectory(request, claim)
-    is_plan = form == plan_file.FORMAT
+    is_plan = form == Plan.FORMAT
     try:
         subject = _open(request, request.deadline if is_plan else NEVER)
     except OutOfTime:

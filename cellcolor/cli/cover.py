@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain, say
-from cellcolor.data import tool_paths as tool_paths_file
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
@@ -19,7 +19,7 @@ from cellcolor.files.writing import Output, check_output, kind_of_format, write
 if TYPE_CHECKING:
     from cellcolor.tool_paths.cover import Covered
 
-_PATHS = kind_of_format(tool_paths_file.FORMAT)
+_PATHS = kind_of_format(ToolPaths.FORMAT)
 
 
 def cover_files(

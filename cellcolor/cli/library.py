@@ -12,7 +12,6 @@ from rich.table import Table
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import apart_from, print_json, say
-from cellcolor.data import instance as instance_file
 from cellcolor.data.imcgs import read_imcgs
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryEntry
@@ -23,7 +22,7 @@ from cellcolor.door.shipped import library
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
-_INSTANCE = kind_of_format(instance_file.FORMAT)
+_INSTANCE = kind_of_format(Instance.FORMAT)
 
 
 def list_library(family: str | None, only_open: bool, as_json: bool) -> Exit:

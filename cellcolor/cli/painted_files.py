@@ -6,16 +6,16 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cellcolor.data import plan as plan_file
-from cellcolor.data import surface as surface_file
+from cellcolor.data.plan import Plan
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
 
 if TYPE_CHECKING:
     from cellcolor.painting.paint import Painted
 
-_SURFACE = kind_of_format(surface_file.FORMAT)
-_PLAN = kind_of_format(plan_file.FORMAT)
+_SURFACE = kind_of_format(LabelledSurface.FORMAT)
+_PLAN = kind_of_format(Plan.FORMAT)
 _ENDING = ".surface.json"
 
 

@@ -8,7 +8,6 @@ from cellcolor.checker.division import check_solution
 from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import read_instance
 from cellcolor.cli.terminal import apart_from, say
-from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import InstanceReference, Solution, count_segments
 from cellcolor.data.wording import count
@@ -18,7 +17,7 @@ from cellcolor.files.writing import Output, check_output, kind_of_format, write
 from cellcolor.solvers.answers import OutsideAnswer, read_answer
 from cellcolor.solvers.portable import PORTABLE
 
-_SOLUTION = kind_of_format(solution_file.FORMAT)
+_SOLUTION = kind_of_format(Solution.FORMAT)
 
 
 def export_file(source: Path, output: Path, kind: str) -> Exit:

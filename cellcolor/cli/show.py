@@ -10,7 +10,7 @@ from cellcolor.cli.exits import Exit
 from cellcolor.cli.inputs import open_file
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import say
-from cellcolor.data import plan as plan_file
+from cellcolor.data.plan import Plan
 from cellcolor.door.claims import format_of_claim
 from cellcolor.door.drawing import View, draw, kind_of_picture, picture_of
 from cellcolor.door.extras import extras_for
@@ -36,7 +36,7 @@ def show_files(
     kind = kind_of_picture(output)
     check_output(output, kind, files)
     claim = files[1] if len(files) > 1 else None
-    if name == "segments" and claim is not None and format_of_claim(claim) == plan_file.FORMAT:
+    if name == "segments" and claim is not None and format_of_claim(claim) == Plan.FORMAT:
         name = "plan"
     claims = {"plan" if name == "plan" else "solution": claim}
     view = View(name, color=color, vertex=vertex, branch=branch, **claims)

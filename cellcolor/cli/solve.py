@@ -23,11 +23,9 @@ from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.search_end import Interrupted, end_the_search
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
-from cellcolor.data import instance as instance_file
-from cellcolor.data import solution as solution_file
-from cellcolor.data import surface as surface_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution, scheme_line
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture
 from cellcolor.door.leaving_out import Wanted
@@ -45,9 +43,9 @@ from cellcolor.files.writing import (
 )
 from cellcolor.solvers.interface import PORTFOLIO, Options
 
-_SOLUTION = kind_of_format(solution_file.FORMAT)
-_SURFACE = kind_of_format(surface_file.FORMAT)
-_INSTANCE = kind_of_format(instance_file.FORMAT)
+_SOLUTION = kind_of_format(Solution.FORMAT)
+_SURFACE = kind_of_format(LabelledSurface.FORMAT)
+_INSTANCE = kind_of_format(Instance.FORMAT)
 
 
 @dataclass(frozen=True, slots=True)

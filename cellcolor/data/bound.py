@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from pydantic import ConfigDict, NonNegativeInt
+from pydantic import NonNegativeInt
 
+from cellcolor.data.value import Value
 from cellcolor.data.wording import count
 from cellcolor.files.validation import json_content, settle
 
@@ -16,7 +17,7 @@ Extent = Literal["surface", "strands"]
 
 
 @dataclass(frozen=True, slots=True)
-class Bound:
+class Bound(Value):
     """No division of some kind has fewer segments than this.
 
     Attributes:
@@ -26,8 +27,6 @@ class Bound:
             that the solution's strands allow (in the search space ``paper``: its divisions).
         certificate: what a checker without a solver can verify, if there is one.
     """
-
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
     kind: str
     value: NonNegativeInt

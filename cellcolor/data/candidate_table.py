@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
-from cellcolor.data.comparing import same_members
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.value import WithArrays
 from cellcolor.errors import InputError
 from cellcolor.files.writing import SIDE_MARKER
 
@@ -25,7 +25,7 @@ VALID = 0
 
 
 @dataclass(frozen=True, eq=False)
-class CandidateTable:
+class CandidateTable(WithArrays):
     """The result for every candidate; ``n`` is the surface's number of vertices.
 
     Attributes:
@@ -46,11 +46,6 @@ class CandidateTable:
     configurations: Array
     node_color: NDArray[np.int64]
     surface_sha256: str | None
-
-    def __eq__(self, other: object) -> bool:
-        return same_members(self, other) if isinstance(other, CandidateTable) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]  # arrays that can be changed
 
     def to_bytes(self) -> bytes:
         """The side file, an ``.npz`` archive with a member for each attribute.

@@ -9,20 +9,19 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from pydantic import ConfigDict, NonNegativeFloat
+from pydantic import NonNegativeFloat
 
+from cellcolor.data.value import Value
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
-
-_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
 OUTSIDE = -1
 """The index of everything that no configuration reaches, and of what lies beyond the mesh."""
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class Cell(Value):
     """A connected part of the surface whose points have the same available colors.
 
     Attributes:
@@ -31,8 +30,6 @@ class Cell:
         loops: border loops as cyclic lists of darts, the cell on the left.
         area: square metres, if known.
     """
-
-    __pydantic_config__ = _STRICT
 
     id: int
     colors: tuple[int, ...]
@@ -53,7 +50,7 @@ class Cell:
 
 
 @dataclass(frozen=True, slots=True)
-class Edge:
+class Edge(Value):
     """A topological edge: a maximal border curve between the same two areas.
 
     Attributes:
@@ -64,8 +61,6 @@ class Edge:
             otherwise.
         length: metres, if known.
     """
-
-    __pydantic_config__ = _STRICT
 
     id: int
     left: int

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import ConfigDict, TypeAdapter
-
-from cellcolor.files.documents import about_a_file, take_body, validate
-from cellcolor.files.validation import settle
-
-FORMAT = "cellcolor/check-error"
+from cellcolor.data.value import AboutAFile
 
 
 @dataclass(frozen=True, slots=True)
-class CheckError:
+class CheckError(AboutAFile):
     """Why nothing can be said about a solution, a plan or a trajectory.
 
     Attributes:
@@ -26,7 +21,7 @@ class CheckError:
         exit_code: the command's: 2 for bad input, 3 where the time limit came first.
     """
 
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
+    FORMAT = "cellcolor/check-error"
 
     file: str
     valid: None
@@ -34,22 +29,3 @@ class CheckError:
     at_file: str | None
     at_field: str | None
     exit_code: Literal[2, 3]
-
-    def __post_init__(self) -> None:
-        settle(self)
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object, the file's name first."""
-        return about_a_file(self, FORMAT)
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> CheckError:
-        """An error from a parsed JSON object.
-
-        Raises:
-            InputError: a member is missing, unknown or of the wrong type.
-        """
-        return validate(_ADAPTER, take_body(document, FORMAT))
-
-
-_ADAPTER = TypeAdapter(CheckError)

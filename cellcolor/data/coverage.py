@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import Annotated, Any
 
 from annotated_types import Ge, Le
-from pydantic import ConfigDict, NonNegativeFloat
+from pydantic import NonNegativeFloat
 
+from cellcolor.data.value import Value
 from cellcolor.errors import InputError
 from cellcolor.files.validation import settle
 
@@ -18,7 +19,7 @@ Share = Annotated[float, Ge(0), Le(1)]
 
 
 @dataclass(frozen=True, slots=True)
-class Coverage:
+class Coverage(Value):
     """How much of a surface the cells cover; nobody paints the rest.
 
     Attributes:
@@ -27,8 +28,6 @@ class Coverage:
         given_up: the share that some color reaches and that was taken away on purpose, by the
             sliver policy or as a place to leave alone, 0 to 1; not part of ``unreachable``.
     """
-
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
     area_m2: NonNegativeFloat
     unreachable: Share

@@ -8,7 +8,7 @@ from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
+from pydantic import NonNegativeInt
 
 from cellcolor.data.cells_and_edges import (
     OUTSIDE,
@@ -19,22 +19,20 @@ from cellcolor.data.cells_and_edges import (
     shared_colors,
 )
 from cellcolor.data.coverage import Coverage
+from cellcolor.data.value import Document, Value
 from cellcolor.data.version_1 import fingerprint_of_version_1
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_as, take_body, validate
+from cellcolor.files.documents import dump_lines
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, settle
 
 if TYPE_CHECKING:
     import cellcolor
 
-FORMAT = "cellcolor/instance"
-_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-
 
 @dataclass(frozen=True, slots=True)
-class SurfaceReference:
+class SurfaceReference(Value):
     """The labelled surface an instance was built from.
 
     Attributes:
@@ -43,44 +41,29 @@ class SurfaceReference:
         sha256: the surface's fingerprint; None in files of version 1.
     """
 
-    __pydantic_config__ = _STRICT
-
     path: str
     vertex_cell: tuple[int, ...]
     sha256: str | None = None
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class KnownResult:
+class KnownResult(Value):
     """A result known from elsewhere: the minimum, and how many optimal schemes there are."""
-
-    __pydantic_config__ = _STRICT
 
     segments: NonNegativeInt
     schemes: NonNegativeInt | None = None
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class KnownResults:
+class KnownResults(Value):
     """Known results per search space."""
-
-    __pydantic_config__ = _STRICT
 
     paper: KnownResult | None = None
     surface: KnownResult | None = None
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, repr=False)
-class Instance:
+class Instance(Document):
     """A validated topological graph, all that is needed to solve.
 
     Attributes:
@@ -97,7 +80,8 @@ class Instance:
         InputError: anything that ``docs/formats.md`` forbids, with field and element.
     """
 
-    __pydantic_config__ = _STRICT
+    FORMAT = "cellcolor/instance"
+    SINCE_VERSION_2 = ("coverage", "surface.sha256")
 
     name: str
     colors: tuple[str, ...]
@@ -126,9 +110,6 @@ class Instance:
             f"{self.name}: {count(len(self.cells), 'cell')}, {count(len(self.edges), 'edge')}, "
             f"{count(len(self.colors), 'color')}"
         )
-
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
 
     @cached_property
     def _edge_by_id(self) -> dict[int, Edge]:
@@ -199,7 +180,7 @@ class Instance:
 
     def to_json(self) -> str:
         """The file's text, as ``build`` writes it."""
-        document = {"format": FORMAT, "version": 2} | self._body()
+        document = {"format": self.FORMAT, "version": 2} | self._body()
         return dump_lines(document, frozenset({"cells", "edges"}))
 
     def _body(self) -> dict[str, Any]:
@@ -263,24 +244,11 @@ class Instance:
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:
         """An instance from a parsed JSON object."""
-        body = take_body(document, FORMAT, ("coverage", "surface.sha256"))
-        instance = validate(_ADAPTER, body)
+        instance = super().from_document(document)
         if document["version"] == 1:
             # The old fingerprint depends on the order of colors, which an instance does not keep.
-            instance.__dict__["sha256_of_version_1"] = fingerprint_of_version_1(body)
+            instance.__dict__["sha256_of_version_1"] = fingerprint_of_version_1(document)
         return instance
-
-    @classmethod
-    def read(cls, path: str | PathLike[str]) -> Instance:
-        """An instance from a file.
-
-        Raises:
-            InputError: the file cannot be read or holds something that the format forbids.
-        """
-        return read_as(path, cls.from_document)
-
-
-_ADAPTER = TypeAdapter(Instance)
 
 
 def _from_smallest(loops: Sequence[tuple[int, ...]]) -> list[tuple[tuple[int, ...], int]]:

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.data.rows import numbered_rows, rows_of_three, truths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
+from cellcolor.data.value import numbered_rows, rows_of_three, truths
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 

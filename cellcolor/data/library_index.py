@@ -5,31 +5,28 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass
-from os import PathLike
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import ConfigDict, Field, NonNegativeInt, TypeAdapter
+from pydantic import Field, NonNegativeInt
 
 from cellcolor.data.bound import Extent
 from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.data.value import Document, Value
 from cellcolor.data.wording import count, span
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_as, take_body, validate
+from cellcolor.files.documents import dump_lines
 from cellcolor.files.validation import settle
 
-FORMAT = "cellcolor/library"
 _WHERE: dict[SearchSpace, str] = {
     "paper": "search space paper",
     "surface": "any division of the surface",
 }
-_STRICT = ConfigDict(extra="forbid", strict=True)
-
 Sha256 = Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
 Date = Annotated[str, Field(pattern=r"^\d{4}-\d{2}-\d{2}$")]
 
 
 @dataclass(frozen=True, slots=True)
-class LowerBound:
+class LowerBound(Value):
     """No division has fewer segments.
 
     Attributes:
@@ -41,8 +38,6 @@ class LowerBound:
         date: when it was found, as 2026-11-22.
     """
 
-    __pydantic_config__ = _STRICT
-
     value: NonNegativeInt
     kind: str
     verified: bool
@@ -50,12 +45,9 @@ class LowerBound:
     version: str
     date: Date
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class UpperBound:
+class UpperBound(Value):
     """A division has this many segments.
 
     Attributes:
@@ -66,28 +58,21 @@ class UpperBound:
         solution: the file with the division, seen from the index; null if it is not here.
     """
 
-    __pydantic_config__ = _STRICT
-
     value: NonNegativeInt
     solver: str
     version: str
     date: Date
     solution: str | None
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class KnownRange:
+class KnownRange(Value):
     """Where the minimum lies in a search space.
 
     Attributes:
         lower: the best lower bound.
         upper: the best division; null if none is known.
     """
-
-    __pydantic_config__ = _STRICT
 
     lower: LowerBound
     upper: UpperBound | None
@@ -108,7 +93,7 @@ class KnownRange:
 
 
 @dataclass(frozen=True, slots=True)
-class OutsideFile:
+class OutsideFile(Value):
     """A file that is not here, and how it becomes the instance: ``cellcolor import``.
 
     Attributes:
@@ -116,17 +101,12 @@ class OutsideFile:
         corrections: of lines of the file, as ``--correct`` takes them.
     """
 
-    __pydantic_config__ = _STRICT
-
     place: str
     corrections: tuple[str, ...]
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class LibraryEntry:
+class LibraryEntry(Value):
     """One graph of the library.
 
     Attributes:
@@ -148,8 +128,6 @@ class LibraryEntry:
         paper: where the minimum lies in the search space ``paper``.
         surface: where it lies for any division of the surface.
     """
-
-    __pydantic_config__ = _STRICT
 
     name: str
     family: str
@@ -222,14 +200,14 @@ class LibraryEntry:
 
 
 @dataclass(frozen=True, slots=True)
-class LibraryIndex:
+class LibraryIndex(Document):
     """All graphs of the library.
 
     Attributes:
         entries: in the order of their names.
     """
 
-    __pydantic_config__ = _STRICT
+    FORMAT = "cellcolor/library"
 
     entries: tuple[LibraryEntry, ...]
 
@@ -254,22 +232,5 @@ class LibraryIndex:
     def to_json(self) -> str:
         """The file's text, an entry a line."""
         entries = [asdict(entry) for entry in self.entries]
-        document = {"format": FORMAT, "version": 1, "entries": entries}
+        document = {"format": self.FORMAT, "version": 1, "entries": entries}
         return dump_lines(document, frozenset({"entries"}))
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> LibraryIndex:
-        """An index from a parsed JSON object."""
-        return validate(_ADAPTER, take_body(document, FORMAT))
-
-    @classmethod
-    def read(cls, path: str | PathLike[str]) -> LibraryIndex:
-        """An index from a file.
-
-        Raises:
-            InputError: the file cannot be read or holds something that the format forbids.
-        """
-        return read_as(path, cls.from_document)
-
-
-_ADAPTER = TypeAdapter(LibraryIndex)

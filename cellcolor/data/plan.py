@@ -4,20 +4,13 @@ from __future__ import annotations
 
 import json
 from dataclasses import dataclass
-from os import PathLike
-from typing import Any
 
-from pydantic import ConfigDict, TypeAdapter
-
+from cellcolor.data.value import Document
 from cellcolor.data.wording import count
-from cellcolor.files.documents import read_as, take_body, validate
-from cellcolor.files.validation import settle
-
-FORMAT = "cellcolor/plan"
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Plan:
+class Plan(Document):
     """One color per vertex of a labelled surface.
 
     Attributes:
@@ -28,12 +21,9 @@ class Plan:
         InputError: a color is no integer, as ``True``, 1.0 and names are not.
     """
 
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
+    FORMAT = "cellcolor/plan"
 
     vertex_colors: tuple[int | None, ...]
-
-    def __post_init__(self) -> None:
-        settle(self)
 
     def __str__(self) -> str:
         painted = [color for color in self.vertex_colors if color is not None]
@@ -47,22 +37,5 @@ class Plan:
     def to_json(self) -> str:
         """The file's text."""
         return json.dumps(
-            {"format": FORMAT, "version": 1, "vertex_colors": list(self.vertex_colors)}
+            {"format": self.FORMAT, "version": 1, "vertex_colors": list(self.vertex_colors)}
         )
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> Plan:
-        """A plan from a parsed JSON object."""
-        return validate(_ADAPTER, take_body(document, FORMAT))
-
-    @classmethod
-    def read(cls, path: str | PathLike[str]) -> Plan:
-        """A plan from a file.
-
-        Raises:
-            InputError: the file cannot be read or holds something that the format forbids.
-        """
-        return read_as(path, cls.from_document)
-
-
-_ADAPTER = TypeAdapter(Plan)

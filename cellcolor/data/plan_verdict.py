@@ -3,21 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field, TypeAdapter
-
-from cellcolor.files.documents import about_a_file, take_body, validate
-from cellcolor.files.validation import settle
-
-FORMAT = "cellcolor/plan-verdict"
-
-_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-_Count = Annotated[int, Field(ge=0)]
+from cellcolor.data.value import AboutAFile, Count, Value
 
 
 @dataclass(frozen=True, slots=True)
-class PlanViolation:
+class PlanViolation(Value):
     """Why a plan is not valid at a vertex.
 
     Attributes:
@@ -27,16 +18,14 @@ class PlanViolation:
         reason: what is wrong, a clause.
     """
 
-    __pydantic_config__ = _STRICT
-
-    vertex: _Count
+    vertex: Count
     color: int | None
     place: tuple[float, float, float]
     reason: str
 
 
 @dataclass(frozen=True, slots=True)
-class SegmentRange:
+class SegmentRange(Value):
     """The range of a number of segments, both ends included.
 
     Attributes:
@@ -44,14 +33,12 @@ class SegmentRange:
         upper: this many are known to be enough.
     """
 
-    __pydantic_config__ = _STRICT
-
-    lower: _Count
-    upper: _Count
+    lower: Count
+    upper: Count
 
 
 @dataclass(frozen=True, slots=True)
-class PlanImprovement:
+class PlanImprovement(Value):
     """How a plan can have fewer segments.
 
     Attributes:
@@ -64,17 +51,15 @@ class PlanImprovement:
             it to have fewer segments than the plan that was judged.
     """
 
-    __pydantic_config__ = _STRICT
-
     joined: tuple[int, int]
     places: tuple[int, int]
-    segments: _Count
-    segments_on_mesh: _Count
+    segments: Count
+    segments_on_mesh: Count
     vertex_colors: tuple[int | None, ...] | None
 
 
 @dataclass(frozen=True, slots=True)
-class PlanVerdict:
+class PlanVerdict(AboutAFile):
     """The verdict on a plan.
 
     Attributes:
@@ -102,41 +87,22 @@ class PlanVerdict:
             verified, and nothing else here rests on it; null if there is none.
     """
 
-    __pydantic_config__ = _STRICT
+    FORMAT = "cellcolor/plan-verdict"
 
     file: str
     valid: bool
     text: str
     problems: tuple[str, ...]
-    violation_count: _Count
+    violation_count: Count
     violations: tuple[PlanViolation, ...]
-    segments: _Count | None
-    lift_offs: _Count | None
-    lower_bound: _Count | None
-    upper_bound: _Count | None
+    segments: Count | None
+    lift_offs: Count | None
+    lower_bound: Count | None
+    upper_bound: Count | None
     optimal: bool | None
-    beatable_by: _Count | None
-    gap: _Count | None
+    beatable_by: Count | None
+    gap: Count | None
     on_mesh: SegmentRange | None
     improvement: PlanImprovement | None
     why: str | None
-    kept_lower_bound: _Count | None = None
-
-    def __post_init__(self) -> None:
-        settle(self)
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object, the file's name first."""
-        return about_a_file(self, FORMAT)
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> PlanVerdict:
-        """A verdict from a parsed JSON object.
-
-        Raises:
-            InputError: a member is missing, unknown or of the wrong type.
-        """
-        return validate(_ADAPTER, take_body(document, FORMAT))
-
-
-_ADAPTER = TypeAdapter(PlanVerdict)
+    kept_lower_bound: Count | None = None

@@ -7,15 +7,16 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from os import PathLike
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import ConfigDict, Field, NonNegativeFloat, NonNegativeInt, PositiveInt, TypeAdapter
+from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
 from cellcolor.data.bound import Bound
 from cellcolor.data.bounds.kinds import certificate_of
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.darts import DartName, twin
 from cellcolor.data.proof_wording import in_words
+from cellcolor.data.value import Document, Value, adapter_of
 from cellcolor.errors import InputError
 from cellcolor.files.documents import (
     dump_lines,
@@ -29,11 +30,6 @@ from cellcolor.files.documents import (
 from cellcolor.files.validation import settle
 from cellcolor.union_find import UnionFind
 
-FORMAT = "cellcolor/solution"
-SCHEME_FORMAT = "cellcolor/scheme"
-
-_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-
 _MOST_WITNESSES = 12  # cells; more of them convince nobody
 
 SearchSpace = Literal["paper", "surface"]
@@ -42,7 +38,7 @@ Status = Literal["optimal", "feasible", "unknown"]
 
 
 @dataclass(frozen=True, slots=True)
-class SubCell:
+class SubCell(Value):
     """One part of a divided cell (or the whole of an undivided one).
 
     Attributes:
@@ -51,27 +47,17 @@ class SubCell:
         segment: the segment it belongs to, counted from 0.
     """
 
-    __pydantic_config__ = _STRICT
-
     color: int
     darts: tuple[DartName, ...]
     segment: int
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class CellDivision:
+class CellDivision(Value):
     """How one cell is divided and painted."""
-
-    __pydantic_config__ = _STRICT
 
     id: int
     subcells: tuple[SubCell, ...]
-
-    def __post_init__(self) -> None:
-        settle(self)
 
 
 Division = tuple[CellDivision, ...]
@@ -94,7 +80,7 @@ def scheme_key(division: Division) -> SchemeKey:
 
 
 @dataclass(frozen=True, slots=True)
-class Seam:
+class Seam(Value):
     """A virtual edge that makes one cyclic list of two loops of a cell.
 
     Attributes:
@@ -105,20 +91,15 @@ class Seam:
         strands: how many corridors may pass between the loops across the seam.
     """
 
-    __pydantic_config__ = _STRICT
-
     id: PositiveInt
     cell: int
     from_: Annotated[int, Field(alias="from")]
     to: int
     strands: NonNegativeInt
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class InstanceReference:
+class InstanceReference(Value):
     """The instance that was solved.
 
     Attributes:
@@ -128,18 +109,13 @@ class InstanceReference:
             solutions of version 1.
     """
 
-    __pydantic_config__ = _STRICT
-
     name: str
     sha256: str
     of: Literal["graph", "text"] = "graph"
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Solution:
+class Solution(Document):
     """A solver's answer, never stronger than its proof.
 
     Attributes:
@@ -167,7 +143,8 @@ class Solution:
         notes: what was left out and why, a sentence each.
     """
 
-    __pydantic_config__ = _STRICT
+    FORMAT = "cellcolor/solution"
+    SINCE_VERSION_2 = ("bounds", "coverage", "notes", "instance.of")
 
     instance: InstanceReference
     search_space: SearchSpace
@@ -234,7 +211,7 @@ class Solution:
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
         document: dict[str, Any] = {
-            "format": FORMAT,
+            "format": self.FORMAT,
             "version": 2,
             "instance": {"name": self.instance.name, "sha256": self.instance.sha256},
             "search_space": self.search_space,
@@ -278,10 +255,11 @@ class Solution:
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Solution:
         """A solution from a parsed JSON object."""
-        body = take_body(document, FORMAT, ("bounds", "coverage", "notes", "instance.of"))
+        body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
         if document["version"] == 1 and isinstance(body.get("instance"), dict):
             body["instance"] = body["instance"] | {"of": "text"}
-        return validate(_ADAPTER, body)
+        found: Solution = validate(adapter_of(cls), body)
+        return found
 
     @classmethod
     def read(cls, path: str | PathLike[str]) -> Solution:
@@ -297,9 +275,6 @@ class Solution:
             raise error.in_file(str(path)) from error
 
 
-_ADAPTER = TypeAdapter(Solution)
-
-
 def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
     """The schemes that follow the solution in a file of JSON Lines; none in any other file.
 
@@ -312,24 +287,21 @@ def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
     for number, line in enumerate(rest.splitlines(), start=2):
         try:
             body = parse_json(line)
-            if body.pop("format", None) != SCHEME_FORMAT:
-                raise InputError(None, "format", f"must be {SCHEME_FORMAT!r}")
-            yield validate(_SCHEME_ADAPTER, body).cells
+            if body.pop("format", None) != _SchemeLine.FORMAT:
+                raise InputError(None, "format", f"must be {_SchemeLine.FORMAT!r}")
+            yield validate(adapter_of(_SchemeLine), body).cells
         except InputError as error:
             field = f"line {number}" + (f", {error.field}" if error.field else "")
             raise InputError(str(path), field, error.message) from error
 
 
 @dataclass(frozen=True, slots=True)
-class _SchemeLine:
+class _SchemeLine(Value):
     """One line of JSON Lines after the solution."""
 
-    __pydantic_config__ = _STRICT
+    FORMAT: ClassVar[str] = "cellcolor/scheme"
 
     cells: Division
-
-
-_SCHEME_ADAPTER = TypeAdapter(_SchemeLine)
 
 
 def division_document(division: Division) -> list[dict[str, Any]]:
@@ -348,7 +320,7 @@ def division_document(division: Division) -> list[dict[str, Any]]:
 
 def scheme_line(division: Division) -> str:
     """One line of JSON Lines for one optimal scheme."""
-    document = {"format": SCHEME_FORMAT, "cells": division_document(division)}
+    document = {"format": _SchemeLine.FORMAT, "cells": division_document(division)}
     return json.dumps(document, ensure_ascii=False)
 
 

@@ -3,21 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import ConfigDict, Field, TypeAdapter
-
-from cellcolor.files.documents import about_a_file, take_body, validate
-from cellcolor.files.validation import settle
-
-FORMAT = "cellcolor/solution-verdict"
-
-_STRICT = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-_Count = Annotated[int, Field(ge=0)]
+from cellcolor.data.value import AboutAFile, Count, Value
 
 
 @dataclass(frozen=True, slots=True)
-class CheckedBound:
+class CheckedBound(Value):
     """The outcome of verifying a solution's bound.
 
     Attributes:
@@ -30,19 +22,17 @@ class CheckedBound:
         budget: how many could have been tried.
     """
 
-    __pydantic_config__ = _STRICT
-
     kind: str
-    value: _Count
+    value: Count
     holds_for: Literal["surface", "strands"]
     outcome: Literal["verified", "refused", "budget exceeded", "no certificate"]
     reason: str
-    tried: _Count
-    budget: _Count
+    tried: Count
+    budget: Count
 
 
 @dataclass(frozen=True, slots=True)
-class SolutionVerdict:
+class SolutionVerdict(AboutAFile):
     """The verdict on a solution.
 
     Attributes:
@@ -59,35 +49,16 @@ class SolutionVerdict:
         schemes: how many follow the solution in its file; null for none.
     """
 
-    __pydantic_config__ = _STRICT
+    FORMAT = "cellcolor/solution-verdict"
 
     file: str
     valid: bool
     problems: tuple[str, ...]
-    segments: _Count | None
-    lift_offs: _Count | None
+    segments: Count | None
+    lift_offs: Count | None
     status: str
     solver: str
     bounds: tuple[CheckedBound, ...]
-    bounds_by_solver: _Count
+    bounds_by_solver: Count
     claimed: dict[str, Any]
-    schemes: _Count | None
-
-    def __post_init__(self) -> None:
-        settle(self)
-
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object, the file's name first."""
-        return about_a_file(self, FORMAT)
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> SolutionVerdict:
-        """A verdict from a parsed JSON object.
-
-        Raises:
-            InputError: a member is missing, unknown or of the wrong type.
-        """
-        return validate(_ADAPTER, take_body(document, FORMAT))
-
-
-_ADAPTER = TypeAdapter(SolutionVerdict)
+    schemes: Count | None

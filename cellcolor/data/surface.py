@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter
 
 from cellcolor.data.cells_and_edges import check_color_names
-from cellcolor.data.comparing import same_members
+from cellcolor.data.value import Document, RowsOfThree, Triples, Value, WithArrays, adapter_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_as, take_body, validate
+from cellcolor.files.documents import dump_lines, take_body, validate
 from cellcolor.files.fingerprint import sha256_of
 from cellcolor.files.validation import json_content, plain, settle, validate_python
 from cellcolor.mesh.oriented import directed_edges
@@ -24,12 +24,11 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 if TYPE_CHECKING:
     import cellcolor
 
-FORMAT = "cellcolor/labelled-surface"
 _FARTHEST = 1e9  # m
 
 
 @dataclass(frozen=True, slots=True)
-class Crack:
+class Crack(Value):
     """A mesh edge across which colors that both ends have are not continuous.
 
     Ends and colors are put in order.
@@ -56,7 +55,7 @@ class Crack:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LabelledSurface:
+class LabelledSurface(WithArrays, Document):
     """What a front end produces: where the surface is, and which colors reach each point.
 
     Lists and arrays are taken for every member, and put in order; the arrays are copies that
@@ -78,17 +77,20 @@ class LabelledSurface:
         InputError: anything that ``docs/formats.md`` forbids, with field and element.
     """
 
+    FORMAT = "cellcolor/labelled-surface"
+    SINCE_VERSION_2 = ("given_up",)
+
     name: str
     colors: tuple[str, ...]
-    vertices: NDArray[np.float64]
-    faces: NDArray[np.int64]
+    vertices: RowsOfThree
+    faces: Triples
     vertex_colors: tuple[tuple[int, ...], ...]
     cracks: tuple[Crack, ...] = ()
     meta: dict[str, Any] = field(default_factory=dict)
     given_up: tuple[int, ...] = ()
 
     def __post_init__(self) -> None:
-        settle(self, ("vertices", "faces"))
+        settle(self)
         for name, content in (
             ("vertices", _rows(self.vertices, "vertices", float)),
             ("faces", _rows(self.faces, "faces", int)),
@@ -119,10 +121,7 @@ class LabelledSurface:
         self._check_cracks()
         self._check_given_up()
 
-    def __eq__(self, other: object) -> bool:
-        return same_members(self, other) if isinstance(other, LabelledSurface) else NotImplemented
-
-    def __hash__(self) -> int:
+    def __hash__(self) -> int:  # type: ignore[override]
         return hash(self.sha256)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -140,9 +139,6 @@ class LabelledSurface:
         parts += [f"{unreachable} unreachable"] if unreachable else []
         parts += [f"{len(self.given_up)} given up"] if self.given_up else []
         return f"{self.name}: {', '.join(parts)}"
-
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
 
     def _check_colors(self) -> None:
         check_color_names(self.colors)
@@ -246,7 +242,7 @@ class LabelledSurface:
     def to_json(self) -> str:
         """The file's text."""
         document: dict[str, Any] = {
-            "format": FORMAT,
+            "format": self.FORMAT,
             "version": 2,
             "name": self.name,
             "colors": self.colors,
@@ -264,7 +260,8 @@ class LabelledSurface:
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> LabelledSurface:
         """A surface from a parsed JSON object."""
-        raw = validate(_ADAPTER, take_body(document, FORMAT, ("given_up",)))
+        body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
+        raw = validate(adapter_of(_SurfaceFile), body)
         return cls(
             raw.name,
             raw.colors,
@@ -276,21 +273,10 @@ class LabelledSurface:
             raw.given_up,
         )
 
-    @classmethod
-    def read(cls, path: str | PathLike[str]) -> LabelledSurface:
-        """A surface from a file.
-
-        Raises:
-            InputError: the file cannot be read or holds something that the format forbids.
-        """
-        return read_as(path, cls.from_document)
-
 
 @dataclass(frozen=True, slots=True)
-class _SurfaceFile:
+class _SurfaceFile(Value):
     """The file's members, before they become arrays."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
     name: str
     colors: tuple[str, ...]
@@ -302,7 +288,6 @@ class _SurfaceFile:
     given_up: tuple[int, ...] = ()
 
 
-_ADAPTER = TypeAdapter(_SurfaceFile)
 _ROWS: dict[type, TypeAdapter[Any]] = {
     float: TypeAdapter(list[tuple[float, float, float]], config=ConfigDict(strict=True)),
     int: TypeAdapter(list[tuple[int, int, int]], config=ConfigDict(strict=True)),

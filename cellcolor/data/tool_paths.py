@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import ConfigDict, TypeAdapter
 
-from cellcolor.data.comparing import same_members
-from cellcolor.data.rows import integers, rows_of_three
+from cellcolor.data.value import (
+    Document,
+    Integers,
+    RowsOfThree,
+    Value,
+    WithArrays,
+    adapter_of,
+    integers,
+    rows_of_three,
+)
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_as, take_body, validate
+from cellcolor.files.documents import dump_lines, take_body, validate
 from cellcolor.files.validation import settle
-
-FORMAT = "cellcolor/tool-paths"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ToolPath:
+class ToolPath(WithArrays, Value):
     """One path on a labelled surface, from its first point to its last without lifting.
 
     The step from point i to point i + 1 is straight and lies in the triangle ``faces[i]``.
@@ -39,12 +42,12 @@ class ToolPath:
 
     segment: int
     color: int
-    points: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    faces: NDArray[np.int64]
+    points: RowsOfThree
+    normals: RowsOfThree
+    faces: Integers
 
     def __post_init__(self) -> None:
-        settle(self, ("points", "normals", "faces"))
+        settle(self)
         object.__setattr__(self, "points", rows_of_three(self.points, "points"))
         object.__setattr__(self, "normals", rows_of_three(self.normals, "normals"))
         object.__setattr__(self, "faces", integers(self.faces, "faces"))
@@ -62,21 +65,13 @@ class ToolPath:
         """Of the whole path, m."""
         return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
 
-    def __eq__(self, other: object) -> bool:
-        return same_members(self, other) if isinstance(other, ToolPath) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]
-
     def __str__(self) -> str:
         points = count(len(self.points), "point")
         return f"tool path on segment {self.segment}: {self.length:.3f} m, {points}"
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ToolPaths:
+class ToolPaths(WithArrays, Document):
     """The tool paths of one painting.
 
     Attributes:
@@ -88,17 +83,14 @@ class ToolPaths:
         surface_sha256: fingerprint of the labelled surface that they lie on.
     """
 
+    FORMAT = "cellcolor/tool-paths"
+
     name: str
     pattern: str
     spacing_m: float
     tool_radius_m: float
     paths: tuple[ToolPath, ...]
     surface_sha256: str
-
-    def __eq__(self, other: object) -> bool:
-        return same_members(self, other) if isinstance(other, ToolPaths) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]
 
     @property
     def length(self) -> float:
@@ -108,9 +100,6 @@ class ToolPaths:
     def __str__(self) -> str:
         paths = count(len(self.paths), "tool path")
         return f"{self.name}: {paths}, {self.pattern}, {self.length:.2f} m"
-
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
 
     def to_json(self) -> str:
         """The file's text."""
@@ -125,7 +114,7 @@ class ToolPaths:
             for path in self.paths
         ]
         document: dict[str, Any] = {
-            "format": FORMAT,
+            "format": self.FORMAT,
             "version": 1,
             "name": self.name,
             "pattern": self.pattern,
@@ -139,12 +128,12 @@ class ToolPaths:
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> ToolPaths:
         """Tool paths from a parsed JSON object."""
-        raw = validate(_ADAPTER, take_body(document, FORMAT))
+        raw = validate(adapter_of(_ToolPathsFile), take_body(document, cls.FORMAT))
         paths = []
         for number, path in enumerate(raw.paths):
             try:
                 members = (path.segment, path.color, path.points, path.normals, path.faces)
-                paths.append(ToolPath(*members))  # type: ignore[arg-type]
+                paths.append(ToolPath(*members))
             except InputError as error:
                 raise InputError(None, f"paths[{number}].{error.field}", error.message) from error
         return cls(
@@ -156,21 +145,10 @@ class ToolPaths:
             raw.surface_sha256,
         )
 
-    @classmethod
-    def read(cls, path: str | PathLike[str]) -> ToolPaths:
-        """Tool paths from a file.
-
-        Raises:
-            InputError: the file cannot be read or holds something that the format forbids.
-        """
-        return read_as(path, cls.from_document)
-
 
 @dataclass(frozen=True, slots=True)
-class _PathInFile:
+class _PathInFile(Value):
     """A path's members, before they become arrays."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
     segment: int
     color: int
@@ -180,10 +158,8 @@ class _PathInFile:
 
 
 @dataclass(frozen=True, slots=True)
-class _ToolPathsFile:
+class _ToolPathsFile(Value):
     """The file's members, before they become arrays."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
 
     name: str
     pattern: str
@@ -191,6 +167,3 @@ class _ToolPathsFile:
     tool_radius_m: float
     paths: list[_PathInFile]
     surface_sha256: str
-
-
-_ADAPTER = TypeAdapter(_ToolPathsFile)

@@ -3,27 +3,36 @@
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
-from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
-from pydantic import ConfigDict, TypeAdapter
 
-from cellcolor.data.comparing import same_members
-from cellcolor.data.rows import integers, numbers, rows_of, rows_of_three, truths
+from cellcolor.data.value import (
+    Document,
+    Integers,
+    Numbers,
+    Rows,
+    RowsOfThree,
+    Truths,
+    Value,
+    WithArrays,
+    integers,
+    numbers,
+    rows_of,
+    rows_of_three,
+    truths,
+)
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_as, take_body, validate
+from cellcolor.files.documents import dump_lines
 from cellcolor.files.validation import json_content, settle
 
-FORMAT = "cellcolor/trajectory"
 _ARRAYS = ("times", "joints", "points", "normals", "contact", "segment")
 _LISTS = ("extra_lift_offs", "left_out", "repeated")
 
 
 @dataclass(frozen=True, slots=True)
-class ExtraLiftOff:
+class ExtraLiftOff(Value):
     """A lift-off beyond the proven minimum, and why it is there.
 
     Attributes:
@@ -41,12 +50,9 @@ class ExtraLiftOff:
     text: str
     place: tuple[float, float, float]
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
+class LeftOut(Value):
     """A part of a segment that the tool does not go to, and why.
 
     Attributes:
@@ -61,12 +67,9 @@ class LeftOut:
     reason: str
     place: tuple[float, float, float]
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, slots=True)
-class RepeatedStretch:
+class RepeatedStretch(Value):
     """Samples in contact that run along an earlier pass on purpose, and why.
 
     Attributes:
@@ -79,12 +82,9 @@ class RepeatedStretch:
     last_sample: int
     reason: str
 
-    def __post_init__(self) -> None:
-        settle(self)
-
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Trajectory:
+class Trajectory(WithArrays, Document):
     """Joint positions over time.
 
     Between two samples every joint moves in proportion to time. A stretch of samples in contact
@@ -112,14 +112,16 @@ class Trajectory:
             joints keep their limits is left to the judge of trajectories.
     """
 
+    FORMAT = "cellcolor/trajectory"
+
     name: str
     joint_names: tuple[str, ...]
-    times: NDArray[np.float64]
-    joints: NDArray[np.float64]
-    points: NDArray[np.float64]
-    normals: NDArray[np.float64]
-    contact: NDArray[np.bool_]
-    segment: NDArray[np.int64]
+    times: Numbers
+    joints: Rows
+    points: RowsOfThree
+    normals: RowsOfThree
+    contact: Truths
+    segment: Integers
     unplanned: tuple[int, ...] = ()
     extra_lift_offs: tuple[ExtraLiftOff, ...] = ()
     left_out: tuple[LeftOut, ...] = ()
@@ -127,7 +129,7 @@ class Trajectory:
     meta: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        settle(self, _ARRAYS)
+        settle(self)
         for name, content in (
             ("times", numbers(self.times, "times")),
             ("joints", rows_of(self.joints, len(self.joint_names), "joints")),
@@ -161,24 +163,16 @@ class Trajectory:
         """From the first sample to the last, s."""
         return float(self.times[-1] - self.times[0]) if len(self.times) else 0.0
 
-    def __eq__(self, other: object) -> bool:
-        return same_members(self, other) if isinstance(other, Trajectory) else NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]
-
     def __str__(self) -> str:
         strokes = count(len(self.strokes), "stroke")
         lift_offs = count(self.lift_offs, "lift-off")
         samples = count(len(self.times), "sample")
         return f"{self.name}: {strokes}, {lift_offs}, {self.seconds:.1f} s, {samples}"
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
-
     def to_json(self) -> str:
         """The file's text."""
         document: dict[str, Any] = {
-            "format": FORMAT,
+            "format": self.FORMAT,
             "version": 1,
             "name": self.name,
             "joint_names": self.joint_names,
@@ -190,42 +184,3 @@ class Trajectory:
         if self.meta:
             document["meta"] = self.meta
         return dump_lines(document, frozenset(_LISTS))
-
-    @classmethod
-    def from_document(cls, document: dict[str, Any]) -> Trajectory:
-        """A trajectory from a parsed JSON object."""
-        raw = validate(_ADAPTER, take_body(document, FORMAT))
-        return cls(**{name: getattr(raw, name) for name in _TrajectoryFile.__dataclass_fields__})
-
-    @classmethod
-    def read(cls, path: str | PathLike[str]) -> Trajectory:
-        """A trajectory from a file.
-
-        Raises:
-            InputError: the file cannot be read or holds something that the format forbids.
-        """
-        return read_as(path, cls.from_document)
-
-
-@dataclass(frozen=True, slots=True)
-class _TrajectoryFile:
-    """The file's members, before they become arrays."""
-
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-
-    name: str
-    joint_names: tuple[str, ...]
-    times: list[float]
-    joints: list[list[float]]
-    points: list[tuple[float, float, float]]
-    normals: list[tuple[float, float, float]]
-    contact: list[bool]
-    segment: list[int]
-    unplanned: tuple[int, ...] = ()
-    extra_lift_offs: tuple[ExtraLiftOff, ...] = ()
-    left_out: tuple[LeftOut, ...] = ()
-    repeated: tuple[RepeatedStretch, ...] = ()
-    meta: dict[str, Any] = field(default_factory=dict)
-
-
-_ADAPTER = TypeAdapter(_TrajectoryFile)

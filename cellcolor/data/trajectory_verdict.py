@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass
-from os import PathLike
+from dataclasses import asdict, dataclass, fields
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, TypeAdapter
+from pydantic import Field
 
+from cellcolor.data.value import Count, Document, Value, adapter_of
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, read_as, take_body, validate
-from cellcolor.files.validation import settle
-
-FORMAT = "cellcolor/trajectory-verdict"
+from cellcolor.files.documents import dump_lines, take_body, validate
 
 FaultKind = Literal[
     "time",
@@ -39,7 +36,7 @@ FaultKind = Literal[
 
 
 @dataclass(frozen=True, slots=True)
-class Fault:
+class Fault(Value):
     """Something that is wrong with a trajectory.
 
     Attributes:
@@ -63,9 +60,6 @@ class Fault:
     reason: str | None = None
     place: tuple[float, float, float] | None = None
 
-    def __post_init__(self) -> None:
-        settle(self)
-
     def __str__(self) -> str:
         where = "" if self.sample is None else f"sample {self.sample}"
         if self.last_sample is not None and self.last_sample != self.sample:
@@ -79,7 +73,7 @@ class Fault:
 
 
 @dataclass(frozen=True, slots=True)
-class CoveredArea:
+class CoveredArea(Value):
     """What the tool goes over, of the area that the labelled surface has a color for.
 
     Distances are along the surface. A visit of a point is a pass within half the spacing.
@@ -115,9 +109,6 @@ class CoveredArea:
     length_m: float
     length_times_spacing_per_area: float
 
-    def __post_init__(self) -> None:
-        settle(self)
-
     def __str__(self) -> str:
         again = f"{self.repeated_m:.3f} of {self.length_m:.2f} m along earlier passes"
         again += f", {self.stated_repeated_m:.3f} m of it stated"
@@ -130,7 +121,7 @@ class CoveredArea:
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class TrajectoryVerdict:
+class TrajectoryVerdict(Document):
     """What an independent judge finds in a trajectory.
 
     Attributes:
@@ -151,23 +142,22 @@ class TrajectoryVerdict:
         notes: what was not judged, and why, a sentence each.
     """
 
+    FORMAT = "cellcolor/trajectory-verdict"
+
     name: str
-    samples: Annotated[int, Field(ge=0)]
-    tested: Annotated[int, Field(ge=0)]
+    samples: Count
+    tested: Count
     timed: bool
     seconds: float | None
-    strokes: Annotated[int, Field(ge=0)]
-    lift_offs: Annotated[int, Field(ge=0)]
-    claimed_extra: Annotated[int, Field(ge=0)]
+    strokes: Count
+    lift_offs: Count
+    claimed_extra: Count
     minimum_lift_offs: int | None
     unclaimed_extra: int | None
     fault_counts: dict[FaultKind, int]
     faults: tuple[Fault, ...]
     covered: CoveredArea | None
     notes: tuple[str, ...]
-
-    def __post_init__(self) -> None:
-        settle(self)
 
     @property
     def valid(self) -> bool:
@@ -183,12 +173,9 @@ class TrajectoryVerdict:
         said = "valid" if self.valid else f"not valid, {faults}"
         return f"{self.name}: {said}, {count(self.lift_offs, 'lift-off')}"
 
-    def __repr__(self) -> str:
-        return f"<{type(self).__name__} {self}>"
-
     def to_json(self) -> str:
         """The file's text."""
-        document: dict[str, Any] = {"format": FORMAT, "version": 1, "valid": self.valid}
+        document: dict[str, Any] = {"format": self.FORMAT, "version": 1, "valid": self.valid}
         return dump_lines(document | asdict(self), frozenset({"faults"}))
 
     @classmethod
@@ -199,48 +186,19 @@ class TrajectoryVerdict:
             InputError: a member is missing, unknown or of the wrong type, or ``valid`` says
                 something else than the faults.
         """
-        raw = validate(_ADAPTER, take_body(document, FORMAT))
-        verdict = cls(**{name: getattr(raw, name) for name in _MEMBERS})
-        if raw.valid != verdict.valid:
+        raw = validate(adapter_of(_VerdictFile), take_body(document, cls.FORMAT))
+        verdict = cls(**{member.name: getattr(raw, member.name) for member in fields(cls)})
+        if raw.valid_ != verdict.valid:
             raise InputError(None, "valid", "says something else than fault_counts")
         return verdict
 
-    @classmethod
-    def read(cls, path: str | PathLike[str]) -> TrajectoryVerdict:
-        """A verdict from a file.
-
-        Raises:
-            InputError: the file cannot be read or holds something that the format forbids.
-        """
-        return read_as(path, cls.from_document)
-
 
 @dataclass(frozen=True, slots=True)
-class _VerdictFile:
+class _VerdictFile(TrajectoryVerdict):
     """The file's members, and ``file``, which ``cellcolor check`` adds to what it prints."""
 
-    __pydantic_config__ = ConfigDict(extra="forbid", strict=True, allow_inf_nan=False)
-
-    valid: bool
-    name: str
-    samples: Annotated[int, Field(ge=0)]
-    tested: Annotated[int, Field(ge=0)]
-    timed: bool
-    seconds: float | None
-    strokes: Annotated[int, Field(ge=0)]
-    lift_offs: Annotated[int, Field(ge=0)]
-    claimed_extra: Annotated[int, Field(ge=0)]
-    minimum_lift_offs: int | None
-    unclaimed_extra: int | None
-    fault_counts: dict[FaultKind, int]
-    faults: tuple[Fault, ...]
-    covered: CoveredArea | None
-    notes: tuple[str, ...]
+    valid_: Annotated[bool, Field(alias="valid")]
     file: Annotated[
         str | None,
         Field(description="the trajectory as it was named to cellcolor check; in no stored file."),
     ] = None
-
-
-_MEMBERS = tuple(TrajectoryVerdict.__dataclass_fields__)
-_ADAPTER = TypeAdapter(_VerdictFile)

@@ -9,8 +9,6 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from cellcolor.data import plan as plan_file
-from cellcolor.data import trajectory as trajectory_file
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
@@ -26,7 +24,7 @@ ReadTrajectory: TypeAlias = Trajectory | TrajectoryTable
 def format_of_claim(file: str | PathLike[str]) -> str | None:
     """The format of a claim, None if unreadable; the suffix identifies tables."""
     if _is_table(file):
-        return trajectory_file.FORMAT
+        return Trajectory.FORMAT
     try:
         form = read_document(file).get("format")
     except InputError:
@@ -41,9 +39,9 @@ def read_claim(file: str | PathLike[str]) -> Plan | Solution | ReadTrajectory:
         InputError: it cannot be used; names file and member.
     """
     form = format_of_claim(file)
-    if form == trajectory_file.FORMAT:
+    if form == Trajectory.FORMAT:
         return read_trajectory(file)
-    return Plan.read(file) if form == plan_file.FORMAT else Solution.read(file)
+    return Plan.read(file) if form == Plan.FORMAT else Solution.read(file)
 
 
 def read_trajectory(file: str | PathLike[str]) -> ReadTrajectory:

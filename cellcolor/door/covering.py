@@ -97,7 +97,7 @@ def _unit_rows(normals: Any, count: int) -> Array:
     Raises:
         InputError: they are not one for each vertex, or one of them has no direction.
     """
-    from cellcolor.data.rows import rows_of_three
+    from cellcolor.data.value import rows_of_three
 
     rows = rows_of_three(normals, "normals")
     if len(rows) != count:

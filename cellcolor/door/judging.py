@@ -12,7 +12,6 @@ from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import Report, check_solution
 from cellcolor.checker.known_results import contradictions
 from cellcolor.data.solution import Solution
-from cellcolor.data.trajectory import FORMAT as TRAJECTORY
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
@@ -91,7 +90,7 @@ def check(
     """
     if isinstance(solution, (str, PathLike)):
         solution = find_claim(solution)
-    if isinstance(solution, Path) and format_of_claim(solution) == TRAJECTORY:
+    if isinstance(solution, Path) and format_of_claim(solution) == Trajectory.FORMAT:
         deadline = Deadline.of(time_limit)
         read = read_trajectory(solution)
         subject = without_place(open_subject(instance, deadline), left_alone)

@@ -7,15 +7,10 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from cellcolor.data import instance as instance_file
-from cellcolor.data import plan as plan_file
-from cellcolor.data import solution as solution_file
-from cellcolor.data import surface as surface_file
-from cellcolor.data import tool_paths as tool_paths_file
-from cellcolor.data import trajectory as trajectory_file
-from cellcolor.data import trajectory_verdict as verdict_file
-from cellcolor.data.instance import SurfaceReference
+from cellcolor.data.instance import Instance, SurfaceReference
+from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
@@ -38,14 +33,14 @@ _SIDE, _SURFACE = "instance.reasons.npz", "instance.surface.json"
 
 KINDS: dict[str, FileKind] = {
     _SIDE: SIDE_FILE,
-    _SURFACE: kind_of_format(surface_file.FORMAT),
-    "instance.json": kind_of_format(instance_file.FORMAT),
-    "solution.json": kind_of_format(solution_file.FORMAT),
-    "painted.plan.json": kind_of_format(plan_file.FORMAT),
-    "painted.surface.json": kind_of_format(surface_file.FORMAT),
-    "paths.json": kind_of_format(tool_paths_file.FORMAT),
-    "trajectory.json": kind_of_format(trajectory_file.FORMAT),
-    "verdict.json": kind_of_format(verdict_file.FORMAT),
+    _SURFACE: kind_of_format(LabelledSurface.FORMAT),
+    "instance.json": kind_of_format(Instance.FORMAT),
+    "solution.json": kind_of_format(Solution.FORMAT),
+    "painted.plan.json": kind_of_format(Plan.FORMAT),
+    "painted.surface.json": kind_of_format(LabelledSurface.FORMAT),
+    "paths.json": kind_of_format(ToolPaths.FORMAT),
+    "trajectory.json": kind_of_format(Trajectory.FORMAT),
+    "verdict.json": kind_of_format(TrajectoryVerdict.FORMAT),
     **{name: export.kind for name, export in EXPORTS.items()},
     "report.html": HTML,
 }

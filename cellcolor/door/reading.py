@@ -7,14 +7,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from cellcolor.data import instance as instance_file
-from cellcolor.data import library_index as library_file
-from cellcolor.data import plan as plan_file
-from cellcolor.data import solution as solution_file
-from cellcolor.data import surface as surface_file
-from cellcolor.data import tool_paths as tool_paths_file
-from cellcolor.data import trajectory as trajectory_file
-from cellcolor.data import trajectory_verdict as verdict_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.plan import Plan
@@ -43,14 +35,14 @@ _Value: TypeAlias = (
     | LibraryIndex
 )
 _KINDS: dict[str, type[_Value]] = {
-    surface_file.FORMAT: LabelledSurface,
-    instance_file.FORMAT: Instance,
-    solution_file.FORMAT: Solution,
-    plan_file.FORMAT: Plan,
-    tool_paths_file.FORMAT: ToolPaths,
-    trajectory_file.FORMAT: Trajectory,
-    verdict_file.FORMAT: TrajectoryVerdict,
-    library_file.FORMAT: LibraryIndex,
+    LabelledSurface.FORMAT: LabelledSurface,
+    Instance.FORMAT: Instance,
+    Solution.FORMAT: Solution,
+    Plan.FORMAT: Plan,
+    ToolPaths.FORMAT: ToolPaths,
+    Trajectory.FORMAT: Trajectory,
+    TrajectoryVerdict.FORMAT: TrajectoryVerdict,
+    LibraryIndex.FORMAT: LibraryIndex,
 }
 _SETUP = re.compile(r"^[ \t]*\[?[ \t]*robot\b", re.MULTILINE)
 """The table, or a key of it, that every setup has and no scene."""

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.data import solution as solution_file
 from cellcolor.data.instance import Instance
 from cellcolor.data.proof_wording import in_words, witness_in_words
 from cellcolor.data.segment_rows import BASES, segment_rows
@@ -76,7 +75,7 @@ class Result:
         Raises:
             InputError: there is something else, or it cannot be written.
         """
-        kind = kind_of_format(solution_file.FORMAT)
+        kind = kind_of_format(Solution.FORMAT)
         write([Output(path_of(path), kind, [self.solution.to_json().encode()])])
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> Drawing:

@@ -10,8 +10,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias, Union
 
-from cellcolor.data import instance as instance_file
-from cellcolor.data import surface as surface_file
 from cellcolor.data.candidate_table import CandidateTable
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
@@ -317,12 +315,12 @@ def read_graph(path: Path) -> Instance | LabelledSurface:
     document = read_document(path)
     try:
         match document.get("format"):
-            case instance_file.FORMAT:
+            case Instance.FORMAT:
                 return Instance.from_document(document)
-            case surface_file.FORMAT:
+            case LabelledSurface.FORMAT:
                 return LabelledSurface.from_document(document)
             case other:
-                expected = f"{instance_file.FORMAT!r} or {surface_file.FORMAT!r}"
+                expected = f"{Instance.FORMAT!r} or {LabelledSurface.FORMAT!r}"
                 raise InputError(None, "format", f"must be {expected}, is {other!r}")
     except InputError as error:
         raise error.in_file(str(path)) from error

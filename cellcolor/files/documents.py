@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Sequence
-from dataclasses import asdict
 from os import PathLike
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
 
 T = TypeVar("T")
 
@@ -189,12 +185,6 @@ def field_name(location: tuple[int | str, ...]) -> str:
         elif part.replace("_", "").isalnum():
             text += f".{part}" if text else part
     return text
-
-
-def about_a_file(value: DataclassInstance, form: str) -> dict[str, Any]:
-    """The JSON object of what is said about a file, whose name, in ``file``, comes first."""
-    members = asdict(value)
-    return {"file": members.pop("file"), "format": form, "version": 1} | members
 
 
 def dump_lines(document: dict[str, Any], one_per_line: frozenset[str]) -> str:

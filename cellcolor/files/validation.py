@@ -20,22 +20,22 @@ T = TypeVar("T")
 _STRICT = ConfigDict(strict=True, allow_inf_nan=False)
 
 
-def settle(value: object, arrays: tuple[str, ...] = ()) -> None:
+class LeftToNumpy:
+    """Annotates members that are arrays of numpy, which :func:`settle` leaves to it."""
+
+
+def settle(value: object) -> None:
     """Hold a dataclass's members to their annotations, and normalise what Python knows more of.
 
     Lists and arrays become tuples, numbers of numpy Python's own; anything else that JSON would
     not take for the member (``True`` for a number, 2.0 for an integer) is refused, with the
     sentence that JSON would be refused with. To be called first in ``__post_init__``.
 
-    Args:
-        value: the dataclass.
-        arrays: members that are arrays of numpy, which are left to it.
-
     Raises:
         InputError: a member is not what its annotation says.
     """
     kind: Any = type(value)
-    names, adapter = _members(kind, arrays)
+    names, adapter = _members(kind)
     given = tuple([getattr(value, name) for name in names])
     try:
         settled = _settled(adapter, given)
@@ -94,10 +94,16 @@ def json_content(content: Any, member: str) -> Any:
 
 
 @cache
-def _members(kind: type, arrays: tuple[str, ...]) -> tuple[list[str], TypeAdapter[tuple[Any, ...]]]:
+def _members(kind: Any) -> tuple[list[str], TypeAdapter[tuple[Any, ...]]]:
     """The names of a dataclass's members, and the schema of their values as one tuple."""
     hints = get_type_hints(kind, include_extras=True)
-    names = [field.name for field in fields(kind) if field.name not in arrays]
+    names = [
+        field.name
+        for field in fields(kind)
+        if not any(
+            isinstance(part, LeftToNumpy) for part in getattr(hints[field.name], "__metadata__", ())
+        )
+    ]
     types = tuple(_without_alias(hints[name]) for name in names)
     return names, TypeAdapter(tuple[types], config=_STRICT)  # type: ignore[valid-type]
 

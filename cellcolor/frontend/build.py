@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import CandidateTable
-from cellcolor.data.comparing import same_members
 from cellcolor.data.restricted import without_vertices
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.value import same_members
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.stand_in_report import report_on

@@ -12,11 +12,11 @@ from cellcolor.arrays import Array, Index
 from cellcolor.checker.cutting_paths import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.comparing import same_members
 from cellcolor.data.darts import Strand
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.value import same_members
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition

@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 
 from cellcolor.arrays import Mask
-from cellcolor.data import surface as surface_file
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_document
@@ -98,7 +97,7 @@ def read_place(text: str, field: str) -> Place:
         except InputError as error:
             raise InputError(None, field, error.message) from error
     document = read_document(text)
-    if document.get("format") == surface_file.FORMAT:
+    if document.get("format") == LabelledSurface.FORMAT:
         return LabelledSurface.read(text)
     content = _list_of(text, document, "mask")
     if not all(isinstance(one, bool) for one in content):

@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from pydantic import TypeAdapter
 from pydantic.json_schema import GenerateJsonSchema
 
 from cellcolor.data import (
@@ -34,6 +33,7 @@ from cellcolor.data import (
     trajectory,
     trajectory_verdict,
 )
+from cellcolor.data.value import adapter_of
 
 FOLDER = Path(__file__).parent
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
@@ -61,44 +61,31 @@ class Format:
     """A format as it is written now.
 
     Attributes:
-        name: the member ``format``.
         version: the member ``version``; None for lines that have no such member, since they
             follow a document that has.
-        adapter: what reads all other members.
-        described_by: the class whose docstring says what they are.
+        kind: the class of its values, whose docstring says what the members are.
+        in_file: the class that has the members of files, if that is another one.
     """
 
-    name: str
     version: int | None
-    adapter: TypeAdapter[Any]
-    described_by: type
+    kind: Any
+    in_file: type | None = None
 
 
 FORMATS = {
-    "labelled-surface-2": Format(surface.FORMAT, 2, surface._ADAPTER, surface.LabelledSurface),
-    "instance-2": Format(instance.FORMAT, 2, instance._ADAPTER, instance.Instance),
-    "solution-2": Format(solution.FORMAT, 2, solution._ADAPTER, solution.Solution),
-    "scheme-2": Format(
-        solution.SCHEME_FORMAT, None, solution._SCHEME_ADAPTER, solution._SchemeLine
-    ),
-    "plan-1": Format(plan.FORMAT, 1, plan._ADAPTER, plan.Plan),
-    "tool-paths-1": Format(tool_paths.FORMAT, 1, tool_paths._ADAPTER, tool_paths.ToolPaths),
-    "solution-verdict-1": Format(
-        solution_verdict.FORMAT, 1, solution_verdict._ADAPTER, solution_verdict.SolutionVerdict
-    ),
-    "plan-verdict-1": Format(
-        plan_verdict.FORMAT, 1, plan_verdict._ADAPTER, plan_verdict.PlanVerdict
-    ),
-    "check-error-1": Format(check_error.FORMAT, 1, check_error._ADAPTER, check_error.CheckError),
-    "library-1": Format(
-        library_index.FORMAT, 1, library_index._ADAPTER, library_index.LibraryIndex
-    ),
-    "trajectory-1": Format(trajectory.FORMAT, 1, trajectory._ADAPTER, trajectory.Trajectory),
+    "labelled-surface-2": Format(2, surface.LabelledSurface, surface._SurfaceFile),
+    "instance-2": Format(2, instance.Instance),
+    "solution-2": Format(2, solution.Solution),
+    "scheme-2": Format(None, solution._SchemeLine),
+    "plan-1": Format(1, plan.Plan),
+    "tool-paths-1": Format(1, tool_paths.ToolPaths, tool_paths._ToolPathsFile),
+    "solution-verdict-1": Format(1, solution_verdict.SolutionVerdict),
+    "plan-verdict-1": Format(1, plan_verdict.PlanVerdict),
+    "check-error-1": Format(1, check_error.CheckError),
+    "library-1": Format(1, library_index.LibraryIndex),
+    "trajectory-1": Format(1, trajectory.Trajectory),
     "trajectory-verdict-1": Format(
-        trajectory_verdict.FORMAT,
-        1,
-        trajectory_verdict._ADAPTER,
-        trajectory_verdict.TrajectoryVerdict,
+        1, trajectory_verdict.TrajectoryVerdict, trajectory_verdict._VerdictFile
     ),
 }
 """The JSON formats by the names of their schemas' files."""
@@ -123,15 +110,16 @@ def schema_text(file: str) -> str:
 
 
 def _format_schema(described: Format) -> dict[str, Any]:
-    schema = described.adapter.json_schema(schema_generator=_Untitled)
-    members = {"format": {"const": described.name}}
-    title = described.name
+    adapter = adapter_of(described.in_file or described.kind)
+    schema = adapter.json_schema(schema_generator=_Untitled)
+    members = {"format": {"const": described.kind.FORMAT}}
+    title = described.kind.FORMAT
     if described.version is not None:
         members["version"] = {"const": described.version}
         title = f"{title}, version {described.version}"
     schema["properties"] = members | schema["properties"]
     schema["required"] = [*members, *schema["required"]]
-    _describe(schema, described.described_by)
+    _describe(schema, described.kind)
     for name, definition in schema.get("$defs", {}).items():
         found = (getattr(module, name, None) for module in MODULES)
         _describe(definition, next(cls for cls in found if cls is not None))

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 import cellcolor
-from cellcolor.data.plan import FORMAT, Plan
+from cellcolor.data.plan import Plan
 from cellcolor.data.solution import CellDivision, Division, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
@@ -235,7 +235,7 @@ def _formed(case: Case, colors: list[int | None], random: Random) -> Any:
 
 def _file(case: Case, colors: Sequence[Any]) -> Path:
     path = case.folder / "broken.plan.json"
-    document = {"format": FORMAT, "version": 1, "vertex_colors": list(colors)}
+    document = {"format": Plan.FORMAT, "version": 1, "vertex_colors": list(colors)}
     path.write_text(json.dumps(document), encoding="utf-8")
     return path
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from cellcolor.data.rows import integers, numbers, rows_of, rows_of_three, truths
+from cellcolor.data.value import integers, numbers, rows_of, rows_of_three, truths
 from cellcolor.errors import InputError
 
 
