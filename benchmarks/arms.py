@@ -28,7 +28,7 @@ sys.path.insert(0, str(TOP / "tests" / "support"))
 from cellcolor.deadline import Deadline  # noqa: E402
 from cellcolor.decomposition import decompose  # noqa: E402
 from cellcolor.frontend import build_surface  # noqa: E402
-from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics  # noqa: E402
+from cellcolor.frontend.arm.turned import TurnedKinematics  # noqa: E402
 from cellcolor.frontend.prepared import prepare  # noqa: E402
 from cellcolor.frontend.setup import Setup  # noqa: E402
 from cellcolor.solvers.checked import solve  # noqa: E402

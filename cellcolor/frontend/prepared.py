@@ -28,9 +28,9 @@ from cellcolor.frontend.likely_units import check_part, check_setup, notes_on_un
 from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
-from cellcolor.frontend.reach.postures import Workplace
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
 from cellcolor.frontend.reach.validity import Judge
+from cellcolor.frontend.reach.validity_tests import Workplace
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points

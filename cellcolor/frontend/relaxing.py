@@ -18,8 +18,8 @@ import numpy as np
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.postures import Workplace
 from cellcolor.frontend.reach.validity import Judge
+from cellcolor.frontend.reach.validity_tests import Workplace
 
 
 class Relaxation(ABC):

@@ -12,8 +12,8 @@ from cellcolor.frontend.contact.stand_in_report import StandInReport
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
-from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
 from cellcolor.frontend.reach.validity import Candidates
+from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
 from cellcolor.frontend.survey import Survey
 
 _REMEDIES = {

@@ -32,7 +32,7 @@ from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.parts.tolerance import Tolerance
-from cellcolor.frontend.reach.validity_interface import VALIDITY_TESTS, ValidityTest
+from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, in_file

@@ -13,7 +13,7 @@ from cellcolor.data.joint_plan import ContactPath
 from cellcolor.data.vertex_contacts import VertexContacts
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
+from cellcolor.frontend.arm.inverse import is_tool_on_last_axis, pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult
 from cellcolor.memory import chunks

@@ -7,7 +7,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory_verdict import FaultKind
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
+from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.memory import chunks

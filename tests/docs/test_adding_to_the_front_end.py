@@ -16,7 +16,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import Scene, build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
+from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
 
 pytestmark = pytest.mark.second
 

@@ -18,7 +18,7 @@ from cellcolor import memory
 from cellcolor.deadline import NEVER
 from cellcolor.errors import TooLarge
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.ideal import missing
+from cellcolor.frontend.arm.calibrated import missing
 from cellcolor.frontend.arm.newton import polished
 from cellcolor.frontend.arm.polyhedron import Polyhedron
 from cellcolor.frontend.prepared import PreparedScene, prepare
@@ -69,7 +69,10 @@ def of_arm(arm: str) -> Iterator[tuple[str, Step]]:
     yield "inverse", lambda: scene.arm.inverse(points, directions)
     first = np.zeros(len(points), dtype=np.intp)
     yield "follow", lambda: scene.arm.follow(points, directions, first)
-    yield "polished", lambda: polished(scene.robot, some + 1e-3, points[:at], directions[:at], 1.0)
+    yield (
+        "polished",
+        lambda: polished(scene.robot, some[:, None] + 1e-3, points[:at], directions[:at], 1.0),
+    )
     yield "missing", lambda: missing(scene.robot, found)
     yield "judge", lambda: scene.judge(some)
     yield "described", lambda: scene.arm.tracker().described(found)

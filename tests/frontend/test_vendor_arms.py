@@ -14,8 +14,8 @@ from meshed_arm import with_collision, write_package
 from shipped import ROBOTS
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.placed_shapes import Shapes
-from cellcolor.frontend.arm.robot import load_robot
+from cellcolor.frontend.arm.body import Shapes
+from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.build import BuildResult, build_surface
 from cellcolor.frontend.reach.always_touching import check_capsules
 from cellcolor.frontend.reach.prepared_arm import prepare_arm

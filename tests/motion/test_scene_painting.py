@@ -13,7 +13,7 @@ from shipped import shipped
 from cellcolor.data.candidate_table import VALID
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.conditioning import task_determinants
+from cellcolor.frontend.arm.kinematics import task_determinants
 from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion import scene_painting

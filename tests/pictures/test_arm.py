@@ -71,7 +71,7 @@ class TestScene:
         import pinocchio as pin
 
         from cellcolor.frontend import build_surface
-        from cellcolor.frontend.arm.robot import load_robot
+        from cellcolor.frontend.arm.loading import load_robot
 
         scene = small_wok(tmp_path)
         result = build_surface(scene)

@@ -9,8 +9,8 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.robot import Robot, load_robot
-from cellcolor.frontend.arm.task_space import GIVEN_TURN
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import GIVEN_TURN, Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 
 STRAIGHT = ("0 0 0.1", "0 0 0")

@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 
 Constants = tuple[tuple[float, float, float, float], ...]

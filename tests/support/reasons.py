@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
+from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
 
 
 class _Named(IntEnum):

@@ -11,8 +11,8 @@ from bent_tools import tool
 from independent import wrapped
 
 from cellcolor.arrays import Array
-from cellcolor.frontend.arm.robot import Robot, load_robot
-from cellcolor.frontend.arm.task_space import POSITION, POSITION_AND_TURN
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import POSITION, POSITION_AND_TURN, Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 
 ORDERS = ("RRPR", "RRRP", "PRRR", "RPRR")

@@ -24,7 +24,7 @@ from independent import set_distance, wrapped
 from scipy.optimize import brentq
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.frontend.arm.candidates import CALIBRATION
+from cellcolor.frontend.arm.calibrated import CALIBRATION
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
     forward,

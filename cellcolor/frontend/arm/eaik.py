@@ -12,7 +12,7 @@ all solutions for one turn are those for every turn, and no solution of the task
 solutions that differ in joint 6 only would be the same; they are merged.
 
 Of a calibrated arm, whose axes nearly meet or are nearly parallel, EAIK solves the ideal one, and
-Newton's method does the rest (:mod:`cellcolor.frontend.arm.candidates`).
+Newton's method does the rest (:mod:`cellcolor.frontend.arm.calibrated`).
 """
 
 from __future__ import annotations
@@ -24,13 +24,23 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.candidates import CALIBRATION, NearIdeal, exact_solutions
-from cellcolor.frontend.arm.ideal import Axes, idealized, remark_on_calibration
-from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.kinematics import farthest_reach
-from cellcolor.frontend.arm.last_joint import check_tool_on_last_axis, locked_angle, pose_at_zero
+from cellcolor.frontend.arm.calibrated import (
+    CALIBRATION,
+    Axes,
+    NearIdeal,
+    idealized,
+    remark_on_calibration,
+)
+from cellcolor.frontend.arm.inverse import (
+    InverseKinematics,
+    check_tool_on_last_axis,
+    locked_angle,
+    pose_at_zero,
+)
+from cellcolor.frontend.arm.kinematics import farthest_reach, nearest_points
+from cellcolor.frontend.arm.newton import exact_solutions
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.signs import BRANCHES, nearest_points, signs_of
+from cellcolor.frontend.arm.signs import BRANCHES, signs_of
 from cellcolor.frontend.setup import RobotFiles
 
 _TOLERANCE = 1e-6  # m and rad; axes farther off are neither parallel nor do they meet

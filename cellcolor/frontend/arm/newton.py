@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.arm.kinematics import (
     TASK_JOINTS,
     Poses,
@@ -19,6 +19,7 @@ from cellcolor.frontend.arm.kinematics import (
     task_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.signs import BRANCHES, Signs
 from cellcolor.memory import cached
 
 REACHED = 1e-9  # m, and for the unit vector of the tool's direction: what counts as a solution
@@ -37,27 +38,32 @@ def misses(poses: Poses, points: Array, directions: Array) -> Array:
 
 
 def polished(
-    robot: Robot, start: Array, points: Array, directions: Array, farthest: float
+    robot: Robot, starts: Array, points: Array, directions: Array, farthest: float
 ) -> Array:
-    """Solutions near some configurations.
+    """The solutions that starts lead to, in (-pi, pi].
 
     Steps are damped by the square of what is left to go (Levenberg and Marquardt), which near a
-    singularity keeps them short and elsewhere leaves the convergence quadratic.
+    singularity keeps them short and elsewhere leaves the convergence quadratic. The last joint is
+    locked, and keeps its angle wherever that is.
 
     Args:
-        start: (k, joints) in rad, NaN where there is none.
-        points: (k, 3) where the tip has to be, m.
-        directions: (k, 3) unit vectors of the tool.
+        starts: (n, s, joints) in rad, NaN where there is none.
+        points: (n, 3) where the tip has to be, m.
+        directions: (n, 3) unit vectors of the tool.
         farthest: what misses by more at the start is not tried; see :func:`misses`.
 
     Returns:
-        (k, joints) in rad, NaN where the tip or the direction misses by more than ``REACHED``.
+        (n, s, joints) in rad, NaN where the tip or the direction misses by more than ``REACHED``.
     """
-    found = np.full_like(start, np.nan)
-    there = np.flatnonzero(~np.isnan(start[:, 0]))
-    for part in cached(len(there), bytes_of_poses(robot.joints)):
-        rows = there[part]
-        found[rows] = _polished(robot, start[rows], points[rows], directions[rows], farthest)
+    found = np.full_like(starts, np.nan)
+    there = np.nonzero(~np.isnan(starts[:, :, 0]))
+    for part in cached(len(there[0]), bytes_of_poses(robot.joints)):
+        pose, number = (index[part] for index in there)
+        start = starts[pose, number]
+        end = _polished(robot, start, points[pose], directions[pose], farthest)
+        turned = np.pi - np.mod(np.pi - end, 2 * np.pi)
+        turned[:, -1] = np.where(np.isnan(end[:, 0]), np.nan, start[:, -1])
+        found[pose, number] = turned
     return found
 
 
@@ -156,3 +162,44 @@ def _packed(solutions: Array, kept: Mask) -> Array:
     packed = solutions[rows, order]
     packed[~kept[rows, order]] = np.nan
     return np.asarray(packed)
+
+
+_EXACT = 1e-4  # m, and for unit vectors; by how much a closed form's candidate may miss
+
+
+def exact_solutions(
+    robot: Robot, candidates: Array, points: Array, directions: Array, signs: Signs | None
+) -> Array:
+    """Solutions of an arm whose closed form is its own.
+
+    Args:
+        robot: the arm.
+        candidates: (n, s, joints) in rad, NaN where there is none.
+        points: (n, 3) where the tip has to be, m.
+        directions: (n, 3) unit vectors of the tool.
+        signs: what names them.
+
+    Returns:
+        (n, 8, joints) by branch, or (n, s, joints) without signs, each solution once.
+    """
+    solutions = polished(robot, candidates, points, directions, _EXACT)
+    if signs is None:
+        return merged(solutions)
+    named, solved, slots, _ = named_slots(robot, solutions, signs)
+    # The first of those with one name: of a pair that meets the signs are chance.
+    named[slots[::-1]] = solved[::-1]
+    return named.reshape(len(points), len(BRANCHES), robot.joints)
+
+
+def named_slots(robot: Robot, solutions: Array, signs: Signs) -> tuple[Array, Array, Index, Array]:
+    """Room for the solutions (n, s, joints) by name, and where each of them belongs.
+
+    Returns:
+        An empty table (n * 8, joints), and of each solution that there is, pose by pose, the angles
+        (k, joints), the row of the table that its signs lead to, and its determinant.
+    """
+    pose, number = np.nonzero(~np.isnan(solutions[:, :, 0]))
+    solved = solutions[pose, number]
+    sign, determinants = signs.branches(robot, solved)
+    empty = np.full((len(solutions) * len(BRANCHES), solutions.shape[2]), np.nan)
+    return empty, solved, pose * len(BRANCHES) + sign, determinants

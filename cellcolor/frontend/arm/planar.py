@@ -24,14 +24,13 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.last_joint import pose_at_zero
-from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.task_space import (
+from cellcolor.frontend.arm.inverse import InverseKinematics, pose_at_zero
+from cellcolor.frontend.arm.robot import (
     FREE_IN_PLANE,
     GIVEN_IN_PLANE,
     POSITION,
     POSITION_AND_TURN,
+    Robot,
     TaskSpace,
 )
 from cellcolor.frontend.setup import RobotFiles

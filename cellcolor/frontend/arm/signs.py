@@ -24,14 +24,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
+from cellcolor.frontend.arm.inverse import pose_at_zero
 from cellcolor.frontend.arm.kinematics import (
     Poses,
     bytes_of_poses,
     forward,
+    nearest_points,
     signed_task_determinant,
     tip_jacobian,
 )
-from cellcolor.frontend.arm.last_joint import pose_at_zero
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.memory import cached
 
@@ -167,18 +168,6 @@ def _parity(robot: Robot, signs: Signs) -> float:
     clear = int(np.argmax(np.abs(factors).min(axis=1)))
     determinant = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
     return float(np.sign(determinant[clear] * factors[clear, 1] * factors[clear, 2]))
-
-
-def nearest_points(p: Array, u: Array, q: Array, v: Array) -> tuple[Array, Array]:
-    """Of two lines through p along u and through q along v, (3,) each: the points that are nearest.
-
-    Of parallel lines p and the point beside it.
-    """
-    cosine = u @ v
-    sine = 1.0 - cosine**2
-    along = ((q - p) @ u - cosine * ((q - p) @ v)) / sine if sine > 1e-12 else 0.0
-    here = p + along * u
-    return here, q + ((here - q) @ v) * v
 
 
 def _at(poses: Poses, frame: int, point: Array) -> Array:

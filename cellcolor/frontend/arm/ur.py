@@ -7,7 +7,7 @@ joint free, and up to eight solutions of the other five: shoulder x elbow x wris
 
 The axes of a calibrated arm are a little off those that the closed form stands on. From the
 solutions of the ideal arm Newton's method leads to those of the true one, which keep their names
-(:mod:`cellcolor.frontend.arm.candidates`).
+(:mod:`cellcolor.frontend.arm.calibrated`).
 """
 
 from __future__ import annotations
@@ -22,16 +22,21 @@ from scipy.optimize import minimize_scalar
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.candidates import CALIBRATION, NearIdeal
-from cellcolor.frontend.arm.ideal import Axes, idealized, remark_on_calibration
-from cellcolor.frontend.arm.inverse import InverseKinematics
-from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.last_joint import (
+from cellcolor.frontend.arm.calibrated import (
+    CALIBRATION,
+    Axes,
+    NearIdeal,
+    idealized,
+    remark_on_calibration,
+)
+from cellcolor.frontend.arm.inverse import (
     MUST_LIE,
+    InverseKinematics,
     check_tool_on_last_axis,
     locked_angle,
     pose_at_zero,
 )
+from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import Signs, signs_of
 from cellcolor.frontend.setup import RobotFiles

@@ -2,7 +2,7 @@
 
 Pinocchio answers most URDF faults with the same sentence, reads a missing limit as [0, 0] and a
 missing inertial as no mass, and drops collision shapes it does not know with a remark on standard
-error. So the XML is held to what the front end relies on here, and every fault is named.
+error. So the XML is held to what the front end relies on here. Every fault names file and field.
 """
 
 from __future__ import annotations
@@ -16,8 +16,136 @@ from pathlib import Path
 
 from cellcolor.errors import InputError
 from cellcolor.files.documents import read_text
-from cellcolor.frontend.arm.link_shapes import LinkShape, shapes_of
-from cellcolor.frontend.arm.urdf_fields import check_origin, finite, named, number, triple
+
+
+def named(file: Path, xml: ET.Element, tag: str) -> dict[str, ET.Element]:
+    """The elements with a tag by their names, each of which stands once.
+
+    Raises:
+        InputError: one has no name, or two have the same.
+    """
+    found: dict[str, ET.Element] = {}
+    for element in xml.findall(tag):
+        name = element.get("name")
+        if not name or name in found:
+            fault = "stands twice" if name else "has no name"
+            raise InputError(str(file), f"{tag}[{name or len(found)}]", fault)
+        found[name] = element
+    return found
+
+
+def number(file: Path, field: str, element: ET.Element | None, attribute: str) -> float:
+    """A finite number that has to be there.
+
+    Raises:
+        InputError: it is missing, or no such number.
+    """
+    text = None if element is None else element.get(attribute)
+    if text is None:
+        raise InputError(str(file), field, f"{attribute!r} is missing")
+    return finite(file, f"{field}.{attribute}", text)
+
+
+def finite(file: Path, field: str, text: str) -> float:
+    """A finite number.
+
+    Raises:
+        InputError: it is none.
+    """
+    try:
+        value = float(text)
+    except ValueError as error:
+        raise InputError(str(file), field, f"{text!r} is not a number") from error
+    if not math.isfinite(value):
+        raise InputError(str(file), field, f"{text!r} is not finite")
+    return value
+
+
+def triple(file: Path, field: str, text: str) -> list[float]:
+    """Three finite numbers.
+
+    Raises:
+        InputError: it is not.
+    """
+    values = [finite(file, field, part) for part in text.split()]
+    if len(values) != 3:
+        raise InputError(str(file), field, f"needs three numbers, has {len(values)}")
+    return values
+
+
+def check_origin(file: Path, field: str, element: ET.Element) -> None:
+    """Hold an element's ``<origin>``, if there is one, to three numbers each.
+
+    Raises:
+        InputError: it has others.
+    """
+    origin = element.find("origin")
+    if origin is not None:
+        for attribute in ("xyz", "rpy"):
+            triple(file, f"{field}.origin.{attribute}", origin.get(attribute, "0 0 0"))
+
+
+_SIZES = {"cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
+_KINDS = ("box", "capsule", "cylinder", "mesh", "sphere")
+
+
+@dataclass(frozen=True)
+class LinkShape:
+    """One ``<collision>`` of a link.
+
+    Attributes:
+        kind: box, capsule, cylinder, mesh or sphere.
+        sizes: of a box along x, y and z; radius and, between the round ends of a capsule, length
+            of the others; how many meters a unit of a mesh is along x, y and z.
+        file: the name of the mesh as the URDF has it, empty for the others.
+    """
+
+    kind: str
+    sizes: tuple[float, ...]
+    file: str = ""
+
+
+def shapes_of(file: Path, name: str, link: ET.Element) -> tuple[LinkShape, ...]:
+    """The collision shapes of a link, in their order.
+
+    Raises:
+        InputError: one is of another kind, or its numbers cannot be used.
+    """
+    return tuple(
+        _shape(file, f"link[{name}].collision[{index}]", collision)
+        for index, collision in enumerate(link.findall("collision"))
+    )
+
+
+def _shape(file: Path, field: str, collision: ET.Element) -> LinkShape:
+    check_origin(file, field, collision)
+    geometry = collision.find("geometry")
+    shapes = [] if geometry is None else list(geometry)
+    if len(shapes) != 1 or shapes[0].tag not in _KINDS:
+        found = ", ".join(f"<{shape.tag}>" for shape in shapes) or "nothing"
+        message = f"must be one box, capsule, cylinder, mesh or sphere, is {found}"
+        raise InputError(str(file), field, message)
+    shape, kind = shapes[0], shapes[0].tag
+    if kind == "mesh":
+        named = shape.get("filename")
+        if not named:
+            raise InputError(str(file), f"{field}.mesh", "'filename' is missing")
+        scale = triple(file, f"{field}.mesh.scale", shape.get("scale", "1 1 1"))
+        if 0 in scale:
+            raise InputError(str(file), f"{field}.mesh.scale", "must not be zero")
+        return LinkShape(kind, tuple(scale), named)
+    if kind == "box":
+        size = triple(file, f"{field}.box.size", shape.get("size", ""))
+        if min(size) <= 0:
+            raise InputError(str(file), f"{field}.box.size", "must be positive")
+        return LinkShape(kind, tuple(size))
+    sizes = []
+    for attribute in _SIZES[kind]:
+        sizes.append(number(file, field, shape, attribute))
+        if sizes[-1] <= 0:
+            raise InputError(str(file), f"{field}.{attribute}", "must be positive")
+    return LinkShape(kind, tuple(sizes))
+
 
 CONTINUOUS, PRISMATIC = "continuous", "prismatic"
 _MOVING = ("revolute", CONTINUOUS, PRISMATIC)

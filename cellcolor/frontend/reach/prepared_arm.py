@@ -12,14 +12,17 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.conditioning import Conditioning, conditioning, task_determinants
-from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
-from cellcolor.frontend.arm.last_joint import is_tool_on_last_axis, pose_at_zero
-from cellcolor.frontend.arm.placed_shapes import Shapes
-from cellcolor.frontend.arm.robot import Robot, load_robot, wider
-from cellcolor.frontend.arm.task_space import TaskSpace
-from cellcolor.frontend.arm.tool_pose import turn_at
-from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
+from cellcolor.frontend.arm.body import Shapes
+from cellcolor.frontend.arm.inverse import (
+    KINEMATICS,
+    InverseKinematics,
+    is_tool_on_last_axis,
+    pose_at_zero,
+)
+from cellcolor.frontend.arm.kinematics import Conditioning, conditioning, task_determinants
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot, TaskSpace, wider
+from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Tracker

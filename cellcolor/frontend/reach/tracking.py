@@ -14,8 +14,8 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.frontend.arm.conditioning import Conditioning
 from cellcolor.frontend.arm.kinematics import (
+    Conditioning,
     bytes_of_poses,
     forward,
     manipulability,

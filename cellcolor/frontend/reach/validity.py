@@ -16,9 +16,12 @@ from cellcolor.frontend.arm.kinematics import bytes_of_poses
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
 from cellcolor.frontend.processes import share_out, shared
-from cellcolor.frontend.reach.postures import Postures, Workplace
-from cellcolor.frontend.reach.standard_tests import STANDARD_TESTS
-from cellcolor.frontend.reach.validity_interface import ValidityTest
+from cellcolor.frontend.reach.validity_tests import (
+    STANDARD_TESTS,
+    Postures,
+    ValidityTest,
+    Workplace,
+)
 from cellcolor.memory import cached, check_memory
 
 NO_SOLUTION = 1

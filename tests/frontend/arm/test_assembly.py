@@ -14,7 +14,8 @@ from shipped import ROBOTS
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import Urdf, parse_urdf
 from cellcolor.frontend.setup import Setup
 

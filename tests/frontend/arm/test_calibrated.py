@@ -12,9 +12,8 @@ from independent import wrapped
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.arm.candidates import put_all
+from cellcolor.frontend.arm.calibrated import Axes, idealized, missing, put_all
 from cellcolor.frontend.arm.eaik import EaikKinematics
-from cellcolor.frontend.arm.ideal import Axes, idealized, missing
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, task_determinant, tip_jacobian
 from cellcolor.frontend.arm.newton import both_sides_of_folds, merged, nearest, polished
@@ -72,8 +71,8 @@ def test_nothing_else_is_found_from_many_other_starts(kinematics: str, name: str
     ours = arm.solve(poses.tip, poses.tool_axis)
     for k in range(12):
         starts = random.uniform(-np.pi, np.pi, (600, 6))
-        many = np.repeat(poses.tip[[k]], 600, axis=0), np.repeat(poses.tool_axis[[k]], 600, axis=0)
-        others = merged(polished(robot, starts, *many, np.inf)[None])[0]
+        pose = poses.tip[[k]], poses.tool_axis[[k]]
+        others = merged(polished(robot, starts[None], *pose, np.inf))[0]
         others = others[volumes(robot, others) > 1e-4, :5]
         own = ours[k][~np.isnan(ours[k, :, 0]), :5]
         assert wrapped(others[:, None] - own).max(axis=2).min(axis=1).max(initial=0) < 1e-6

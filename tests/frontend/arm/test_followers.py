@@ -15,7 +15,8 @@ from shipped import ROBOTS
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.contact.collision import body_ends, hits_itself
 from examples import examples

@@ -23,10 +23,8 @@ from cellcolor.frontend.arm.kinematics import (
     task_determinant,
     tip_jacobian,
 )
-from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.task_space import FREE_TURN, GIVEN_TURN
-from cellcolor.frontend.arm.tool_pose import angle_about, turn_at, turned_about
-from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
+from cellcolor.frontend.arm.robot import FREE_TURN, GIVEN_TURN, Robot
+from cellcolor.frontend.arm.turned import TurnedKinematics, angle_about, turn_at, turned_about
 from cellcolor.frontend.arm.ur import BRANCHES as UR_BRANCHES
 from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.setup import RobotFiles, Turn

@@ -13,7 +13,8 @@ from shipped import ROBOTS
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrGeometry, solve_inverse, ur_geometry
 from examples import examples
 

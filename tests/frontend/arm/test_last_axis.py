@@ -18,8 +18,9 @@ from independent import wrapped
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
-from cellcolor.frontend.arm.robot import Robot, load_robot
-from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.setup import RobotFiles, Turn
 

@@ -9,9 +9,10 @@ import pytest
 from shipped import ROBOTS
 
 from cellcolor.errors import InputError
+from cellcolor.frontend.arm.inverse import check_tool_on_last_axis
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.last_joint import check_tool_on_last_axis
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
 
 
 def mounted(position: tuple[float, float, float], rpy: tuple[float, float, float]) -> Robot:

@@ -29,10 +29,10 @@ from cellcolor.frontend.arm.kinematics import (
     task_determinant,
     tip_jacobian,
 )
+from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.planar import PlanarThree, PlanarTwo
-from cellcolor.frontend.arm.robot import Robot, load_robot
-from cellcolor.frontend.arm.task_space import FREE_IN_PLANE, GIVEN_IN_PLANE
-from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
+from cellcolor.frontend.arm.robot import FREE_IN_PLANE, GIVEN_IN_PLANE, Robot
+from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.setup import RobotFiles, Turn
 from examples import examples

@@ -13,7 +13,8 @@ from shipped import ROBOTS
 from world import NEIGHBORS, PAIRS, World
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import UrGeometry, ur_geometry
 from cellcolor.frontend.arm.urdf import load_urdf
 

@@ -38,9 +38,8 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.planar import Scara, ScaraWithoutTurn
-from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.task_space import FREE_TURN
-from cellcolor.frontend.arm.turned_kinematics import TurnedKinematics
+from cellcolor.frontend.arm.robot import FREE_TURN, Robot
+from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import Measure

@@ -15,8 +15,9 @@ from shipped import ROBOTS
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import forward, turned
+from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.polyhedron import Polyhedron, box
-from cellcolor.frontend.arm.robot import Robot, load_robot, wider
+from cellcolor.frontend.arm.robot import Robot, wider
 from cellcolor.frontend.contact import collision, fcl_bodies
 from cellcolor.frontend.contact.collision import body_ends, gap_between, hits_itself
 from examples import examples

@@ -15,9 +15,10 @@ from shipped import ROBOTS
 from world import KINDS, NEIGHBORS, standing
 
 from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.arm.body import Shapes
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.arm.placed_shapes import Shapes
-from cellcolor.frontend.arm.robot import Robot, load_robot, wider
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot, wider
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.frontend.contact.primitives import BoxObstacle, CylinderObstacle, SphereObstacle

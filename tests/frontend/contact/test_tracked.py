@@ -10,7 +10,8 @@ from meshed_arm import link_meshes, write_package
 from shipped import ROBOTS
 
 from cellcolor.frontend.arm.kinematics import forward, turned
-from cellcolor.frontend.arm.robot import Robot, load_robot
+from cellcolor.frontend.arm.loading import load_robot
+from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import (
     body_ends,
     longest_steps,

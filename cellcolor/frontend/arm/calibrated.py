@@ -1,0 +1,284 @@
+"""Calibrated arms: solutions of the true arm, by way of the ideal arm that its axes are next to.
+
+A calibration moves and tilts the axes of one arm by what was measured on it. Axes that are meant to
+be parallel or to meet then only nearly are. A closed form solves the ideal arm, and its solutions
+are starts for Newton's method on the true arm (one step of a homotopy, with several starts). Away
+from singularities each start leads to a solution of its own, and none is missed. Next to a fold, a
+singularity where two solutions meet or have just vanished, the true solutions may be far from the
+ideal ones, as round the circle of solutions of an aligned wrist. So there are more starts:
+
+1. the ideal arm's solutions of the pose;
+2. two beside each that is next to a fold, along the motion that leaves the task where it is;
+3. the ideal arm's solutions of twelve poses around, if they are far from those of the pose.
+
+Newton's method drops what does not lead to the pose. Signs of shoulder, elbow and wrist name the
+solutions (:mod:`cellcolor.frontend.arm.signs`); without signs equal ones are merged. If one branch
+is asked for, the ideal arm's solution of this branch is tried first, and all the others only where
+it does not lead to a solution of that name.
+
+Most poses of a UR5e have 8 starts, which lead to 8 solutions: no fold is near, and the poses around
+have their solutions beside these 8. At most there are 120 runs of Newton's method a pose (240
+without names), of 25 steps each.
+
+A missing solution shows. Of any pose that is not singular as many solutions have a positive task
+determinant as a negative one: their difference is the degree of the map from joint angles, which
+close on themselves, to poses, and it is zero since some poses are out of reach (Milnor, Topology
+from the Differentiable Viewpoint, 1965, section 5). So a solution that is missing by itself is
+noticed; two that vanish together at a singularity are not missing.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cellcolor.arrays import Array, Index
+from cellcolor.frontend.arm.kinematics import (
+    bytes_of_poses,
+    forward,
+    nearest_points,
+    signed_task_determinant,
+    tip_jacobian,
+)
+from cellcolor.frontend.arm.newton import (
+    SAME,
+    both_sides_of_folds,
+    merged,
+    named_slots,
+    nearest,
+    polished,
+)
+from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.signs import BRANCHES, Signs
+from cellcolor.memory import chunks
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The lines about which the joints turn, all joints at zero, in the world.
+
+    Attributes:
+        directions: (joints, 3) unit vectors.
+        points: (joints, 3) one on each, m.
+    """
+
+    directions: Array
+    points: Array
+
+    def off(self, other: Axes) -> tuple[float, float]:
+        """How far the lines are off others: the largest angle in rad, and distance in m.
+
+        The distance is that of this one's points, which are where the arm is.
+        """
+        sines = np.linalg.norm(np.cross(self.directions, other.directions), axis=1)
+        apart = np.cross(self.points - other.points, other.directions)
+        return float(sines.max()), float(np.linalg.norm(apart, axis=1).max())
+
+
+def idealized(axes: Axes, tolerance: float) -> Axes:
+    """Axes that are nearly parallel made parallel, and those that nearly meet made to meet.
+
+    Args:
+        axes: of six joints.
+        tolerance: what counts as nearly, rad and m.
+
+    Returns:
+        The ideal axes, each with the point on it where its neighbors are near.
+    """
+    directions, points = axes.directions.copy(), _near_each_other(axes, tolerance)
+    parallel = [
+        float(np.linalg.norm(np.cross(directions[k], directions[k + 1]))) <= tolerance
+        for k in range(5)
+    ]
+    for k in range(5):
+        if parallel[k]:
+            directions[k + 1] = directions[k] * np.sign(directions[k] @ directions[k + 1])
+    for k in range(1, 6):
+        if parallel[k - 1]:
+            continue
+        here, there = nearest_points(points[k], directions[k], points[k - 1], directions[k - 1])
+        meets = float(np.linalg.norm(here - there)) <= tolerance
+        points[k] = there if meets else here
+    center = nearest_points(points[5], directions[5], points[4], directions[4])[0]
+    to_center = center - points[3] - ((center - points[3]) @ directions[3]) * directions[3]
+    if not parallel[3] and np.linalg.norm(to_center) <= tolerance:
+        points[3:] = center  # a wrist: all three axes through one point
+    return Axes(directions, points)
+
+
+def _near_each_other(axes: Axes, tolerance: float) -> Array:
+    """A point (6, 3) on each axis where the one before it is near.
+
+    Where the frames of a calibrated arm lie along axes that are nearly parallel says nothing: it
+    can be hundreds of meters away.
+    """
+    directions, points = axes.directions, axes.points.copy()
+    for k in range(6):
+        other = k - 1 if k else 1
+        if np.linalg.norm(np.cross(directions[k], directions[other])) <= tolerance:
+            points[k] += ((points[other] - points[k]) @ directions[k]) * directions[k]
+        else:
+            lines = points[k], directions[k], points[other], directions[other]
+            points[k] = nearest_points(*lines)[0]
+    return points
+
+
+def missing(robot: Robot, solutions: Array) -> Index:
+    """How many solutions of each pose are missing at least, (n,).
+
+    Args:
+        solutions: (n, s, joints) all that were found, in rad, NaN for none.
+    """
+    lost = np.zeros(len(solutions), dtype=np.int64)
+    for rows in chunks(len(solutions), solutions.shape[1] * bytes_of_poses(robot.joints)):
+        part = solutions[rows]
+        there = np.nonzero(~np.isnan(part[:, :, 0]))
+        poses = forward(robot, part[there])
+        determinants = signed_task_determinant(*tip_jacobian(poses), poses.tool_axis)
+        lost[rows] = np.abs(np.bincount(there[0], np.sign(determinants), minlength=len(part)))
+    return lost
+
+
+def remark_on_calibration(robot: Robot, off: tuple[float, float], solutions: Array) -> str:
+    """A sentence for the report.
+
+    Args:
+        off: the largest angle in rad and the largest distance in m of an axis from the ideal one.
+        solutions: (n, s, joints) of all vertices, NaN for none.
+    """
+    lost = missing(robot, solutions)
+    angle, distance = math.degrees(off[0]), 1000 * off[1]
+    return (
+        f"calibrated arm, axes up to {angle:.2g} degrees and {distance:.2g} mm off the ideal one: "
+        "solved by Newton's method from the ideal one's solutions; missing, by the signs of the "
+        f"task determinants: {lost.sum()} at {np.count_nonzero(lost)} of {len(lost)} vertices"
+    )
+
+
+CALIBRATION = 0.01
+"""What a calibrated arm's axes may be off the ideal ones, rad and m; usual is a tenth of it."""
+
+_FARTHEST = 0.2  # m, and for unit vectors; by how much a start may miss the pose
+
+_GOLDEN = (1 + 5**0.5) / 2
+_ICOSAHEDRON = [(0.0, first, second * _GOLDEN) for first in (1, -1) for second in (1, -1)]
+_AROUND = np.array([np.roll(corner, k) for corner in _ICOSAHEDRON for k in range(3)])
+_AROUND /= np.linalg.norm(_AROUND[0])
+_FARTHER = 5.0  # times what the axes are off: so far from a pose are those around it
+_ANOTHER = 0.1  # rad; an ideal solution of a pose around that is farther away is a start of its own
+_ELBOW_AND_WRIST = 3  # the bits of both in a branch's index
+_MOST_SOLUTIONS = 16  # of six revolute joints
+
+
+class ClosedForm(Protocol):
+    """Inverse kinematics of an arm with exactly parallel or meeting axes."""
+
+    def __call__(
+        self, points: Array, directions: Array, /, *, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """Points (k, 3) in m and unit vectors (k, 3) to solutions (k, s, joints) in rad.
+
+        They are NaN where there is none. Given branches (k,) it may leave out all others.
+        """
+
+
+@dataclass(frozen=True)
+class NearIdeal:
+    """A calibrated arm: its axes are a little off those of an ideal arm.
+
+    Attributes:
+        robot: the true arm.
+        closed_form: that of the ideal arm.
+        off: the largest angle in rad and distance in m of an axis from the ideal one.
+        signs: what names solutions; None if they have no names.
+        sign_of: (8,) the index that the signs have for each branch.
+    """
+
+    robot: Robot
+    closed_form: ClosedForm
+    off: tuple[float, float]
+    signs: Signs | None
+    sign_of: NDArray[np.intp] = field(default_factory=lambda: np.arange(len(BRANCHES)))
+
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """See :meth:`cellcolor.frontend.arm.inverse.InverseKinematics.solve`."""
+        if branches is None:
+            found = self._all(points, directions)
+            return found if self.signs is None else found[:, self.sign_of]
+        return self._one_each(points, directions, self.sign_of[branches], branches)[:, None]
+
+    def _one_each(
+        self, points: Array, directions: Array, signs: NDArray[np.intp], branches: NDArray[np.intp]
+    ) -> Array:
+        """The solution (n, joints) of one branch of each pose, the same as among all."""
+        starts = self.closed_form(points, directions, branches=branches)
+        chosen = self._from(starts, points, directions)[np.arange(len(points)), signs]
+        left = np.flatnonzero(np.isnan(chosen[:, 0]))
+        if len(left):
+            every = self._all(points[left], directions[left])
+            chosen[left] = every[np.arange(len(left)), signs[left]]
+        return chosen
+
+    def _all(self, points: Array, directions: Array) -> Array:
+        """All solutions, (n, 8, joints) by signs or (n, s, joints) without, in batches."""
+        most = _MOST_SOLUTIONS if self.signs is None else len(BRANCHES)
+        bytes_each = 48 * self.robot.joints * most * (3 + len(_AROUND))
+        batches, parts = list(chunks(max(len(points), 1), bytes_each)), []
+        for batch in batches:
+            starts = self._starts(points[batch], directions[batch])
+            parts.append(self._from(starts, points[batch], directions[batch]))
+        widest = max(part.shape[1] for part in parts)
+        found = np.full((len(points), widest, self.robot.joints), np.nan)
+        for batch, part in zip(batches, parts, strict=True):
+            found[batch, : part.shape[1]] = part
+        return found
+
+    def _starts(self, points: Array, directions: Array) -> Array:
+        """The ideal arm's solutions, both sides of folds, and what poses around have besides."""
+        own = self.closed_form(points, directions)
+        starts = [both_sides_of_folds(self.robot, own)]
+        angle, distance = self.off
+        for way in _AROUND:
+            tilted = directions + _FARTHER * angle * np.roll(way, 1)
+            tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
+            moved = self.closed_form(points + _FARTHER * distance * way, tilted)
+            moved[nearest(moved, own) < _ANOTHER] = np.nan
+            starts.append(moved)
+        return np.concatenate(starts, axis=1)
+
+    def _from(self, starts: Array, points: Array, directions: Array) -> Array:
+        """Solutions from starts (n, s, joints), under their names if there are any."""
+        solutions = polished(self.robot, starts, points, directions, _FARTHEST)
+        if self.signs is None:
+            return merged(solutions)
+        named, solved, slots, determinants = named_slots(self.robot, solutions, self.signs)
+        put_all(named, solved, slots, determinants)
+        return named.reshape(len(points), len(BRANCHES), self.robot.joints)
+
+
+def put_all(named: Array, solutions: Array, slots: Index, determinants: Array) -> None:
+    """Put solutions of a calibrated arm under their names, as many as there is room for.
+
+    Round an aligned wrist a pose can have two with the same signs, and more than eight in all. The
+    one with the larger determinant has the name. The other one takes that of the same shoulder and
+    the same sign of the determinant if it is free.
+
+    Args:
+        named: (n * 8, joints) to be written to, NaN for none.
+        solutions: (k, joints) in rad, many of them equal.
+        slots: (k,) where the name of each would put it.
+        determinants: (k,) absolute.
+    """
+    left = np.argsort(-determinants, kind="stable")
+    for flipped in (0, _ELBOW_AND_WRIST):
+        slot, first = np.unique(slots[left] ^ flipped, return_index=True)
+        free = np.isnan(named[slot, 0])
+        named[slot[free]] = solutions[left[first[free]]]
+        there = named[slots[left], None]
+        left = left[nearest(solutions[left, None], there)[:, 0] > SAME]
