@@ -1,241 +1,401 @@
-"""``cellcolor tradeoff``, ``explain`` and ``place``, for a terminal or another program."""
+"""What a lift-off costs: ``tradeoff``, ``explain``, ``place``, ``compare`` and ``setups``."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import click
 
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.inputs import read_subject
-from cellcolor.cli.progress import stages_of
-from cellcolor.cli.terminal import apart_from, complain, print_json, say
-from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.door.drawing import kind_of_plot
-from cellcolor.errors import InputError
-from cellcolor.files.writing import check_output
-from cellcolor.questions.places import read_place, read_weights
+from cellcolor.cli.options import (
+    CLUSTER,
+    INPUT,
+    JOBS,
+    LEFT_ALONE,
+    METRES,
+    PATH,
+    POINT,
+    POSE,
+    REQUIRED,
+    SEED,
+    TIME_LIMIT,
+    UNIT,
+    WORKERS,
+    cellcolor,
+    json_option,
+    ranges,
+)
 
-if TYPE_CHECKING:
-    from cellcolor.lab.executors.work import Workers
+_POINTS = click.option(
+    "--points",
+    metavar="N",
+    type=click.IntRange(1, 10**6),
+    default=128,
+    show_default=True,
+    help="Placements tried all over the ranges; about 3/4 as many follow around the best.",
+)
+_VERTICES = click.option(
+    "--vertices",
+    metavar="N",
+    type=click.IntRange(20, 10**6),
+    default=300,
+    show_default=True,
+    help="Of the coarse mesh that placements are tried on.",
+)
 
 
-@dataclass(frozen=True, slots=True)
-class TradeoffRequest:
-    """What the command line asked for.
+def _print(file: Path, rows: Iterable[Any], text: object, as_json: bool, **common: Any) -> None:
+    """An answer: its rows as JSON Lines, or its text."""
+    from cellcolor.cli.terminal import print_json, say_lines
 
-    Attributes:
-        source: a scene, a labelled surface or an instance.
-        weights: a file with the weights of the vertices.
-        required, left_alone: places, see :func:`~cellcolor.questions.places.read_place`.
-        share: of which the fewest lift-offs are asked, 0 to 1.
-        picture: of the front.
-        as_json: a JSON object for each point instead of lines.
-        workers, seed, deadline: of the search.
+    if not as_json:
+        say_lines(text)
+        return
+    for row in rows:
+        print_json({"file": str(file)} | common | row.to_document())
+
+
+@cellcolor.command()
+@click.argument("source", metavar="SCENE|SURFACE|INSTANCE", type=INPUT)
+@click.option(
+    "--share",
+    metavar="S",
+    type=click.FloatRange(0, 1),
+    help="Print only the fewest lift-offs that cover this share, 0 to 1.",
+)
+@click.option(
+    "--weights",
+    metavar="FILE.json",
+    help="A JSON file with one number for each vertex; the vertex's area is multiplied by it.",
+)
+@REQUIRED
+@LEFT_ALONE
+@click.option(
+    "-o",
+    "--output",
+    metavar="FRONT.(png|svg)",
+    type=PATH,
+    help="Draw the whole front to a file.",
+)
+@json_option("Print a JSON object for each point.")
+@WORKERS
+@SEED
+@TIME_LIMIT
+def tradeoff(
+    source: Path,
+    share: float | None,
+    weights: str | None,
+    output: Path | None,
+    as_json: bool,
+    **search: Any,
+) -> Exit:
+    """Print the largest share of area that each number of lift-offs covers, with proof.
+
+    The share is one of the area that can be covered and is not left alone.
     """
+    from cellcolor.cli.inputs import read_subject
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import drawn_to
+    from cellcolor.door.asking import save_front
+    from cellcolor.door.asking import tradeoff as front_of
+    from cellcolor.questions.places import read_weights
 
-    source: Path
-    weights: str | None
-    required: str | None
-    left_alone: str | None
-    share: float | None
-    picture: Path | None
-    as_json: bool
-    workers: int | None
-    seed: int
-    deadline: Deadline
-
-
-def ask_tradeoff(request: TradeoffRequest) -> Exit:
-    """Print a front, or the point of it that covers a share."""
-    from cellcolor.door.asking import save_front, tradeoff
-
-    if request.picture is not None:
-        check_output(request.picture, kind_of_plot(request.picture), [request.source])
-    required = None if request.required is None else read_place(request.required, "--required")
-    alone = None if request.left_alone is None else read_place(request.left_alone, "--left-alone")
-    weights = None if request.weights is None else read_weights(request.weights)
-    try:
-        subject = read_subject(request.source, request.deadline)
-        with stages_of(request.source, "asking") as report:
-            front = tradeoff(
-                subject,
-                weights=weights,
-                required=required,
-                left_alone=alone,
-                time_limit=request.deadline,
-                workers=request.workers,
-                seed=request.seed,
-                progress=report,
-            )
-    except OutOfTime:
-        complain(f"{request.source}: the time limit came before any division was found")
-        return Exit.STOPPED
-    except InputError as error:
-        raise error if error.file else error.in_file(str(request.source)) from error
-    points = front.points if request.share is None else (front.at_least(request.share),)
-    with apart_from(request.picture):
-        for point in points:
-            if request.as_json:
-                print_json({"file": str(request.source)} | point.to_document())
-            else:
-                say(point)
-        if request.picture is not None:
-            save_front(front, request.picture)
-            if not request.as_json:
-                say(f"wrote {request.picture}")
-    return Exit.DONE if all(point.proved for point in points) else Exit.STOPPED
+    with drawn_to(output, [source], as_json) as draw:
+        given = None if weights is None else read_weights(weights)
+        with at_work(source, "asking", "the time limit came before any division was found") as tell:
+            subject = read_subject(source, search["time_limit"])
+            front = front_of(subject, weights=given, progress=tell, **search)
+        points = front.points if share is None else (front.at_least(share),)
+        _print(source, points, "\n".join(map(str, points)), as_json)
+        draw(lambda file: save_front(front, file))
+    return Exit.done_if(all(point.proved for point in points))
 
 
-@dataclass(frozen=True, slots=True)
-class ExplainRequest:
-    """What the command line asked for.
+@cellcolor.command()
+@click.argument("scene", metavar="SCENE", type=INPUT)
+@click.option(
+    "--at",
+    metavar="X,Y,Z",
+    type=POINT,
+    help="Also say what each branch does at the vertex nearest to this point (m), and by which "
+    "tests its color ends.",
+)
+@json_option("Print a JSON object for each row.")
+@WORKERS
+@SEED
+@TIME_LIMIT
+def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: Any) -> Exit:
+    """Print what costs a lift-off: the minimum without each limit, obstacle and test.
 
-    Attributes:
-        scene: its file.
-        at: a point in the world, m.
-        as_json: a JSON object for each row instead of lines.
-        workers, seed, deadline: of the search.
+    Of what saves a lift-off the least amount that does is printed too. Where nothing does alone,
+    sets of two and three are tried. Everything is proved like the minimum itself.
     """
+    from cellcolor.cli.progress import at_work
+    from cellcolor.door.asking import explain as explanation_of
 
-    scene: Path
-    at: str | None
-    as_json: bool
-    workers: int | None
-    seed: int
-    deadline: Deadline
-
-
-def ask_explain(request: ExplainRequest) -> Exit:
-    """Print what each limit, obstacle and test of a scene costs."""
-    from cellcolor.door.asking import explain
-
-    try:
-        at = None if request.at is None else [float(word) for word in request.at.split(",")]
-    except ValueError as error:
-        raise InputError(None, "--at", "a point is three numbers: x,y,z") from error
-    try:
-        with stages_of(request.scene, "explaining") as report:
-            found = explain(
-                request.scene,
-                at=at,
-                time_limit=request.deadline,
-                workers=request.workers,
-                seed=request.seed,
-                progress=report,
-            )
-    except OutOfTime:
-        complain(f"{request.scene}: the time limit came before the scene itself was solved")
-        return Exit.STOPPED
-    except InputError as error:
-        raise error if error.file else error.in_file(str(request.scene)) from error
-    if request.as_json:
-        for row in (*found, *found.here):
-            print_json({"file": str(request.scene)} | row.to_document())
-    else:
-        for line in str(found).split("\n"):
-            say(line)
-    proved = all(row.proved_for_surface for row in found)
-    return Exit.DONE if found.complete and proved else Exit.STOPPED
+    late = "the time limit came before the scene itself was solved"
+    with at_work(scene, "explaining", late) as tell:
+        found = explanation_of(scene, at=at, progress=tell, **search)
+    _print(scene, (*found, *found.here), found, as_json)
+    return Exit.done_if(found.complete and all(row.proved_for_surface for row in found))
 
 
-@dataclass(frozen=True, slots=True)
-class PlaceRequest:
-    """What the command line asked for.
+@cellcolor.command()
+@click.argument("scene", metavar="SCENE", type=INPUT)
+@ranges
+@click.option(
+    "--cover",
+    metavar="S",
+    type=click.FloatRange(0, 1),
+    help="The share of the surface that has to be covered, 0 to 1.  [default: as much as where the "
+    "part stands]",
+)
+@_POINTS
+@click.option(
+    "--best",
+    metavar="N",
+    type=click.IntRange(1, 100),
+    default=3,
+    show_default=True,
+    help="Placements that are proved on the scene's own mesh and printed.",
+)
+@_VERTICES
+@click.option(
+    "--uncovered-price",
+    metavar="PRICE",
+    type=click.FloatRange(0, max_open=True),
+    default=0.0,
+    help="Make the sum of lift-offs and PRICE × uncovered share least.  [default: lift-offs first, "
+    "then area]",
+)
+@click.option(
+    "--base",
+    is_flag=True,
+    help="Move the arm's base instead of the part; it stands in the origin of the scene.",
+)
+@click.option(
+    "--leeway",
+    metavar="M",
+    type=METRES,
+    help="Tell how far the best placements may be off before their lift-offs rise, tried up to so "
+    "many metres.",
+)
+@click.option(
+    "--map",
+    "picture",
+    metavar="OUT.(png|svg)",
+    type=PATH,
+    help="A map over one or two ranges: lift-offs and area in the middle of each tile.",
+)
+@click.option(
+    "--tiles",
+    metavar="N",
+    type=click.IntRange(1, 1000),
+    default=31,
+    show_default=True,
+    help="Of the map, along each range; their middles are tried in place of --points.",
+)
+@click.option(
+    "-o",
+    "--output",
+    "table",
+    metavar="TABLE.csv",
+    type=PATH,
+    help="Keep each placement as it is proved; a table that is there is continued.",
+)
+@json_option("Print a JSON object for each placement.")
+@click.option("--jobs", default=1, **JOBS)
+@CLUSTER
+@SEED
+@TIME_LIMIT
+def place(
+    scene: Path,
+    picture: Path | None,
+    tiles: int,
+    as_json: bool,
+    jobs: int,
+    cluster: str | None,
+    **search: Any,
+) -> Exit:
+    """Print where the part should stand: the placements with the fewest lift-offs, proved.
 
-    Attributes:
-        scene: its file.
-        ranges: of each variable that was given, ``LOW,HIGH``.
-        cover: the share that has to be covered; None for as much as where the part stands.
-        points, best, vertices, tiles, leeway: see :func:`~cellcolor.door.placing.place`.
-        base: whether the arm's base is moved.
-        uncovered_price: see :func:`~cellcolor.door.placing.place`.
-        table: where rows are kept, and what is gone on from.
-        picture: of the map.
-        as_json: a JSON object for each row instead of lines.
-        jobs, cluster: who does the work.
-        seed, deadline: of the search.
+    Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
     """
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import drawn_to
+    from cellcolor.cli.workers import workers_for
+    from cellcolor.door.placing import place as placements_of
+    from cellcolor.door.placing import save_map
 
-    scene: Path
-    ranges: Mapping[str, str]
-    cover: float | None
-    points: int
-    best: int
-    vertices: int
-    tiles: int
-    leeway: float | None
-    base: bool
-    uncovered_price: float
-    table: Path | None
-    picture: Path | None
-    as_json: bool
-    jobs: int
-    cluster: str | None
-    seed: int
-    deadline: Deadline
-
-
-def ask_place(request: PlaceRequest) -> Exit:
-    """Print where the part should stand."""
-    from cellcolor.door.placing import place, save_map
-
-    if request.picture is not None:
-        check_output(request.picture, kind_of_plot(request.picture), [request.scene])
-    jobs: int | Workers = request.jobs
-    if request.cluster is not None:
-        from cellcolor.cli.workers import workers_for
-
-        jobs = workers_for(request.jobs, request.cluster)
-    ranges = ranges_of(request.ranges)
-    try:
-        with stages_of(request.scene, "placing") as report:
-            found = place(
-                request.scene,
-                **ranges,
-                cover=request.cover,
-                points=request.points,
-                best=request.best,
-                vertices=request.vertices,
-                tiles=None if request.picture is None else request.tiles,
-                leeway=request.leeway,
-                base=request.base,
-                uncovered_price=request.uncovered_price,
-                table=request.table,
-                jobs=jobs,
-                time_limit=request.deadline,
-                seed=request.seed,
-                progress=report,
+    late = "the time limit came before the scene itself was solved"
+    with drawn_to(picture, [scene], as_json) as draw:
+        workers = jobs if cluster is None else workers_for(jobs, cluster)
+        with at_work(scene, "placing", late) as tell:
+            found = placements_of(
+                scene,
+                tiles=None if picture is None else tiles,
+                jobs=workers,
+                progress=tell,
+                **search,
             )
-    except OutOfTime:
-        complain(f"{request.scene}: the time limit came before the scene itself was solved")
-        return Exit.STOPPED
-    except InputError as error:
-        raise error if error.file else error.in_file(str(request.scene)) from error
-    with apart_from(request.picture):
-        if request.as_json:
-            for row in found:
-                moved = {"moved": "base"} if found.base else {}
-                print_json({"file": str(request.scene)} | moved | row.to_document())
-        else:
-            for line in str(found).split("\n"):
-                say(line)
-        if request.picture is not None:
-            save_map(found, request.picture)
-            if not request.as_json:
-                say(f"wrote {request.picture}")
-    proved = found.best and all(row.proved_for_surface for row in found.best)
-    return Exit.DONE if found.complete and proved else Exit.STOPPED
+        moved = {"moved": "base"} if found.base else {}
+        _print(scene, found, found, as_json, **moved)
+        draw(lambda file: save_map(found, file))
+    proved = bool(found.best) and all(row.proved_for_surface for row in found.best)
+    return Exit.done_if(found.complete and proved)
 
 
-def ranges_of(texts: Mapping[str, str]) -> dict[str, Any]:
-    """The range of each variable that was given as ``LOW,HIGH``."""
-    ranges = {}
-    for name, text in texts.items():
+@cellcolor.command()
+@click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
+@click.option(
+    "--arm",
+    "arms",
+    metavar="NAME|ARM.urdf",
+    multiple=True,
+    required=True,
+    help="A shipped arm, such as ur5e, or a URDF; once for each arm.",
+)
+@ranges
+@click.option(
+    "--cover",
+    metavar="S",
+    type=click.FloatRange(0, 1),
+    help="The share of the surface that each arm has to cover, 0 to 1.  [default: as much as the "
+    "arm that covers most where the part is put at first]",
+)
+@_POINTS
+@_VERTICES
+@UNIT
+@click.option(
+    "-o", "--output", metavar="OUT.(png|svg)", type=PATH, help="A picture of what each arm covers."
+)
+@json_option("Print a JSON object for each arm.")
+@click.option("--jobs", default=1, **JOBS)
+@SEED
+@TIME_LIMIT
+def compare(
+    part: Path, arms: tuple[str, ...], output: Path | None, as_json: bool, **search: Any
+) -> Exit:
+    """Print for each arm the best placement of a part, its lift-offs, its area and its front.
+
+    Each arm gets the setup that ``cellcolor new`` begins with.
+    """
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import drawn_to
+    from cellcolor.door.comparing import compare as comparison_of
+
+    late = "the time limit came before anything was known of an arm"
+    with drawn_to(output, [part], as_json) as draw:
+        with at_work(part, "comparing", late) as tell:
+            found = comparison_of(part, arms, progress=tell, **search)
+        _print(part, found, found, as_json)
+        draw(found.save)
+    proved = all(row.best is None or row.best.proved_for_surface for row in found)
+    return Exit.done_if(found.complete and proved)
+
+
+@cellcolor.command()
+@click.argument("scene", metavar="SCENE", type=INPUT)
+@click.option(
+    "--at",
+    metavar="X,Y,Z,ROLL,PITCH,YAW",
+    type=POSE,
+    multiple=True,
+    help="Where else the part may stand, m and rad. May be given several times.",
+)
+@click.option("--places", metavar="FILE.jsonl", type=PATH, help="What place --json has printed.")
+@click.option(
+    "--with",
+    "others",
+    metavar="SCENE.toml",
+    type=INPUT,
+    multiple=True,
+    help="Another scene of the same part, such as with another arm. May be given several times.",
+)
+@click.option(
+    "--cover",
+    metavar="S",
+    type=click.FloatRange(0, 1),
+    default=1.0,
+    show_default=True,
+    help="The share to be covered of what any of these set-ups reaches, 0 to 1.",
+)
+@click.option(
+    "--change-over",
+    metavar="PRICE",
+    type=click.FloatRange(min=1),
+    help="What a change from one set-up to the next costs, in lift-offs.  [default: as few set-ups "
+    "as possible, then as few lift-offs]",
+)
+@click.option(
+    "-o", "--output", metavar="OUT.(html|png|svg)", type=PATH, help="A picture of the part."
+)
+@click.option(
+    "--plan", "folder", metavar="FOLDER", type=PATH, help="Plan a motion for each, and judge it."
+)
+@json_option("Print one JSON object.")
+@WORKERS
+@SEED
+@TIME_LIMIT
+def setups(
+    scene: Path,
+    at: tuple[tuple[float, ...], ...],
+    places: Path | None,
+    output: Path | None,
+    folder: Path | None,
+    as_json: bool,
+    **search: Any,
+) -> Exit:
+    """Print which set-ups of a part cover it with the fewest lift-offs, with proof.
+
+    A set-up is the part in one place before one arm. SCENE as it stands is one of them.
+    """
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import say
+    from cellcolor.door.drawing import kind_of_picture
+    from cellcolor.door.setting_up import setups as set_ups_of
+
+    if output is not None:
+        kind_of_picture(output)
+    all_places = [*at, *([] if places is None else _places_in(places))]
+    late = "the time limit came before there was a choice"
+    with at_work(scene, "setting up", late) as tell:
+        found = set_ups_of(scene, at=all_places, progress=tell, **search)
+    _print(scene, [found.answer], found, as_json)
+    if output is not None:
+        found.plot(output)
+    valid = True
+    if folder is not None:
+        late = "the time limit came before all motions were planned"
+        with at_work(scene, "planning", late) as tell:
+            planned = found.plan(time_limit=search["time_limit"], progress=tell)
+        for one, plan in zip(found.answer.set_ups, planned, strict=True):
+            own = folder / f"set-up-{one.number}"
+            plan.save(own)
+            valid &= plan.verdict.valid
+            if not as_json:
+                say(f"{own}: {plan.trajectory}; judge: {plan.verdict}")
+    return Exit.done_if(found.answer.proved) if valid else Exit.INVALID
+
+
+def _places_in(file: Path) -> list[tuple[float, ...]]:
+    """The placements of a file of JSON Lines that ``place`` has printed, without refused ones."""
+    from cellcolor.errors import InputError
+    from cellcolor.files.documents import parse_json, read_text
+
+    found = []
+    for number, line in enumerate(read_text(file).splitlines(), 1):
         try:
-            low, high = map(float, text.split(","))
-        except ValueError as error:
-            raise InputError(None, f"--{name}", "a range is two numbers: LOW,HIGH") from error
-        ranges[name] = low, high
-    return ranges
+            row = parse_json(line)
+            if row.get("moved") == "base":
+                raise InputError(None, None, "is a place of the arm's base, not of the part")
+            if not row.get("refused"):
+                found.append(tuple(float(v) for v in (*row["position_m"], *row["rpy_rad"])))
+        except InputError as error:
+            raise InputError(str(file), f"line {number}", error.message) from error
+        except (KeyError, TypeError, ValueError) as error:
+            message = "must be an object with position_m and rpy_rad, as place --json prints it"
+            raise InputError(str(file), f"line {number}", message) from error
+    return found

@@ -38,7 +38,7 @@ _SHOWN = 60
 """Instances that are listed at the end; more are for ``bench summary``."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
     """What the command was asked for; the fields are its arguments and options."""
 

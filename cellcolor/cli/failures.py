@@ -8,9 +8,10 @@ from collections.abc import Sequence
 
 import click
 
-from cellcolor.cli.commands import cellcolor
-from cellcolor.cli.exits import Exit
+from cellcolor.cli import ask, bench, minimum, motion, outside, parts  # noqa: F401, each adds its commands
+from cellcolor.cli.exits import Ended, Exit
 from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.options import cellcolor
 from cellcolor.cli.terminal import complain, guarded_streams, shortened, shown
 from cellcolor.errors import CellcolorError
 
@@ -45,6 +46,9 @@ def _run(arguments: list[str]) -> Exit:
     except CellcolorError as error:
         complain(error)
         return Exit.BAD_INPUT
+    except Ended as end:
+        complain(end)
+        return end.code
     except MemoryError:
         complain("out of memory")
         return Exit.STOPPED

@@ -13,10 +13,8 @@ from cellcolor.cli.terminal import complain
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.extras import extras_for
-from cellcolor.door.leaving_out import Wanted
 from cellcolor.door.subject import Subject, build_scene, open_subject, scene_or_file
 from cellcolor.errors import InputError
-from cellcolor.questions.places import read_place
 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
@@ -93,16 +91,3 @@ def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None =
 def read_instance(path: Path, deadline: Deadline = NEVER) -> Instance:
     """An instance from anything that can be solved; see :func:`read_subject`."""
     return read_subject(path, deadline).graph(deadline)
-
-
-def read_wanted(cover: float | None, required: str | None, left_alone: str | None) -> Wanted:
-    """What has to be covered, as options say it.
-
-    Raises:
-        InputError: a place is none; names the option or the file.
-    """
-    return Wanted(
-        cover,
-        None if required is None else read_place(required, "--required"),
-        None if left_alone is None else read_place(left_alone, "--left-alone"),
-    )

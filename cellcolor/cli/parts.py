@@ -1,110 +1,168 @@
-"""``cellcolor inspect`` and ``cellcolor repair``: meshes of parts."""
+"""Meshes of parts: ``inspect``, ``repair`` and ``new``."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
+
+import click
 
 from cellcolor.cli.exits import Exit
-from cellcolor.cli.interrupts import INTERRUPTS
-from cellcolor.cli.progress import stages_of
-from cellcolor.cli.terminal import apart_from, complain, print_json, say
-from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.door.drawing import kind_of_picture
-from cellcolor.door.parts import draw_inspection, inspect, repair
-from cellcolor.errors import InputError
-from cellcolor.files.writing import FileKind, Output, check_output, write
+from cellcolor.cli.options import METRES, PATH, TIME_LIMIT, UNIT, cellcolor, json_option
+from cellcolor.deadline import Deadline
 
-_OBJ = FileKind("a mesh repaired by cellcolor", re.compile(rb"# repaired by cellcolor\n"))
+_PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
+_JSON = json_option("One JSON object.")
 
 
-def inspect_part(
-    part: Path, unit: str | None, picture: Path | None, deadline: Deadline, as_json: bool
+@cellcolor.command()
+@_PART
+@UNIT
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT.(html|png|svg)",
+    type=PATH,
+    help="A picture with the faulty places marked.",
+)
+@TIME_LIMIT
+@_JSON
+def inspect(
+    part: Path, unit: str | None, output: Path | None, time_limit: Deadline, as_json: bool
 ) -> Exit:
-    """Print what a part has and what is wrong with it, and draw it if asked.
+    """Look a part's mesh through: its size, and what is wrong with it.
 
-    Args:
-        part: a mesh file.
-        unit: of it; None for the likely one.
-        picture: where the picture goes.
-        deadline: when to give up.
-        as_json: one JSON object instead of lines.
+    Says why a scene would refuse it, and what repair would do about that. Nothing is changed.
     """
-    kind = None if picture is None else kind_of_picture(picture)
-    if picture is not None and kind is not None:
-        check_output(picture, kind, [part])
-    try:
-        with stages_of(part, "inspecting") as tell:
-            found = inspect(part, unit=unit, time_limit=deadline, progress=tell)
-            drawn = None
-            if picture is not None:
-                tell("drawing")
-                drawn = draw_inspection(found).render(picture.suffix)
-    except OutOfTime:
-        complain(f"{part}: not inspected: the time limit came first")
-        return Exit.STOPPED
+    from cellcolor.cli.interrupts import INTERRUPTS
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
+    from cellcolor.door import parts
+    from cellcolor.door.drawing import kind_of_picture
+    from cellcolor.files.writing import Output, check_output, write
+
+    if output is not None:
+        kind = kind_of_picture(output)
+        check_output(output, kind, [part])
+    with at_work(part, "inspecting", "not inspected: the time limit came first") as tell:
+        found = parts.inspect(part, unit=unit, time_limit=time_limit, progress=tell)
+        if output is not None:
+            tell("drawing")
+            drawn = parts.draw_inspection(found).render(output.suffix)
     INTERRUPTS.check()
-    with apart_from(picture):
+    with apart_from(output):
         if as_json:
             print_json(found.to_dict())
         else:
-            for line in str(found).split("\n"):
-                say(line)
-        if picture is not None and kind is not None and drawn is not None:
-            write([Output(picture, kind, [drawn])], [part])
+            say_lines(found)
+        if output is not None:
+            write([Output(output, kind, [drawn])], [part])
             if not as_json:
-                say(f"wrote {picture}")
+                say(f"wrote {output}")
     return Exit.DONE
 
 
-def repair_part(
-    part: Path,
-    unit: str | None,
-    output: Path,
-    fill_holes: float,
-    least_component: float,
-    edge_length: float | None,
-    deadline: Deadline,
-    as_json: bool,
+@cellcolor.command()
+@_PART
+@UNIT
+@click.option("-o", "--output", metavar="MESH.obj", required=True, type=PATH, help="The mesh.")
+@click.option(
+    "--fill-holes",
+    "fill_holes_m",
+    metavar="M",
+    type=METRES,
+    help="Fill holes whose border is at most this long.",
+)
+@click.option(
+    "--least-component",
+    metavar="SHARE",
+    type=click.FloatRange(0, 1),
+    default=0.01,
+    show_default=True,
+    help="Drop components smaller than this share of the largest one's area.",
+)
+@click.option(
+    "--edge-length",
+    "edge_length_m",
+    metavar="M",
+    type=METRES,
+    help="Remesh to edges of about this length.",
+)
+@TIME_LIMIT
+@_JSON
+def repair(
+    part: Path, output: Path, fill_holes_m: float | None, as_json: bool, **wanted: Any
 ) -> Exit:
-    """Write a repaired mesh, and print what was changed.
+    """Repair a part's mesh, so that a scene can use it, or say why that cannot be done.
 
-    Args:
-        part: a mesh file.
-        unit: of it; None for the likely one.
-        output: an OBJ file.
-        fill_holes: the longest border of a hole that is filled, m.
-        least_component: share of the largest component's area below which one is dropped.
-        edge_length: wanted, m; None leaves the edges.
-        deadline: when to give up.
-        as_json: one JSON object instead of lines.
+    Lengths are in metres; the mesh keeps the unit of its coordinates. What was changed is listed.
     """
+    from cellcolor.cli.interrupts import INTERRUPTS
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
+    from cellcolor.door import parts
+    from cellcolor.errors import InputError
+    from cellcolor.files.writing import FileKind, Output, check_output, write
+
+    kind = FileKind("a mesh repaired by cellcolor", re.compile(rb"# repaired by cellcolor\n"))
     if output.suffix != ".obj":
         raise InputError(str(output), None, "must end in .obj")
-    check_output(output, _OBJ, [part])
-    try:
-        with stages_of(part, "repairing") as tell:
-            made = repair(
-                part,
-                unit=unit,
-                fill_holes_m=fill_holes,
-                least_component=least_component,
-                edge_length_m=edge_length,
-                time_limit=deadline,
-                progress=tell,
-            )
-            tell("writing")
-            content = made.to_obj().encode()
-    except OutOfTime:
-        complain(f"{part}: not repaired: the time limit came first; nothing is written")
-        return Exit.STOPPED
+    check_output(output, kind, [part])
+    late = "not repaired: the time limit came first; nothing is written"
+    with at_work(part, "repairing", late) as tell:
+        made = parts.repair(part, fill_holes_m=fill_holes_m or 0.0, progress=tell, **wanted)
+        tell("writing")
+        content = made.to_obj().encode()
     INTERRUPTS.check()
     with apart_from(output):
-        write([Output(output, _OBJ, [content])], [part])
+        write([Output(output, kind, [content])], [part])
         if as_json:
             print_json(made.to_dict())
         else:
-            for line in str(made).split("\n"):
-                say(line)
+            say_lines(made)
             say(f"wrote {output}, meters_per_unit = {made.meters_per_unit:g}")
+    return Exit.DONE
+
+
+@cellcolor.command()
+@_PART
+@click.argument("arm", metavar="ARM.urdf", type=PATH)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    required=True,
+    type=PATH,
+    help="Folder for the files; it is created if it does not exist.",
+)
+@click.option(
+    "--tool",
+    metavar="TOOL.urdf",
+    type=PATH,
+    help="The tool, its root fixed to the flange.  [default: a polisher of 100 mm is written]",
+)
+@click.option("--tip-link", metavar="LINK", default="tip", show_default=True, help="Of the tool.")
+@UNIT
+@TIME_LIMIT
+def new(part: Path, arm: Path, output: Path, **wanted: Any) -> Exit:
+    """Begin with a part and an arm: write a scene and a setup, ready to plan.
+
+    The arm has six turning joints. Its family and flange, links that always overlap, a place where
+    most of the part can be reached and a free home position are found out, and every key is
+    explained.
+    """
+    from cellcolor.cli.interrupts import INTERRUPTS
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import say
+    from cellcolor.door.starting import new as begin
+
+    late = "the time limit came first; nothing is written"
+    with at_work(part, "beginning", late) as tell:
+        made = begin(part, arm, output, progress=tell, **wanted)
+    INTERRUPTS.check()
+    say(f"wrote {made.scene} and its setup: {made.reachable_share:.0%} of the part can be reached")
+    for note in made.notes:
+        say(f"  {note}")
+    say(f"next: cellcolor plan {made.scene} -o {made.scene.parent / 'plan'}")
     return Exit.DONE

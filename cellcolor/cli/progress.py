@@ -7,9 +7,12 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from cellcolor.cli.exits import Ended
 from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.terminal import shown
 from cellcolor.data.wording import count
+from cellcolor.deadline import OutOfTime
+from cellcolor.errors import InputError
 from cellcolor.solvers.interface import OnProgress
 
 
@@ -58,17 +61,25 @@ def stages_of(file: Path, work: str) -> Iterator[Callable[[str], None]]:
 
 
 @contextmanager
-def judge_progress_of(file: Path) -> Iterator[Callable[[str], None]]:
-    """A line with the time spent and what of a trajectory is judged, if there is a terminal."""
-    name = shown(file.name)
-    with _line(f"{name}: judging") as show:
+def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]:
+    """Progress of a command (:func:`stages_of`), and its end where it cannot be done.
 
-        def report(stage: str) -> None:
-            INTERRUPTS.check()
-            if show is not None:
-                show(f"{name}: {stage}")
+    Args:
+        file: what is worked on; an error without a file is one of this file.
+        work: what is done.
+        late: what is said where the time limit comes first.
 
-        yield report
+    Raises:
+        Ended: the time limit came first.
+        InputError: with a file.
+    """
+    try:
+        with stages_of(file, work) as report:
+            yield report
+    except OutOfTime as error:
+        raise Ended(f"{file}: {late}") from error
+    except InputError as error:
+        raise error if error.file else error.in_file(str(file)) from error
 
 
 @contextmanager

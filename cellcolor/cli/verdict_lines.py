@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 
 from cellcolor.cli.terminal import say
+from cellcolor.data.instance import Instance
 from cellcolor.data.plan_verdict import PlanVerdict
+from cellcolor.data.solution import Solution
 from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.wording import count
+from cellcolor.door.shipped import library
 
 _FAULTS = 3  # of each kind
 _VERTICES = 10
@@ -16,12 +19,7 @@ _SOLVERS = {"cp-sat": "CP-SAT", "cp-sat-model": "CP-SAT"}  # what has proved the
 
 
 def say_plan(name: str, verdict: PlanVerdict) -> None:
-    """What is said of a plan.
-
-    Args:
-        name: of the plan.
-        verdict: on it.
-    """
+    """What is said of a plan with a name."""
     say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
     places = {f"vertex_colors[{found.vertex}]": found.place for found in verdict.violations}
     for problem in verdict.problems[:_VERTICES]:
@@ -55,12 +53,7 @@ def say_plan(name: str, verdict: PlanVerdict) -> None:
 
 
 def say_solution(name: str, verdict: SolutionVerdict) -> None:
-    """What is said of a solution.
-
-    Args:
-        name: of the solution.
-        verdict: on it.
-    """
+    """What is said of a solution with a name."""
     say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
     for problem in verdict.problems:
         say(f"  {problem}")
@@ -87,13 +80,22 @@ def _say_bounds(verdict: SolutionVerdict) -> None:
         say(f"  {verdict.bounds_by_solver} of {bounds} by {solver}")
 
 
-def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
-    """What is said of a trajectory.
+def say_better(instance: Instance, solution: Solution, verdict: SolutionVerdict) -> None:
+    """Say where a valid solution is better than the index, and how to send it.
 
-    Args:
-        name: of the trajectory.
-        verdict: on it.
+    A bound counts if its certificate was verified, so that nothing is taken on trust.
     """
+    bounds = [(b.holds_for, b.value, True) for b in verdict.bounds if b.outcome == "verified"]
+    for entry in library().index.entries:
+        if entry.fingerprint == instance.sha256 and (found := entry.beaten_by(solution, bounds)):
+            for line in found:
+                say(f"  better than the library's index: {line}")
+            name = f"{entry.name}.{'surface.' * (solution.search_space == 'surface')}solution.json"
+            say(f"  please send it as {name} (docs/library.md, How to contribute a better bound)")
+
+
+def say_trajectory(name: str, verdict: TrajectoryVerdict) -> None:
+    """What is said of a trajectory with a name."""
     said = count(sum(verdict.fault_counts.values()), "fault")
     say(f"{name}: {'valid' if verdict.valid else f'not valid, {said}'}")
     for kind, number in verdict.fault_counts.items():

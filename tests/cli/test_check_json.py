@@ -417,7 +417,7 @@ def test_out_of_time_is_an_error_of_its_own_code(
     def out_of_time(_path: Path, _deadline: Deadline, _tolerance: None) -> None:
         raise OutOfTime
 
-    monkeypatch.setattr("cellcolor.cli.check.read_subject", out_of_time)
+    monkeypatch.setattr("cellcolor.cli.checking.read_subject", out_of_time)
     pipe(text(BEST))
     assert run("check", row, "-", "--json") == 3
     error = CheckError.from_document(printed(capsys))

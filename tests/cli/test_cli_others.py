@@ -12,7 +12,7 @@ from commands import json_lines, run
 from documents import SURFACE
 from library import INSTANCES, PAPER
 
-import cellcolor.cli.check
+import cellcolor.cli.checking
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
@@ -157,7 +157,7 @@ class TestCheck:
         plan = tmp_path / "plan.json"
         surface = LabelledSurface.read(CORRIDORS)
         plan.write_text(Plan(tuple(own[0] for own in surface.vertex_colors)).to_json())
-        read_subject = cellcolor.cli.check.read_subject
+        read_subject = cellcolor.cli.checking.read_subject
 
         def slow(path: Path, deadline: Deadline, tolerance: None) -> Instance | LabelledSurface:
             subject = read_subject(path, deadline, tolerance)
@@ -165,7 +165,7 @@ class TestCheck:
             monkeypatch.setattr(time, "monotonic", lambda: now + 60)
             return subject
 
-        monkeypatch.setattr(cellcolor.cli.check, "read_subject", slow)
+        monkeypatch.setattr(cellcolor.cli.checking, "read_subject", slow)
         assert run("check", CORRIDORS, plan, "--json") == 0
         verdict = json_lines(capsys.readouterr().out)[0]
         assert (verdict["lower_bound"], verdict["upper_bound"]) == (1, len(surface.vertices))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from commands import run
 
-import cellcolor.cli.commands
+import cellcolor.cli.failures
 
 Capture = pytest.CaptureFixture[str]
 
@@ -18,7 +18,7 @@ def test_help_is_cut_nowhere(
     assert run("--help") == 0
     _, _, listed = capsys.readouterr().out.partition("Commands:")
     text = "".join(listed.split())  # lines may end at hyphens
-    for name, command in cellcolor.cli.commands.cellcolor.commands.items():
+    for name, command in cellcolor.cli.failures.cellcolor.commands.items():
         assert command.help is not None
         paragraph = "".join(command.help.partition("\n\n")[0].split())
         assert f"{name}{paragraph}" in text

@@ -28,7 +28,7 @@ Capture = pytest.CaptureFixture[str]
 # Ctrl-C as soon as the search has a division: from another thread if it runs in one.
 INTERRUPTED = """
 import contextlib, signal, sys, threading
-import cellcolor.cli, cellcolor.cli.solve
+import cellcolor.cli, cellcolor.cli.solving
 
 sent = threading.Event()
 
@@ -41,7 +41,7 @@ def watched(_file):
             signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
     yield report
 
-cellcolor.cli.solve.progress_of = watched
+cellcolor.cli.solving.progress_of = watched
 code = cellcolor.cli.main(sys.argv[1:])
 sys.exit(code if sent.is_set() else 99)
 """

@@ -15,7 +15,7 @@ import pytest
 from commands import json_lines, run
 from library import PAPER
 
-import cellcolor.cli.solve
+import cellcolor.cli.solving
 import cellcolor.solvers.checked
 import cellcolor.solvers.cpsat.schemes.scheme_model
 from cellcolor.data.cells_and_edges import Cell
@@ -143,7 +143,7 @@ class TestAllSchemes:
                 signal.raise_signal(signal.SIGINT)
                 raise AssertionError("the signal was not heard")
 
-        monkeypatch.setattr(cellcolor.cli.solve, "_spool", lambda _: nullcontext(Spool()))
+        monkeypatch.setattr(cellcolor.cli.solving, "_spool", lambda _: nullcontext(Spool()))
         out = tmp_path / "some.jsonl"
         assert run("solve", ZEROS, "--all", "-o", out) == 3
         assert (Solution.read(out).schemes, len(list(read_schemes(out)))) == (1, 1)

@@ -125,7 +125,7 @@ def test_what_cannot_be_compared_is_one_line(arch: Path, tmp_path: Path, capsys:
         ((arch, "--arm", "cobra600"), "cobra600.urdf"),
         ((arch, "--arm", "polishing_tool"), "polishing_tool.urdf"),
         ((arch, "--arm", "ur5e", "--arm", "ur5e"), "ur5e is given twice"),
-        ((arch, "--arm", "ur5e", "--x", "1"), "--x: a range is two numbers"),
+        ((arch, "--arm", "ur5e", "--x", "1"), "'--x': a range is two numbers"),
         ((arch, "--arm", "ur5e", "--x", "0.5,0.4"), "x: the range from 0.5 to 0.4 is empty"),
         ((arch, "--arm", "ur5e", "-o", tmp_path / "out.html"), "must end in .png or .svg"),
         ((arch, "--arm", "ur5e", "-o", mine), "mine.png"),

@@ -277,9 +277,9 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert all({"branch", "fails"} <= row.keys() for row in rows if "relaxed" not in row)
     assert sum("branch" in row for row in rows) == 8
     for wrong, said in (
-        ((file, "--at", "1,2"), "at: must be three numbers"),
-        ((file, "--at", "1,2,x"), "--at: a point is three numbers"),
-        ((file, "--at", "1,2,nan"), "at: must be three numbers"),
+        ((file, "--at", "1,2"), "'--at': a point is three numbers"),
+        ((file, "--at", "1,2,x"), "'--at': a point is three numbers"),
+        ((file, "--at", "1,2,nan"), "'--at': a point is three numbers"),
         ((tmp_path / "none.toml",), "No such file"),
         ((SCENES.parent / "index.json",), "is no scene"),
     ):

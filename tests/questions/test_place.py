@@ -396,7 +396,7 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert all(0.4 <= row["position_m"][0] <= 0.5 for row in rows)
     for wrong, said in (
         ((file,), "nothing may move"),
-        ((file, "--x", "1"), "--x: a range is two numbers"),
+        ((file, "--x", "1"), "'--x': a range is two numbers"),
         ((file, "--x", "0.5,0.4"), "x: the range from 0.5 to 0.4 is empty"),
         ((file, "--yaw", "0,inf"), "yaw: its range must be two numbers"),
         ((tmp_path / "none.toml", "--x", "0,1"), "No such file"),

@@ -182,7 +182,7 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
     lines = tmp_path / "places.jsonl"
     lines.write_text('{"position_m": [1, 2], "rpy_rad": [0, 0]}\n[]\n')
     for wrong, said in (
-        (("--at", "1,2,3"), "--at: a place is six numbers"),
+        (("--at", "1,2,3"), "'--at': a place is six numbers"),
         (("--at", "nan,0,0,0,0,0"), "at[0]: must be six numbers"),
         (("--with", "half_pipe"), "half_pipe.toml: object: has"),
         (("--places", lines), "places.jsonl: line 2"),

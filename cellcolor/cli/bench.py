@@ -1,18 +1,14 @@
-"""The commands of experiments: ``bench run`` and the others of its group."""
+"""Experiments: ``bench run`` and the other commands of its group."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
-from cellcolor.cli.commands.group import Commands, cellcolor
-from cellcolor.cli.commands.options import CLUSTER, JOBS, PATH, SECONDS, SEED
+from cellcolor.cli.options import CLUSTER, JOBS, PATH, SECONDS, SEED, Commands, cellcolor
 from cellcolor.solvers.registry import DEFAULT, REFERENCE
-
-if TYPE_CHECKING:
-    from cellcolor.data.solution import SearchSpace
 
 
 def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
@@ -98,18 +94,7 @@ def bench() -> None:
     type=PATH,
     help="A row for each run. An existing table is continued: its runs are not repeated.",
 )
-def run(
-    subjects: tuple[str, ...],
-    solvers: tuple[str, ...],
-    seeds: tuple[int, ...],
-    limits: tuple[float, ...],
-    repetitions: int,
-    search_space: SearchSpace,
-    megabytes: int,
-    jobs: int,
-    cluster: str | None,
-    output: Path | None,
-) -> int:
+def run(output: Path | None, **given: Any) -> int:
     """Run solvers on instances, each solve in a process of its own.
 
     FAMILY is a set of random families (small, medium, large, growing), the library of shipped
@@ -118,10 +103,7 @@ def run(
     """
     from cellcolor.cli.bench_run import Request, run_solvers
 
-    request = Request(
-        subjects, solvers, seeds, limits, repetitions, search_space, megabytes, jobs, cluster
-    )
-    return run_solvers(request, output)
+    return run_solvers(Request(**given), output)
 
 
 @bench.command()
@@ -196,10 +178,8 @@ def start_up(repetitions: int, output: Path | None) -> int:
     show_default=True,
     help="Folder for disagreements.",
 )
-def campaign(
-    count: int, seed: int, time_limit: float, jobs: int, cluster: str | None, output: Path
-) -> int:
+def campaign(**given: Any) -> int:
     """Hold the solvers to each other on small instances; exit code 1 if they disagree."""
     from cellcolor.cli.campaign import run_campaign
 
-    return run_campaign(count, seed, time_limit, jobs, cluster, output)
+    return run_campaign(**given)

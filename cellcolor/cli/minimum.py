@@ -1,15 +1,15 @@
-"""The commands about the minimum: ``build``, ``solve``, ``check`` and ``show``."""
+"""The minimum: ``build``, ``solve``, ``check`` and ``show``."""
 
 from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
 
 import click
 
-from cellcolor.cli.commands.group import cellcolor
-from cellcolor.cli.commands.options import (
+from cellcolor.cli.exits import Exit
+from cellcolor.cli.options import (
     COVER,
     INPUT,
     LEFT_ALONE,
@@ -18,20 +18,13 @@ from cellcolor.cli.commands.options import (
     SECONDS,
     SEED,
     TOLERANCE,
+    WORKERS,
+    cellcolor,
+    json_option,
+    one_of,
 )
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
-
-if TYPE_CHECKING:
-    from cellcolor.data.solution import SearchSpace
-
-
-def _solver_name(_context: click.Context, _option: click.Parameter, value: str) -> str:
-    """Refuse a solver that nobody has registered; none is imported for that."""
-    known = solver_names()
-    if value not in known:
-        raise click.BadParameter(f"{value!r} is not one of {', '.join(known)}.")
-    return value
 
 
 @cellcolor.command()
@@ -44,12 +37,12 @@ def _solver_name(_context: click.Context, _option: click.Parameter, value: str) 
     type=PATH,
     help="The instance; other files are named after it.",
 )
-def build(source: Path, output: Path) -> int:
+def build(source: Path, output: Path) -> Exit:
     """Make the topological graph of a robot scene or of a labelled surface.
 
     For a scene the labelled surface is written as well, beside the instance.
     """
-    from cellcolor.cli.build import build_instance
+    from cellcolor.cli.building import build_instance
 
     return build_instance(source, output)
 
@@ -62,7 +55,7 @@ def build(source: Path, output: Path) -> int:
 @click.option(
     "--solver",
     metavar="NAME",
-    callback=_solver_name,
+    callback=one_of(solver_names),
     default=DEFAULT,
     show_default=True,
     help=f"{', '.join(OWN_NAMES)}, or what another package registers. {REFERENCE} is the paper's "
@@ -105,6 +98,7 @@ def build(source: Path, output: Path) -> int:
 )
 @click.option(
     "--refine-until-stable",
+    "refine",
     is_flag=True,
     help="Solve a scene on finer meshes until minimum and graph stay the same twice in a row.",
 )
@@ -115,84 +109,52 @@ def build(source: Path, output: Path) -> int:
     help="With --refine-until-stable, the meshes side by side.",
 )
 @click.option("--time-limit", metavar="S", type=SECONDS, help="Seconds for each file.")
-@click.option("--workers", metavar="N", type=click.IntRange(min=1), help="CP-SAT's search workers.")
+@WORKERS
 @SEED
-@click.option("--json", "as_json", is_flag=True, help="Print JSON Lines, one solution per file.")
-def solve(
-    files: tuple[Path, ...],
-    output: Path | None,
-    solver: str,
-    search_space: str,
-    strands: int | None,
-    cover: float | None,
-    required: str | None,
-    left_alone: str | None,
-    tolerance: str | None,
-    every: bool,
-    fewest_cuts: bool,
-    warm_start: Path | None,
-    limit: int | None,
-    refine_until_stable: bool,
-    picture: Path | None,
-    time_limit: float | None,
-    workers: int | None,
-    seed: int,
-    as_json: bool,
-) -> int:
+@json_option("Print JSON Lines, one solution per file.")
+def solve(**given: Any) -> Exit:
     """Find the fewest segments of instances, labelled surfaces and scenes.
 
     FILE may be the name of a shipped one, such as wok: a file of that name goes first. That holds
     for the other commands as well; cellcolor.library() lists the names in Python.
     """
     begun = time.monotonic()
+    _check_solve(**given)
+
+    from cellcolor.cli.solving import Request, solve_files
+
+    return solve_files(Request(begun=begun, **given))
+
+
+def _check_solve(
+    files: tuple[Path, ...],
+    search_space: str,
+    strands: int | None,
+    every: bool,
+    limit: int | None,
+    refine: bool,
+    picture: Path | None,
+    **given: Any,
+) -> None:
+    """Refuse options that do not go together."""
     if strands is not None and search_space == "paper":
         raise click.UsageError("--strands needs --search-space surface")
     if limit is not None and not every:
         raise click.UsageError("--limit needs --all")
     if every and search_space == "surface":
         raise click.UsageError("--all needs --search-space paper: schemes are defined only there")
-    given = (cover, required, left_alone, warm_start, every or None)
-    if refine_until_stable and any(value is not None for value in given):
+    of_one_mesh = ("cover", "required", "left_alone", "warm_start")
+    if refine and (every or any(given[name] is not None for name in of_one_mesh)):
         raise click.UsageError(
             "--refine-until-stable excludes --cover, --required, --left-alone, --warm-start "
             "and --all: they are of a single mesh"
         )
-    if picture is not None and not (refine_until_stable and len(files) == 1):
+    if picture is not None and not (refine and len(files) == 1):
         raise click.UsageError("--picture needs --refine-until-stable and a single scene")
-    if warm_start is not None and len(files) > 1:
+    if given["warm_start"] is not None and len(files) > 1:
         raise click.UsageError("--warm-start takes a single file")
-    if required is not None and cover is None:
+    if given["required"] is not None and given["cover"] is None:
         raise click.UsageError("--required needs --cover: without it everything has to be")
-
-    from cellcolor.cli.inputs import read_wanted
-    from cellcolor.cli.solve import Request, solve_files
-    from cellcolor.solvers.interface import STRANDS, Options
-
-    space: SearchSpace = "surface" if search_space == "surface" else "paper"
-    options = Options(
-        space,
-        STRANDS[space] if strands is None else strands,
-        workers=workers,
-        seed=seed,
-        fewest_cuts=fewest_cuts,
-    )
-    request = Request(
-        files,
-        output,
-        solver,
-        options,
-        time_limit,
-        begun,
-        warm_start,
-        read_wanted(cover, required, left_alone),
-        tolerance,
-        every,
-        limit or 1000,
-        refine_until_stable,
-        picture,
-        as_json,
-    )
-    return solve_files(request)
 
 
 @cellcolor.command()
@@ -200,6 +162,7 @@ def solve(
 @click.argument("claim", metavar="SOLUTION.json|PLAN.json|TRAJECTORY", type=click.Path())
 @click.option(
     "--time-limit",
+    "seconds",
     metavar="S",
     type=SECONDS,
     default=60.0,
@@ -228,18 +191,8 @@ def solve(
     is_flag=True,
     help="For a plan: exit code 1 if it can be beaten, 3 if that is open.",
 )
-@click.option("--json", "as_json", is_flag=True, help="One JSON object.")
-def check(
-    subject: str,
-    claim: str,
-    time_limit: float,
-    left_alone: str | None,
-    tolerance: str | None,
-    cache: Path | None,
-    better: Path | None,
-    require_optimal: bool,
-    as_json: bool,
-) -> int:
+@json_option("One JSON object.")
+def check(seconds: float, **given: Any) -> Exit:
     """Check a solution, a plan on a labelled surface, or a trajectory for a scene.
 
     FILE is what was solved, an instance, a labelled surface or a scene; for a plan it leads to a
@@ -247,18 +200,14 @@ def check(
     input.
     """
     begun = time.monotonic()
-    if subject == claim == "-":
+    if given["subject"] == given["claim"] == "-":
         raise click.UsageError("only one of the two can be standard input (-)")
 
-    from cellcolor.cli.check import Request, check_files
-    from cellcolor.cli.check_plan import PlanDemands
+    from cellcolor.cli.checking import Request, check_files
     from cellcolor.deadline import Deadline
-    from cellcolor.questions.places import read_place
 
-    demands = PlanDemands(time_limit, cache, better, require_optimal)
-    deadline = Deadline.after(time_limit, begun)
-    place = None if left_alone is None else read_place(left_alone, "--left-alone")
-    return check_files(Request(subject, claim, deadline, demands, as_json, place, tolerance))
+    deadline = Deadline.after(seconds, begun)
+    return check_files(Request(seconds=seconds, deadline=deadline, **given))
 
 
 @cellcolor.command()
@@ -294,15 +243,8 @@ def check(
 )
 @click.option("--branch", metavar="NAME|ID", help="An inverse-kinematic branch.")
 def show(
-    files: tuple[Path, ...],
-    output: Path,
-    view: str | None,
-    color: str | None,
-    reason: bool,
-    graph: bool,
-    vertex: int | None,
-    branch: str | None,
-) -> int:
+    files: tuple[Path, ...], output: Path, view: str | None, reason: bool, graph: bool, **of: Any
+) -> Exit:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
     With a solution after what was solved, or a plan on its surface: by segment.
@@ -310,10 +252,10 @@ def show(
     if len(files) > 2:
         raise click.UsageError("give one file to show, or one with its solution or plan")
     implied = {
-        "color": color is not None,
+        "color": of["color"] is not None,
         "reasons": reason,
         "graph": graph,
-        "arm": vertex is not None,
+        "arm": of["vertex"] is not None,
         "segments": len(files) > 1,
     }
     asked = [name for name, is_asked in implied.items() if is_asked]
@@ -324,7 +266,34 @@ def show(
             "--color, --reason, --graph, --vertex and a solution exclude each other"
         )
 
-    from cellcolor.cli.show import show_files
+    from cellcolor.cli.inputs import open_file
+    from cellcolor.cli.interrupts import INTERRUPTS
+    from cellcolor.cli.terminal import say
+    from cellcolor.data.plan import Plan
+    from cellcolor.door.claims import format_of_claim
+    from cellcolor.door.drawing import View, draw, kind_of_picture, picture_of
+    from cellcolor.door.extras import extras_for
+    from cellcolor.errors import InputError
+    from cellcolor.files.writing import Output, check_output, write
 
+    kind = kind_of_picture(output)
+    check_output(output, kind, files)
     name = view or (asked[0] if asked else "cells")
-    return show_files(files, output, name, color, vertex, branch)
+    claim = files[1] if len(files) > 1 else None
+    if name == "segments" and claim is not None and format_of_claim(claim) == Plan.FORMAT:
+        name = "plan"
+    of["plan" if name == "plan" else "solution"] = claim
+    with extras_for(files[0]):
+        try:
+            chosen = View(name, **of)
+            picture = picture_of(chosen)
+        except InputError as error:  # what is wrong is an option, not a file
+            raise click.UsageError(str(error)) from error
+    subject = open_file(files[0])
+    with extras_for(output):
+        drawing = draw(picture, subject, chosen)
+        content = drawing.render(output.suffix)
+    INTERRUPTS.check()
+    write([Output(output, kind, [content])], files)
+    say(f"wrote {output}: {drawing}")
+    return Exit.DONE

@@ -24,13 +24,11 @@ from cellcolor.cli.search_end import Interrupted, end_the_search
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Solution, scheme_line
+from cellcolor.data.solution import SearchSpace, Solution, scheme_line
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture
-from cellcolor.door.leaving_out import Wanted
 from cellcolor.door.result import Result
-from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.files.writing import (
     Output,
@@ -41,58 +39,74 @@ from cellcolor.files.writing import (
     kind_of_format,
     write,
 )
-from cellcolor.solvers.interface import PORTFOLIO, Options
+from cellcolor.questions.places import Place
+from cellcolor.solvers.interface import PORTFOLIO, STRANDS, Options
 
 _SOLUTION = kind_of_format(Solution.FORMAT)
 _SURFACE = kind_of_format(LabelledSurface.FORMAT)
 _INSTANCE = kind_of_format(Instance.FORMAT)
+_SCHEMES = 1000  # that are listed unless --limit says otherwise
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Request:
-    """What the command line asked for.
+    """What the command line asked for: an attribute for each argument and option of ``solve``.
 
     Attributes:
-        files: what to solve.
-        output: a file, or a folder for several inputs; None writes nothing.
-        solver: the solver's name.
-        options: how to solve; every file gets a deadline of its own.
-        time_limit: seconds for each file, None for no limit.
         begun: when the command began, on the clock of ``time.monotonic``: what it took to start
             counts for the first file.
-        warm_start: a solution to start from.
-        wanted: what has to be covered.
-        tolerance: of scenes' parts.
-        every: all optimal schemes.
-        limit: with ``every``, no more schemes than that.
-        refine: whether scenes are refined until minimum and graph stay the same.
-        picture: of the steps of that.
-        as_json: JSON Lines instead of tables.
     """
 
     files: tuple[Path, ...]
     output: Path | None
     solver: str
-    options: Options
-    time_limit: float | None
-    begun: float
-    warm_start: Path | None
-    wanted: Wanted
+    search_space: SearchSpace
+    strands: int | None
+    cover: float | None
+    required: Place | None
+    left_alone: Place | None
     tolerance: str | None
     every: bool
-    limit: int
+    fewest_cuts: bool
+    warm_start: Path | None
+    limit: int | None
     refine: bool
     picture: Path | None
+    time_limit: float | None
+    workers: int | None
+    seed: int
     as_json: bool
+    begun: float
+
+    @property
+    def inputs(self) -> list[Path]:
+        """Files that are read."""
+        return [*self.files, *([] if self.warm_start is None else [self.warm_start])]
+
+    @property
+    def of_a_part(self) -> bool:
+        """Whether something is left out on purpose."""
+        return self.cover is not None or self.left_alone is not None
+
+    def options(self, deadline: Deadline = NEVER) -> Options:
+        """How the solver is asked."""
+        return Options(
+            self.search_space,
+            STRANDS[self.search_space] if self.strands is None else self.strands,
+            deadline=deadline,
+            workers=self.workers,
+            seed=self.seed,
+            fewest_cuts=self.fewest_cuts,
+        )
 
 
 def solve_files(request: Request) -> Exit:
     """Solve every file; a bad one does not stop the others."""
     targets = _targets(request)
     if request.picture is not None:
-        check_output(request.picture, kind_of_picture(request.picture), _inputs(request))
+        check_output(request.picture, kind_of_picture(request.picture), request.inputs)
     _check_able(request)
-    _warn_of_workers(request.options.workers)
+    _warn_of_workers(request.workers)
     with apart_from(request.output):
         return _solve_files(request, targets)
 
@@ -105,10 +119,7 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
         deadline = Deadline.after(request.time_limit, begun)
         begun = None
         try:
-            subject = read_subject(file, deadline, request.tolerance)
-            subject.graph(deadline)
-            options = replace(request.options, deadline=deadline)
-            result = _solve(subject, file, target, request, options)
+            result = _solve(file, target, request, deadline)
         except Interrupted:
             _say_failed(request, file, f"{file}: interrupted, nothing found yet")
             codes.append(Exit.STOPPED)
@@ -123,29 +134,8 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
             _say_failed(request, file, str(error) if named else f"{file}: {error}")
             codes.append(Exit.BAD_INPUT)
             continue
-        instance, solution, refinement = result.instance, result.solution, result.refinement
-        wrong = contradictions(instance, solution)
-        if request.as_json:
-            fault = {"error": "; ".join(wrong)} if wrong else {}
-            share = {} if request.wanted.everything else {"covered_share": result.covered_share}
-            steps = {} if refinement is None else {"refinement": refinement.to_document()}
-            print_json({"file": str(file)} | solution.to_document() | share | steps | fault)
-        else:
-            for line in [] if refinement is None else str(refinement).split("\n")[:-1]:
-                say(line)
-            print_solution(instance, solution)
-        for problem in wrong:
-            complain(f"{file}: contradiction: {problem}")
-        if instance.nothing_to_cover:
-            complain(f"{file}: {nothing_to_cover(instance)}")
-        solved.append((file, instance, solution))
-        done = (
-            solution.status == "optimal"
-            and solution.complete is not False
-            and solution.cutting_paths == solution.cutting_paths_lower_bound
-            and (refinement is None or refinement.stable)
-        )
-        codes.append(Exit.INVALID if wrong else Exit.DONE if done else Exit.STOPPED)
+        solved.append((file, result.instance, result.solution))
+        codes.append(_told(request, file, result))
         if INTERRUPTS.seen or (target is None and unheard()):
             break
     if len(codes) < len(request.files):
@@ -155,18 +145,44 @@ def _solve_files(request: Request, targets: list[Path | None]) -> Exit:
     return worst(codes)
 
 
+def _told(request: Request, file: Path, result: Result) -> Exit:
+    """Print one result; the exit code that it stands for."""
+    instance, solution, refinement = result.instance, result.solution, result.refinement
+    wrong = contradictions(instance, solution)
+    if request.as_json:
+        fault = {"error": "; ".join(wrong)} if wrong else {}
+        share = {"covered_share": result.covered_share} if request.of_a_part else {}
+        steps = {} if refinement is None else {"refinement": refinement.to_document()}
+        print_json({"file": str(file)} | solution.to_document() | share | steps | fault)
+    else:
+        for line in [] if refinement is None else str(refinement).split("\n")[:-1]:
+            say(line)
+        print_solution(instance, solution)
+    for problem in wrong:
+        complain(f"{file}: contradiction: {problem}")
+    if instance.nothing_to_cover:
+        complain(f"{file}: {nothing_to_cover(instance)}")
+    if wrong:
+        return Exit.INVALID
+    return Exit.done_if(
+        solution.status == "optimal"
+        and solution.complete is not False
+        and solution.cutting_paths == solution.cutting_paths_lower_bound
+        and (refinement is None or refinement.stable)
+    )
+
+
 def _check_able(request: Request) -> None:
     """Refuse at once what the solver cannot do for any file.
 
     What every solver can do is not asked about: bad input has to import no solver.
     """
-    space, cuts = request.options.search_space, request.options.fewest_cuts
     start = request.warm_start is not None
-    if request.every or start or cuts or space != "paper":
+    if request.every or start or request.fewest_cuts or request.search_space != "paper":
         from cellcolor.solvers.checked import check_able
 
         try:
-            check_able(request.solver, request.options, start=start, schemes=request.every)
+            check_able(request.solver, request.options(), start=start, schemes=request.every)
         except InputError as error:
             raise click.UsageError(str(error)) from error
 
@@ -190,7 +206,7 @@ def _targets(request: Request) -> list[Path | None]:
     if output is None:
         return [None] * len(request.files)
     if len(request.files) == 1 and not is_folder(output):
-        check_output(output, _SOLUTION, _inputs(request))
+        check_output(output, _SOLUTION, request.inputs)
         return [output]
     there = is_folder_or_nothing(output)
     suffix = ".solution.jsonl" if request.every else ".solution.json"
@@ -200,48 +216,40 @@ def _targets(request: Request) -> list[Path | None]:
             other = request.files[targets.index(target)]
             raise click.UsageError(f"{other} and {request.files[number]} would both go to {target}")
         if there:
-            check_output(target, _SOLUTION, _inputs(request))
+            check_output(target, _SOLUTION, request.inputs)
     return list(targets)
 
 
-def _inputs(request: Request) -> list[Path]:
-    return [*request.files, *([] if request.warm_start is None else [request.warm_start])]
+def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline) -> Result:
+    """Solve one file and write what was found."""
+    subject = read_subject(file, deadline, request.tolerance)
+    instance = subject.graph(deadline)
 
-
-def _solve(
-    subject: Subject,
-    file: Path,
-    target: Path | None,
-    request: Request,
-    options: Options,
-) -> Result:
-    """Solve one instance and write what was found."""
     from cellcolor.door.solving import solve
     from cellcolor.solvers.checked import check_able_to_list
 
-    instance = subject.graph()
     if request.every:
         check_able_to_list(request.solver, instance)
     with progress_of(file) as report, end_the_search():
         result = solve(
             subject,
             solver=request.solver,
-            search_space=options.search_space,
-            strands=options.strands,
-            time_limit=options.deadline,
-            workers=options.workers,
-            seed=options.seed,
-            fewest_cuts=options.fewest_cuts,
+            search_space=request.search_space,
+            strands=request.options().strands,
+            time_limit=deadline,
+            workers=request.workers,
+            seed=request.seed,
+            fewest_cuts=request.fewest_cuts,
             start=request.warm_start,
-            cover=request.wanted.cover,
-            required=request.wanted.required,
-            left_alone=request.wanted.left_alone,
+            cover=request.cover,
+            required=request.required,
+            left_alone=request.left_alone,
             refine_until_stable=request.refine,
             progress=report,
         )
     solution = result.solution
     beside = []
-    other = request.refine or not request.wanted.everything
+    other = request.refine or request.of_a_part
     if target is not None and not is_stream(target) and other:
         beside = [_solved(result, target)]
     if request.picture is not None:
@@ -252,19 +260,19 @@ def _solve(
         if target is not None:
             _make_folder(target)
             content = [solution.to_json().encode()]
-            write([*beside, Output(target, _SOLUTION, content)], _inputs(request))
+            write([*beside, Output(target, _SOLUTION, content)], request.inputs)
         return result
     with _spool(target) as spool:
         if INTERRUPTS.seen:
             solution = replace(solution, schemes=0, complete=False)
         else:
             with scheme_progress_of(file) as count, end_the_search():
-                solution = _with_schemes(result.instance, solution, request, options, spool, count)
+                solution = _with_schemes(result.instance, solution, request, deadline, spool, count)
         if target is not None and spool is not None:
             spool.seek(0)
             head = json.dumps(solution.to_document(), ensure_ascii=False) + "\n"
             output = Output(target, _SOLUTION, chain([head.encode()], spool))
-            write([*beside, output], _inputs(request))
+            write([*beside, output], request.inputs)
     return replace(result, solution=solution)
 
 
@@ -309,7 +317,7 @@ def _with_schemes(
     instance: Instance,
     solution: Solution,
     request: Request,
-    options: Options,
+    deadline: Deadline,
     spool: IO[bytes] | None,
     report: Callable[[int], None] | None,
 ) -> Solution:
@@ -327,8 +335,9 @@ def _with_schemes(
     # between leaves no scheme uncounted and none in half.
     found = (0, 0)
     try:
+        options, most = request.options(deadline), request.limit or _SCHEMES
         for division in enumerate_schemes(instance, options, request.solver, solution.segments):
-            if found[0] == request.limit:
+            if found[0] == most:
                 complete = False
                 break
             if spool is not None:

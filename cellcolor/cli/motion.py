@@ -1,0 +1,300 @@
+"""From a solution to a motion: ``paint``, ``cover`` and ``plan``."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from cellcolor.cli.exits import Ended, Exit
+from cellcolor.cli.options import (
+    COVER,
+    INPUT,
+    LEFT_ALONE,
+    METRES,
+    PATH,
+    REQUIRED,
+    TIME_LIMIT,
+    TOLERANCE,
+    cellcolor,
+    motion_options,
+    one_of,
+)
+from cellcolor.deadline import Deadline
+from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
+
+if TYPE_CHECKING:
+    from cellcolor.door.subject import Subject
+    from cellcolor.door.unfinished import UnfinishedPlan
+    from cellcolor.painting.border_report import BorderReport
+    from cellcolor.painting.paint import Painted
+
+_FAULTS = 5  # that plan prints
+_PATTERN = click.option(
+    "--pattern",
+    metavar="NAME",
+    callback=one_of(pattern_names),
+    default=DEFAULT_PATTERN,
+    show_default=True,
+    help=f"Pattern of the tool paths: {', '.join(PATTERNS)}, or what another package registers.",
+)
+
+
+@cellcolor.command()
+@click.argument("source", metavar="FILE", type=INPUT)
+@click.argument("claim", metavar="SOLUTION.json", type=PATH)
+@click.option(
+    "-o",
+    "--output",
+    metavar="OUT.surface.json",
+    required=True,
+    type=PATH,
+    help="The painted surface; its plan is written beside it as OUT.plan.json.",
+)
+@click.option(
+    "--tool-radius",
+    metavar="M",
+    type=float,
+    help="Of the tool's footprint, m: corridors are made as wide as that where possible.  "
+    "[default: the scene's, or one mean mesh edge]",
+)
+@TIME_LIMIT
+def paint(
+    source: Path, claim: Path, output: Path, tool_radius: float | None, time_limit: Deadline
+) -> Exit:
+    """Paint every vertex of a surface in the colors of a solution.
+
+    FILE is a labelled surface, a scene, or an instance that names its surface. Where a cell is
+    divided and its mesh is too coarse for that, the surface is refined. Borders between segments
+    are then moved, so that corridors are wide and borders short.
+    """
+    from cellcolor.cli.inputs import read_subject
+    from cellcolor.cli.painted_files import check_painted, write_painted
+    from cellcolor.cli.terminal import say
+    from cellcolor.data.solution import Solution
+    from cellcolor.data.wording import count
+    from cellcolor.deadline import OutOfTime
+    from cellcolor.door.painting import paint as painted_of
+    from cellcolor.errors import InputError
+
+    inputs = [source, claim]
+    plan_path = check_painted(output, inputs)
+    solution = Solution.read(claim)
+    if tool_radius is not None and not 0 < tool_radius < math.inf:
+        raise InputError(None, "--tool-radius", "must be a positive number of meters")
+    try:
+        subject = read_subject(source, time_limit)
+        if subject.surface_path is not None:  # of an instance: what it names is read as well
+            inputs.append(subject.surface_path)
+        check_painted(output, inputs)
+        painted = painted_of(subject, solution, tool_radius_m=tool_radius, time_limit=time_limit)
+    except OutOfTime as error:
+        message = f"{source}: not painted: the time limit came first; nothing is written"
+        raise Ended(message) from error
+    except InputError as error:
+        raise error if error.file else error.in_file(str(claim)) from error
+    write_painted(painted, output, inputs)
+    added = len(painted.surface.vertices) - len(subject.surface.vertices)
+    refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
+    lift_offs = count(max(0, painted.segments - 1), "lift-off")
+    say(f"wrote {output}: {count(painted.segments, 'segment')}, {lift_offs}{refined}")
+    say(f"wrote {plan_path}")
+    for line in _about(painted):
+        say(f"  {line}")
+    return Exit.DONE
+
+
+def _about(painted: Painted) -> Iterator[str]:
+    """Borders of a painting, what a scene refused of it, and segments that are one on the mesh."""
+    from cellcolor.data.wording import count, listed
+
+    if painted.borders is not None and painted.segments > 1:
+        yield from _borders(painted.borders)
+    if len(painted.minima) > 1:
+        yield f"the scene rejects copied colors: {count(painted.minima[0], 'segment')} as solved,"
+        yield f"{painted.segments} after solving again with the true colors of the refined surface"
+    if painted.refused:
+        refused = count(len(painted.refused), "vertex", "vertices")
+        first = painted.refused[0]
+        yield f"the scene refuses {refused} of the painting all the same, {first} first"
+    for group in painted.merged:
+        yield f"segments {listed(group)} of the solution touch in one color: painted, they are one"
+
+
+def _borders(report: BorderReport) -> Iterator[str]:
+    from cellcolor.data.wording import count
+
+    before, after = report.before, report.after
+    yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
+    if after.narrowest is not None:
+        x, y, z = after.narrowest.place
+        width, number = after.narrowest.width_m, after.narrowest.segment
+        place = f"({x:.4g}, {y:.4g}, {z:.4g})"
+        yield f"narrowest corridor: {width:.4g} m at {place}, of segment {number}"
+    tool = f"a footprint of radius {report.tool_radius_m:.4g} m"
+    if report.stays_inside:
+        yield f"{tool} stays inside its segments"
+    else:
+        places = f", {count(after.narrow, 'corridor')} too narrow" if after.narrow else ""
+        yield f"{tool} passes over {after.repeated_m2:.3g} m² of other segments{places}"
+
+
+@cellcolor.command()
+@click.argument("source", metavar="SURFACE.json", type=INPUT)
+@click.argument("plan", metavar="PLAN.json", type=PATH)
+@_PATTERN
+@click.option(
+    "--spacing-m",
+    metavar="M",
+    required=True,
+    type=METRES,
+    help="Desired distance between neighboring passes.",
+)
+@click.option(
+    "--tool-radius-m", metavar="M", required=True, type=METRES, help="Of the tool's footprint."
+)
+@click.option("-o", "--output", metavar="PATHS.json", required=True, type=PATH, help="The paths.")
+@TIME_LIMIT
+def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
+    """Lay a tool path on every segment of a painted surface, without a robot.
+
+    SURFACE.json and PLAN.json are what paint writes. Each segment is covered without lifting off.
+    """
+    from cellcolor.cli.progress import stages_of
+    from cellcolor.cli.terminal import say
+    from cellcolor.data.plan import Plan
+    from cellcolor.data.surface import LabelledSurface
+    from cellcolor.data.tool_paths import ToolPaths
+    from cellcolor.data.wording import count
+    from cellcolor.deadline import OutOfTime
+    from cellcolor.door.covering import cover as covered_of
+    from cellcolor.errors import InputError
+    from cellcolor.files.writing import Output, check_output, kind_of_format, write
+
+    inputs, kind = [source, plan], kind_of_format(ToolPaths.FORMAT)
+    check_output(output, kind, inputs)
+    surface, colors = LabelledSurface.read(source), Plan.read(plan)
+    try:
+        with stages_of(source, "covering") as report:
+            found = covered_of(surface, colors, progress=report, **wanted)
+    except OutOfTime as error:
+        message = f"{source}: not covered: the time limit came first; nothing is written"
+        raise Ended(message) from error
+    except InputError as error:
+        raise error if error.file or error.field else error.in_file(str(plan)) from error
+    write([Output(output, kind, [found.paths.to_json().encode()])], inputs)
+    say(f"wrote {output}: {found}")
+    for path, measures in zip(found.paths.paths, found.measures, strict=True):
+        say(f"  segment {path.segment}: {measures}")
+    for place in found.uncovered[:3]:
+        say(f"  uncovered: {place}")
+    if (more := len(found.uncovered) - 3) > 0:
+        say(f"  and {count(more, 'smaller place')}")
+    return Exit.DONE
+
+
+@cellcolor.command()
+@click.argument("scene", metavar="SCENE.toml", type=INPUT)
+@click.option(
+    "-o",
+    "--output",
+    metavar="FOLDER",
+    required=True,
+    type=PATH,
+    help="Folder for all files; it is created if it does not exist.",
+)
+@_PATTERN
+@COVER
+@REQUIRED
+@LEFT_ALONE
+@TOLERANCE
+@click.option(
+    "--ask",
+    metavar="QUESTION",
+    multiple=True,
+    help="What report.html is to tell besides: tradeoff, explain, place or setups. May be given "
+    "several times.",
+)
+@TIME_LIMIT
+@motion_options
+def plan(scene: Path, output: Path, tolerance: str | None, **wanted: Any) -> Exit:
+    """Plan a motion over a scene's object with the fewest lift-offs, and have it judged.
+
+    FOLDER gets the proof, the painted surface, tool paths, the trajectory, the verdict on it, files
+    for other programs, and report.html to look at. The options below --time-limit replace keys of
+    the setup's table [motion].
+    """
+    if wanted["required"] is not None and wanted["cover"] is None:
+        raise click.UsageError("--required needs --cover: without it everything has to be")
+
+    from cellcolor.cli.inputs import with_tolerance
+    from cellcolor.cli.interrupts import INTERRUPTS
+    from cellcolor.cli.progress import at_work
+    from cellcolor.cli.terminal import say, say_lines
+    from cellcolor.data.wording import count
+    from cellcolor.door.plan_files import KINDS, check_folder
+    from cellcolor.door.planning import plan as planned_of
+    from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime
+
+    check_folder(output, [scene])
+    INTERRUPTS.check()
+    late = "not planned: the time limit came before the topological graph was known"
+    try:
+        with at_work(scene, "planning", late) as report:
+            planned = planned_of(
+                scene if tolerance is None else with_tolerance(scene, tolerance),
+                progress=report,
+                **{key: value for key, value in wanted.items() if value is not None},
+            )
+            report("files and page")
+            begun = time.perf_counter()
+            planned.save(output)
+            stages = {**planned.seconds, "files and page": time.perf_counter() - begun}
+    except NothingCovered as error:
+        say_lines(error.report)
+        raise
+    except Ended as end:
+        if isinstance(end.__cause__, PlanOutOfTime):
+            return _unfinished(scene, output, end.__cause__.unfinished)
+        raise
+    INTERRUPTS.check()
+    _warn(scene, planned.subject)
+    say_lines(planned)
+    verdict = planned.verdict
+    for fault in verdict.faults[:_FAULTS]:
+        say(f"  {fault}")
+    spent = ", ".join(f"{stage} {seconds:.2f}" for stage, seconds in stages.items())
+    say(f"seconds  {sum(stages.values()):.2f}: {spent}")
+    say(f"wrote {count(len(KINDS), 'file')} to {output}: look at {output / 'report.html'}")
+    if set(verdict.fault_counts) - {"unplanned"}:
+        return Exit.INVALID
+    return Exit.done_if(verdict.valid and planned.solution.status == "optimal")
+
+
+def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
+    """Write what there is when the time limit came, and say what is missing."""
+    from cellcolor.cli.terminal import complain, say
+    from cellcolor.data.wording import count
+    from cellcolor.errors import InputError
+
+    _warn(scene, unfinished.subject)
+    complain(f"{scene}: not planned to the end: {unfinished.missing}")
+    try:
+        written = unfinished.save(folder)
+    except InputError as error:
+        raise Ended(f"nothing is written: {error}") from error
+    if unfinished.result is not None:
+        say(str(unfinished.result))
+    say(f"wrote {count(len(written), 'file')} to {folder}: look at {folder / 'report.html'}")
+    return Exit.STOPPED
+
+
+def _warn(scene: Path, subject: Subject) -> None:
+    from cellcolor.cli.terminal import complain
+
+    for warning in subject.warnings:
+        complain(f"{scene}: warning: {warning}")

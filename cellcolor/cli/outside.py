@@ -1,0 +1,241 @@
+"""Graphs for and from other programs: ``export``, ``answer``, ``import`` and ``library``."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from cellcolor.cli.exits import Exit
+from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option
+
+if TYPE_CHECKING:
+    from cellcolor.data.instance import Instance
+    from cellcolor.data.library_index import LibraryEntry
+    from cellcolor.data.solution import Solution
+    from cellcolor.solvers.answers import OutsideAnswer
+
+_FORMATS = ("opb", "wcnf", "mps", "dzn", "lp")
+
+
+@cellcolor.command()
+@click.argument("source", metavar="FILE", type=INPUT)
+@click.option("-o", "--output", metavar="OUT", required=True, type=PATH, help="The model's file.")
+@click.option(
+    "--format",
+    "kind",
+    type=click.Choice(_FORMATS),
+    help="opb: pseudo-Boolean. wcnf: MaxSAT. mps: mixed-integer programs. dzn: data for MiniZinc. "
+    "lp: facts for answer set programs.  [default: from the ending of OUT]",
+)
+def export(source: Path, output: Path, kind: str | None) -> Exit:
+    """Write an instance for a solver from outside, in the search space paper.
+
+    FILE is an instance, a labelled surface or a scene. What the solver answers, the command answer
+    turns into a solution.
+    """
+    kind = kind or output.suffix.removeprefix(".")
+    if kind not in _FORMATS:
+        endings = ", ".join(f".{name}" for name in _FORMATS)
+        message = f"{output} does not end in any of {endings}."
+        raise click.BadParameter(message, param_hint="-o")
+
+    from cellcolor.cli.inputs import read_instance
+    from cellcolor.cli.terminal import apart_from, say
+    from cellcolor.errors import InputError
+    from cellcolor.files.writing import Output, check_output, write
+    from cellcolor.solvers.portable import PORTABLE
+
+    form = PORTABLE[kind]
+    check_output(output, form.kind, [source])
+    with apart_from(output):
+        instance = read_instance(source)
+        try:
+            lines = form.write(instance)
+        except InputError as error:
+            raise error.in_file(str(source)) from error
+        content = (f"{line}\n".encode() for line in lines)
+        write([Output(output, form.kind, content)], [source])
+        say(f"wrote {output}, for {form.about}")
+    return Exit.DONE
+
+
+@cellcolor.command()
+@click.argument("source", metavar="FILE", type=INPUT)
+@click.argument("given", metavar="ANSWER", type=PATH)
+@click.option(
+    "--format",
+    "kind",
+    type=click.Choice(_FORMATS),
+    required=True,
+    help="The format that the solver was given: opb and wcnf for lines v, mps for a file of names "
+    "and values, dzn for what coloring.mzn prints, lp for what clingo prints.",
+)
+@click.option(
+    "-o", "--output", metavar="SOLUTION.json", required=True, type=PATH, help="The solution."
+)
+def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
+    """Turn the answer of a solver from outside into a solution, once the checker has passed it.
+
+    FILE is what was exported. An answer is no proof: the solution has no bounds, and says so if the
+    solver claims the optimum.
+    """
+    from cellcolor.cli.inputs import read_instance
+    from cellcolor.cli.terminal import apart_from, say
+    from cellcolor.data.solution import Solution
+    from cellcolor.data.wording import count
+    from cellcolor.errors import InputError
+    from cellcolor.files.documents import read_text
+    from cellcolor.files.writing import Output, check_output, kind_of_format, write
+    from cellcolor.solvers.answers import read_answer
+
+    inputs, form = [source, given], kind_of_format(Solution.FORMAT)
+    check_output(output, form, inputs)
+    with apart_from(output):
+        instance = read_instance(source)
+        try:
+            solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
+        except InputError as error:
+            raise error.in_file(str(given)) from error
+        write([Output(output, form, [solution.to_json().encode()])], inputs)
+        say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
+        for note in solution.notes:
+            say(note)
+    return Exit.DONE
+
+
+def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
+    """The solution, seen by the checker, with nothing in it that the answer does not prove."""
+    from cellcolor.checker.division import check_solution
+    from cellcolor.data.solution import InstanceReference, Solution, count_segments
+    from cellcolor.data.wording import count
+    from cellcolor.errors import InputError
+
+    segments = count_segments(found.division)
+    if found.segments is not None and segments > found.segments:
+        message = f"says {found.segments}, its division has {count(segments, 'segment')}"
+        raise InputError(None, "objective", message)
+    claim = "The external solver claims that no division has fewer segments; this is not a proof."
+    solution = Solution(
+        instance=InstanceReference(instance.name, instance.sha256),
+        search_space="paper",
+        strands=1,
+        solver=f"outside ({kind})",
+        status="feasible",
+        segments=segments,
+        lift_offs=max(0, segments - 1),
+        lower_bound=0,
+        surface_lower_bound=0,
+        proved_for_surface=segments == 0,
+        seams=found.seams,
+        cells=found.division,
+        seconds=0.0,
+        bounds=(),
+        coverage=instance.coverage,
+        notes=(claim,) if found.claims_optimum else (),
+    )
+    report = check_solution(instance, solution)
+    if not report.valid:
+        raise InputError(None, None, f"is not a legal division: {report.problems[0]}")
+    return solution
+
+
+@cellcolor.command(name="import")
+@click.argument("source", metavar="PROBLEM.txt", type=PATH)
+@click.option(
+    "-o", "--output", metavar="INSTANCE.json", required=True, type=PATH, help="The instance."
+)
+@click.option(
+    "--correct",
+    "corrections",
+    metavar="EDGE=A,B",
+    multiple=True,
+    help="Correct cells beside an edge if the file has them wrong, -1 for the outside.",
+)
+def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
+    """Make an instance of a graph in the text format of IMCGS, the paper's authors' solver.
+
+    It is named after INSTANCE.json. Files that contradict themselves are refused: what is wrong in
+    them is said by --correct, and written into the instance.
+    """
+    from cellcolor.cli.terminal import apart_from, say
+    from cellcolor.data.imcgs import read_imcgs
+    from cellcolor.data.instance import Instance
+    from cellcolor.door.shipped import library
+    from cellcolor.files.writing import Output, check_output, kind_of_format, write
+
+    kind = kind_of_format(Instance.FORMAT)
+    check_output(output, kind, [source])
+    instance = read_imcgs(source, corrections, output.name.removesuffix(".json"))
+    write([Output(output, kind, [instance.to_json().encode()])], [source])
+    with apart_from(output):
+        say(f"wrote {output}: {str(instance).partition(': ')[2]}")
+        for entry in library().index.entries:
+            if entry.fingerprint == instance.sha256:
+                say(f"This is {entry.name} of the library: {entry.paper} segments.")
+    return Exit.DONE
+
+
+@cellcolor.command()
+@click.option("--family", metavar="NAME", help="Only the graphs of this family.")
+@click.option(
+    "--open", "only_open", is_flag=True, help="Only graphs whose minimum is open in a search space."
+)
+@json_option("Print JSON Lines, one entry of the index per line.")
+def library(family: str | None, only_open: bool, as_json: bool) -> Exit:
+    """List the graphs of the instance library, with what is known of their minima.
+
+    Commands take them by name, and check takes the stored solution of one as NAME.solution.json.
+    """
+    from dataclasses import asdict
+
+    from rich import box
+    from rich.table import Table
+
+    from cellcolor.cli.tables import console
+    from cellcolor.cli.terminal import print_json
+    from cellcolor.data.wording import count, listed
+    from cellcolor.door.shipped import library as shipped
+    from cellcolor.errors import InputError
+
+    entries = shipped().index.entries
+    families = sorted({entry.family for entry in entries})
+    if family is not None and family not in families:
+        raise InputError(None, "--family", f"there is no {family!r}, only {listed(families)}")
+    chosen = [
+        entry
+        for entry in entries
+        if family in (None, entry.family) and (entry.is_open or not only_open)
+    ]
+    if as_json:
+        for entry in chosen:
+            print_json(asdict(entry))
+        return Exit.DONE
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    for name in ("name", "family"):
+        table.add_column(name, overflow="fold")
+    for name in ("cells", "darts", "loops", "colors", "holes", "paper", "any division", "verified"):
+        table.add_column(name, justify="right")
+    for entry in chosen:
+        table.add_row(*_row(entry))
+    console().print(table)
+    console().print(
+        f"{count(len(chosen), 'graph')}. darts, loops: live ones of the cell that has most; paper, "
+        "any division: where the fewest\nsegments lie; verified: the lower bound for any division "
+        "has a certificate of that kind, which needs no solver"
+    )
+    return Exit.DONE
+
+
+def _row(entry: LibraryEntry) -> list[str]:
+    numbers = (entry.cells, entry.darts, entry.loops, entry.colors, entry.holes)
+    lower = entry.surface.lower
+    return [
+        entry.name,
+        entry.family,
+        *map(str, numbers),
+        str(entry.paper),
+        str(entry.surface),
+        lower.kind if lower.verified else "",
+    ]
