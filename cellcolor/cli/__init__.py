@@ -10,8 +10,7 @@ import gc
 import os
 import sys
 
-from cellcolor.cli.exits import Exit
-from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.ending import INTERRUPTS, Exit
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import Any
 
 import click
 
-from cellcolor.cli.exits import Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import (
     CLUSTER,
     INPUT,
@@ -27,6 +27,9 @@ from cellcolor.cli.options import (
     json_option,
     ranges,
 )
+from cellcolor.cli.progress import at_work, workers_for
+from cellcolor.cli.terminal import drawn_to, print_json, say, say_lines
+from cellcolor.errors import InputError
 
 _POINTS = click.option(
     "--points",
@@ -48,7 +51,6 @@ _VERTICES = click.option(
 
 def _print(file: Path, rows: Iterable[Any], text: object, as_json: bool, **common: Any) -> None:
     """An answer: its rows as JSON Lines, or its text."""
-    from cellcolor.cli.terminal import print_json, say_lines
 
     if not as_json:
         say_lines(text)
@@ -96,8 +98,6 @@ def tradeoff(
     The share is one of the area that can be covered and is not left alone.
     """
     from cellcolor.cli.inputs import read_subject
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import drawn_to
     from cellcolor.door.asking import save_front
     from cellcolor.door.asking import tradeoff as front_of
     from cellcolor.questions.places import read_weights
@@ -132,7 +132,6 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     Of what saves a lift-off the least amount that does is printed too. Where nothing does alone,
     sets of two and three are tried. Everything is proved like the minimum itself.
     """
-    from cellcolor.cli.progress import at_work
     from cellcolor.door.asking import explain as explanation_of
 
     late = "the time limit came before the scene itself was solved"
@@ -223,9 +222,6 @@ def place(
 
     Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
     """
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import drawn_to
-    from cellcolor.cli.workers import workers_for
     from cellcolor.door.placing import place as placements_of
     from cellcolor.door.placing import save_map
 
@@ -282,8 +278,6 @@ def compare(
 
     Each arm gets the setup that ``cellcolor new`` begins with.
     """
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import drawn_to
     from cellcolor.door.comparing import compare as comparison_of
 
     late = "the time limit came before anything was known of an arm"
@@ -352,8 +346,6 @@ def setups(
 
     A set-up is the part in one place before one arm. SCENE as it stands is one of them.
     """
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import say
     from cellcolor.door.drawing import kind_of_picture
     from cellcolor.door.setting_up import setups as set_ups_of
 
@@ -382,7 +374,6 @@ def setups(
 
 def _places_in(file: Path) -> list[tuple[float, ...]]:
     """The placements of a file of JSON Lines that ``place`` has printed, without refused ones."""
-    from cellcolor.errors import InputError
     from cellcolor.files.documents import parse_json, read_text
 
     found = []

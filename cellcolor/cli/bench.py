@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import CLUSTER, JOBS, PATH, SECONDS, SEED, Commands, cellcolor
+from cellcolor.cli.progress import progress_bar
+from cellcolor.cli.terminal import complain, say, say_lines
+from cellcolor.errors import InputError
+from cellcolor.files.writing import PNG, SVG, Output, write
 from cellcolor.solvers.registry import DEFAULT, REFERENCE
+
+if TYPE_CHECKING:
+    from cellcolor.lab.runs.row import Row
+    from cellcolor.lab.runs.timings import Timing
 
 
 def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> tuple[int, ...]:
@@ -24,6 +35,8 @@ def _numbers(_context: click.Context, _option: click.Parameter, value: str) -> t
     return tuple(dict.fromkeys(found))
 
 
+_SMALL = "ring"
+"""The shipped instance that the start-up is measured with."""
 _TABLES = click.argument("tables", metavar="TABLE.csv…", nargs=-1, required=True, type=PATH)
 
 
@@ -94,7 +107,7 @@ def bench() -> None:
     type=PATH,
     help="A row for each run. An existing table is continued: its runs are not repeated.",
 )
-def run(output: Path | None, **given: Any) -> int:
+def run(output: Path | None, **given: Any) -> Exit:
     """Run solvers on instances, each solve in a process of its own.
 
     FAMILY is a set of random families (small, medium, large, growing), the library of shipped
@@ -108,11 +121,21 @@ def run(output: Path | None, **given: Any) -> int:
 
 @bench.command()
 @_TABLES
-def summary(tables: tuple[Path, ...]) -> int:
+def summary(tables: tuple[Path, ...]) -> Exit:
     """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
-    from cellcolor.cli.bench_tables import print_summary
+    from cellcolor.lab.runs.agreement import disagreements
+    from cellcolor.lab.runs.summary import summary_of_runs, summary_of_timings
 
-    return print_summary(tables)
+    rows, timings = _read(tables)
+    if rows:
+        say_lines("\n".join(summary_of_runs(rows)))
+    if rows and timings:
+        say_lines("\n## Other measurements\n")
+    if timings:
+        say_lines("\n".join(summary_of_timings(timings)))
+    if not rows and not timings:
+        raise InputError(str(tables[0]), None, "has no rows")
+    return Exit.INVALID if disagreements(rows) else Exit.DONE
 
 
 @bench.command()
@@ -125,11 +148,26 @@ def summary(tables: tuple[Path, ...]) -> int:
     required=True,
     help="Folder for the pictures, as PNG and SVG.",
 )
-def plots(tables: tuple[Path, ...], output: Path) -> int:
+def plots(tables: tuple[Path, ...], output: Path) -> Exit:
     """Draw tables: cactus, growth, scatter against the strongest rival, performance profile."""
-    from cellcolor.cli.bench_tables import draw_plots
+    from cellcolor.door.extras import extras_for
+    from cellcolor.lab.runs.series import plots_of
 
-    return draw_plots(tables, output)
+    with extras_for("plots"):
+        from cellcolor.pictures.plots import render_plot
+    rows, _ = _read(tables)
+    if not rows:
+        raise InputError(str(tables[0]), None, "has no runs of solvers")
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(str(output), None, error.strerror or "cannot be made") from error
+    for name, plot in plots_of(rows).items():
+        for suffix, kind in (("png", PNG), ("svg", SVG)):
+            file = output / f"{name}.{suffix}"
+            write([Output(file, kind, [render_plot(plot, suffix)])], tables)
+            say(file)
+    return Exit.DONE
 
 
 @bench.command()
@@ -142,11 +180,30 @@ def plots(tables: tuple[Path, ...], output: Path) -> int:
     help="Of each measurement.",
 )
 @click.option("-o", "--output", metavar="TABLE.csv", type=PATH, help="A row for each measurement.")
-def start_up(repetitions: int, output: Path | None) -> int:
+def start_up(repetitions: int, output: Path | None) -> Exit:
     """Measure how long the program takes to start."""
-    from cellcolor.cli.bench_tables import measure_start_up
+    from cellcolor.cli.bench_run import command_line
+    from cellcolor.door.shipped import find_file
+    from cellcolor.lab.runs.summary import summary_of_timings
+    from cellcolor.lab.runs.table import TableFile
+    from cellcolor.lab.runs.timings import START_UP, Timing, start_up_timings
 
-    return measure_start_up(repetitions, output)
+    made: list[Timing] = []
+    total = repetitions * len(START_UP)
+    with (
+        nullcontext() if output is None else TableFile(output, Timing) as file,
+        progress_bar(total) as advance,
+    ):
+        for one in start_up_timings(find_file(_SMALL), repetitions, command_line()):
+            made.append(one)
+            if file is not None:
+                file.append(one)
+            advance(len(made), one.subject)
+    say_lines("\n".join(summary_of_timings(made)))
+    failed = [one for one in made if one.status != "done"]
+    for one in failed:
+        complain(f"{one.subject}: {one.status}")
+    return Exit.STOPPED if failed else Exit.DONE
 
 
 @bench.command()
@@ -178,8 +235,24 @@ def start_up(repetitions: int, output: Path | None) -> int:
     show_default=True,
     help="Folder for disagreements.",
 )
-def campaign(**given: Any) -> int:
+def campaign(**given: Any) -> Exit:
     """Hold the solvers to each other on small instances; exit code 1 if they disagree."""
     from cellcolor.cli.campaign import run_campaign
 
     return run_campaign(**given)
+
+
+def _read(tables: Sequence[Path]) -> tuple[list[Row], list[Timing]]:
+    """The rows of all tables, by their kinds."""
+    from cellcolor.lab.runs.row import Row
+    from cellcolor.lab.runs.table import header_of, read_table
+    from cellcolor.lab.runs.timings import Timing
+
+    rows: list[Row] = []
+    timings: list[Timing] = []
+    for path in tables:
+        if header_of(path, (Row, Timing)) is Row:
+            rows += read_table(path, Row)
+        else:
+            timings += read_table(path, Timing)
+    return rows, timings

@@ -14,11 +14,11 @@ from pathlib import Path
 from rich import box
 from rich.table import Table
 
-from cellcolor.cli.exits import Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.inputs import read_instance
+from cellcolor.cli.progress import progress_bar, workers_for
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain, shown
-from cellcolor.cli.workers import progress_bar, workers_for
 from cellcolor.data.solution import SearchSpace
 from cellcolor.data.wording import count
 from cellcolor.door.shipped import find_file, library

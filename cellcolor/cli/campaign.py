@@ -9,10 +9,10 @@ from pathlib import Path
 from rich import box
 from rich.table import Table
 
-from cellcolor.cli.exits import Exit
+from cellcolor.cli.ending import Exit
+from cellcolor.cli.progress import progress_bar, workers_for
 from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain
-from cellcolor.cli.workers import progress_bar, workers_for
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError

@@ -9,11 +9,10 @@ from typing import TYPE_CHECKING
 
 from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_scheme
-from cellcolor.cli.exits import Exit
-from cellcolor.cli.inputs import read_subject
-from cellcolor.cli.painted_files import check_painted, write_painted
+from cellcolor.cli.ending import Exit
+from cellcolor.cli.inputs import STANDARD_INPUT, input_file, name_of, read_subject
+from cellcolor.cli.motion import check_painted, write_painted
 from cellcolor.cli.progress import stages_of
-from cellcolor.cli.standard_input import STANDARD_INPUT, input_file, name_of
 from cellcolor.cli.terminal import complain, print_json
 from cellcolor.cli.verdict_lines import say_better, say_plan, say_solution, say_trajectory
 from cellcolor.data.check_error import CheckError
@@ -24,8 +23,8 @@ from cellcolor.data.solution_verdict import CheckedBound, SolutionVerdict
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.door.claims import format_of_claim, read_trajectory
 from cellcolor.door.leaving_out import left_alone
+from cellcolor.door.reading import format_of_claim, read_trajectory
 from cellcolor.door.shipped import find_claim, find_file
 from cellcolor.door.subject import Subject
 from cellcolor.errors import CellcolorError, InputError

@@ -9,10 +9,10 @@ from collections.abc import Sequence
 import click
 
 from cellcolor.cli import ask, bench, minimum, motion, outside, parts  # noqa: F401, each adds its commands
-from cellcolor.cli.exits import Ended, Exit
-from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import cellcolor
 from cellcolor.cli.terminal import complain, guarded_streams, shortened, shown
+from cellcolor.deadline import OutOfTime
 from cellcolor.errors import CellcolorError
 
 
@@ -45,10 +45,7 @@ def _run(arguments: list[str]) -> Exit:
         return Exit.STOPPED
     except CellcolorError as error:
         complain(error)
-        return Exit.BAD_INPUT
-    except Ended as end:
-        complain(end)
-        return end.code
+        return Exit.STOPPED if isinstance(error, OutOfTime) else Exit.BAD_INPUT
     except MemoryError:
         complain("out of memory")
         return Exit.STOPPED

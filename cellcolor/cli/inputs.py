@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import re
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from math import radians
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.ending import INTERRUPTS
 from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain
 from cellcolor.data.instance import Instance
@@ -19,6 +23,8 @@ from cellcolor.errors import InputError
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
 
+STANDARD_INPUT = "-"
+_NAME = "standard input"
 _UNITS = {
     "mm": ("position_m", 1e-3),
     "m": ("position_m", 1.0),
@@ -91,3 +97,35 @@ def read_subject(path: Path, deadline: Deadline = NEVER, tolerance: str | None =
 def read_instance(path: Path, deadline: Deadline = NEVER) -> Instance:
     """An instance from anything that can be solved; see :func:`read_subject`."""
     return read_subject(path, deadline).graph(deadline)
+
+
+@contextmanager
+def input_file(given: str) -> Iterator[Path]:
+    """The file that a command was given, standard input having been copied into one.
+
+    Files are read more than once, which a pipe cannot be. What is wrong with the copy is said of
+    standard input.
+
+    Args:
+        given: the file's name, or ``-``; a file of that name is ``./-``.
+    """
+    if given != STANDARD_INPUT:
+        yield Path(given)
+        return
+    with tempfile.TemporaryDirectory(prefix="cellcolor-") as folder:
+        copy = Path(folder) / _NAME
+        try:
+            copy.write_bytes(b"" if sys.stdin is None else sys.stdin.buffer.read())
+        except OSError as error:
+            raise InputError(_NAME, None, error.strerror or "cannot be read") from error
+        try:
+            yield copy
+        except InputError as error:
+            if error.file != str(copy):
+                raise
+            raise error.in_file(_NAME) from error
+
+
+def name_of(given: str) -> str:
+    """What a file that a command was given is called in messages."""
+    return _NAME if given == STANDARD_INPUT else given

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import time
-from pathlib import Path
-from typing import Any
+from dataclasses import replace
+from pathlib import Path, PurePath
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from cellcolor.cli.exits import Exit
+from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
     COVER,
     INPUT,
@@ -23,8 +25,23 @@ from cellcolor.cli.options import (
     json_option,
     one_of,
 )
+from cellcolor.cli.terminal import apart_from, complain, say, say_lines
+from cellcolor.data.wording import count
+from cellcolor.deadline import Deadline
+from cellcolor.errors import InputError
+from cellcolor.files.writing import (
+    SIDE_FILE,
+    Output,
+    check_output,
+    is_stream,
+    kind_of_format,
+    write,
+)
 from cellcolor.pictures.registry import PICTURES
 from cellcolor.solvers.registry import DEFAULT, OWN_NAMES, REFERENCE, solver_names
+
+if TYPE_CHECKING:
+    from cellcolor.data.instance import Instance
 
 
 @cellcolor.command()
@@ -42,9 +59,75 @@ def build(source: Path, output: Path) -> Exit:
 
     For a scene the labelled surface is written as well, beside the instance.
     """
-    from cellcolor.cli.building import build_instance
+    from cellcolor.cli.tables import nothing_to_cover
+    from cellcolor.data.instance import Instance
+    from cellcolor.door.subject import is_scene
 
-    return build_instance(source, output)
+    check_output(output, kind_of_format(Instance.FORMAT), [source])
+    if is_scene(output):
+        message = "must not end in .toml: the other commands would take it for a scene"
+        raise InputError(str(output), None, message)
+    with apart_from(output):
+        instance = (_build_scene if is_scene(source) else _build_surface)(source, output)
+        say(
+            f"wrote {output}: {count(len(instance.cells), 'cell')}, "
+            f"{count(len(instance.edges), 'edge')}, {count(len(instance.colors), 'color')}"
+        )
+    if instance.nothing_to_cover:
+        complain(f"{source}: {nothing_to_cover(instance)}")
+        return Exit.STOPPED
+    return Exit.DONE
+
+
+def _build_scene(source: Path, output: Path) -> Instance:
+    from cellcolor.cli.inputs import open_file
+    from cellcolor.data.instance import Instance
+    from cellcolor.data.surface import LabelledSurface
+    from cellcolor.door.subject import Subject
+
+    stem = output.name.removesuffix(".json")
+    surface_path = output.with_name(f"{stem}.surface.json")
+    side_path = output.with_name(f"{stem}.reasons.npz")
+    alone = is_stream(output)  # nothing lies beside a pipe, and nothing can be named from there
+    if not alone:
+        check_output(surface_path, kind_of_format(LabelledSurface.FORMAT), [source])
+        check_output(side_path, SIDE_FILE, [source])
+    built = open_file(source).built
+    assert built is not None
+    surface = replace(built.surface, meta=built.surface.meta | {"side_file": side_path.name})
+    named = Subject(source, built, surface)
+    instance = named.decomposed(None if alone else surface_path.name).instance
+    files = [Output(output, kind_of_format(Instance.FORMAT), [instance.to_json().encode()])]
+    if not alone:
+        # The instance last: it carries the fingerprint of its surface.
+        files = [
+            Output(side_path, SIDE_FILE, [built.candidates.to_bytes()]),
+            Output(
+                surface_path, kind_of_format(LabelledSurface.FORMAT), [surface.to_json().encode()]
+            ),
+            *files,
+        ]
+    write(files, [source])
+    say_lines(built.report)
+    for file in files[:-1]:
+        say(f"wrote {file.path}")
+    return instance
+
+
+def _build_surface(source: Path, output: Path) -> Instance:
+    from cellcolor.cli.inputs import open_file
+    from cellcolor.data.instance import Instance
+
+    found = open_file(source)
+    if found.given_instance is not None:
+        raise InputError(str(source), "format", "is an instance already")
+    relative = os.path.relpath(source.resolve(), output.parent.resolve())
+    reference = None if is_stream(output) else PurePath(relative).as_posix()
+    instance = found.decomposed(reference).instance
+    write(
+        [Output(output, kind_of_format(Instance.FORMAT), [instance.to_json().encode()])], [source]
+    )
+    return instance
 
 
 @cellcolor.command()
@@ -204,7 +287,6 @@ def check(seconds: float, **given: Any) -> Exit:
         raise click.UsageError("only one of the two can be standard input (-)")
 
     from cellcolor.cli.checking import Request, check_files
-    from cellcolor.deadline import Deadline
 
     deadline = Deadline.after(seconds, begun)
     return check_files(Request(seconds=seconds, deadline=deadline, **given))
@@ -267,14 +349,10 @@ def show(
         )
 
     from cellcolor.cli.inputs import open_file
-    from cellcolor.cli.interrupts import INTERRUPTS
-    from cellcolor.cli.terminal import say
     from cellcolor.data.plan import Plan
-    from cellcolor.door.claims import format_of_claim
     from cellcolor.door.drawing import View, draw, kind_of_picture, picture_of
     from cellcolor.door.extras import extras_for
-    from cellcolor.errors import InputError
-    from cellcolor.files.writing import Output, check_output, write
+    from cellcolor.door.reading import format_of_claim
 
     kind = kind_of_picture(output)
     check_output(output, kind, files)

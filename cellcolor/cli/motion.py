@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from cellcolor.cli.exits import Ended, Exit
+from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import (
     COVER,
     INPUT,
@@ -24,15 +24,21 @@ from cellcolor.cli.options import (
     motion_options,
     one_of,
 )
-from cellcolor.deadline import Deadline
+from cellcolor.cli.progress import at_work, stages_of
+from cellcolor.cli.terminal import complain, say, say_lines
+from cellcolor.data.wording import count, listed
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import InputError
+from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
 
 if TYPE_CHECKING:
+    from cellcolor.door.planning import UnfinishedPlan
     from cellcolor.door.subject import Subject
-    from cellcolor.door.unfinished import UnfinishedPlan
     from cellcolor.painting.border_report import BorderReport
     from cellcolor.painting.paint import Painted
 
+_ENDING = ".surface.json"
 _FAULTS = 5  # that plan prints
 _PATTERN = click.option(
     "--pattern",
@@ -73,13 +79,8 @@ def paint(
     are then moved, so that corridors are wide and borders short.
     """
     from cellcolor.cli.inputs import read_subject
-    from cellcolor.cli.painted_files import check_painted, write_painted
-    from cellcolor.cli.terminal import say
     from cellcolor.data.solution import Solution
-    from cellcolor.data.wording import count
-    from cellcolor.deadline import OutOfTime
     from cellcolor.door.painting import paint as painted_of
-    from cellcolor.errors import InputError
 
     inputs = [source, claim]
     plan_path = check_painted(output, inputs)
@@ -94,7 +95,7 @@ def paint(
         painted = painted_of(subject, solution, tool_radius_m=tool_radius, time_limit=time_limit)
     except OutOfTime as error:
         message = f"{source}: not painted: the time limit came first; nothing is written"
-        raise Ended(message) from error
+        raise OutOfTime(message) from error
     except InputError as error:
         raise error if error.file else error.in_file(str(claim)) from error
     write_painted(painted, output, inputs)
@@ -110,7 +111,6 @@ def paint(
 
 def _about(painted: Painted) -> Iterator[str]:
     """Borders of a painting, what a scene refused of it, and segments that are one on the mesh."""
-    from cellcolor.data.wording import count, listed
 
     if painted.borders is not None and painted.segments > 1:
         yield from _borders(painted.borders)
@@ -126,7 +126,6 @@ def _about(painted: Painted) -> Iterator[str]:
 
 
 def _borders(report: BorderReport) -> Iterator[str]:
-    from cellcolor.data.wording import count
 
     before, after = report.before, report.after
     yield f"borders: {after.length_m:.4g} m, {before.length_m:.4g} m as first drawn"
@@ -141,6 +140,46 @@ def _borders(report: BorderReport) -> Iterator[str]:
     else:
         places = f", {count(after.narrow, 'corridor')} too narrow" if after.narrow else ""
         yield f"{tool} passes over {after.repeated_m2:.3g} m² of other segments{places}"
+
+
+def check_painted(output: Path, inputs: Sequence[Path]) -> Path:
+    """Refuse a place where a painting cannot be written; returns that of its plan.
+
+    Args:
+        output: the surface's file, with the ending ``.surface.json``.
+        inputs: files that the same command reads.
+
+    Raises:
+        InputError: with the reason.
+    """
+    from cellcolor.data.plan import Plan
+    from cellcolor.data.surface import LabelledSurface
+
+    if not output.name.endswith(_ENDING) or is_stream(output):
+        raise InputError(str(output), None, f"must be a file with the ending {_ENDING}")
+    plan_path = output.with_name(output.name.removesuffix(_ENDING) + ".plan.json")
+    check_output(output, kind_of_format(LabelledSurface.FORMAT), inputs)
+    check_output(plan_path, kind_of_format(Plan.FORMAT), inputs)
+    return plan_path
+
+
+def write_painted(painted: Painted, output: Path, inputs: Sequence[Path]) -> None:
+    """Write both files, or after a failure none; see :func:`check_painted`."""
+    from cellcolor.data.plan import Plan
+    from cellcolor.data.surface import LabelledSurface
+
+    plan_path = check_painted(output, inputs)
+    write(
+        [
+            Output(plan_path, kind_of_format(Plan.FORMAT), [painted.plan.to_json().encode()]),
+            Output(
+                output,
+                kind_of_format(LabelledSurface.FORMAT),
+                [painted.surface.to_json().encode()],
+            ),
+        ],
+        inputs,
+    )
 
 
 @cellcolor.command()
@@ -164,16 +203,10 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
 
     SURFACE.json and PLAN.json are what paint writes. Each segment is covered without lifting off.
     """
-    from cellcolor.cli.progress import stages_of
-    from cellcolor.cli.terminal import say
     from cellcolor.data.plan import Plan
     from cellcolor.data.surface import LabelledSurface
     from cellcolor.data.tool_paths import ToolPaths
-    from cellcolor.data.wording import count
-    from cellcolor.deadline import OutOfTime
-    from cellcolor.door.covering import cover as covered_of
-    from cellcolor.errors import InputError
-    from cellcolor.files.writing import Output, check_output, kind_of_format, write
+    from cellcolor.door.painting import cover as covered_of
 
     inputs, kind = [source, plan], kind_of_format(ToolPaths.FORMAT)
     check_output(output, kind, inputs)
@@ -183,7 +216,7 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
             found = covered_of(surface, colors, progress=report, **wanted)
     except OutOfTime as error:
         message = f"{source}: not covered: the time limit came first; nothing is written"
-        raise Ended(message) from error
+        raise OutOfTime(message) from error
     except InputError as error:
         raise error if error.file or error.field else error.in_file(str(plan)) from error
     write([Output(output, kind, [found.paths.to_json().encode()])], inputs)
@@ -232,13 +265,9 @@ def plan(scene: Path, output: Path, tolerance: str | None, **wanted: Any) -> Exi
         raise click.UsageError("--required needs --cover: without it everything has to be")
 
     from cellcolor.cli.inputs import with_tolerance
-    from cellcolor.cli.interrupts import INTERRUPTS
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import say, say_lines
-    from cellcolor.data.wording import count
     from cellcolor.door.plan_files import KINDS, check_folder
+    from cellcolor.door.planning import NothingCovered, PlanOutOfTime
     from cellcolor.door.planning import plan as planned_of
-    from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime
 
     check_folder(output, [scene])
     INTERRUPTS.check()
@@ -257,7 +286,7 @@ def plan(scene: Path, output: Path, tolerance: str | None, **wanted: Any) -> Exi
     except NothingCovered as error:
         say_lines(error.report)
         raise
-    except Ended as end:
+    except OutOfTime as end:
         if isinstance(end.__cause__, PlanOutOfTime):
             return _unfinished(scene, output, end.__cause__.unfinished)
         raise
@@ -277,16 +306,13 @@ def plan(scene: Path, output: Path, tolerance: str | None, **wanted: Any) -> Exi
 
 def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
     """Write what there is when the time limit came, and say what is missing."""
-    from cellcolor.cli.terminal import complain, say
-    from cellcolor.data.wording import count
-    from cellcolor.errors import InputError
 
     _warn(scene, unfinished.subject)
     complain(f"{scene}: not planned to the end: {unfinished.missing}")
     try:
         written = unfinished.save(folder)
     except InputError as error:
-        raise Ended(f"nothing is written: {error}") from error
+        raise OutOfTime(f"nothing is written: {error}") from error
     if unfinished.result is not None:
         say(str(unfinished.result))
     say(f"wrote {count(len(written), 'file')} to {folder}: look at {folder / 'report.html'}")
@@ -294,7 +320,6 @@ def _unfinished(scene: Path, folder: Path, unfinished: UnfinishedPlan) -> Exit:
 
 
 def _warn(scene: Path, subject: Subject) -> None:
-    from cellcolor.cli.terminal import complain
 
     for warning in subject.warnings:
         complain(f"{scene}: warning: {warning}")

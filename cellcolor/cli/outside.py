@@ -7,8 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from cellcolor.cli.exits import Exit
+from cellcolor.cli.ending import Exit
 from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option
+from cellcolor.cli.terminal import apart_from, print_json, say
+from cellcolor.data.wording import count, listed
+from cellcolor.errors import InputError
+from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
 if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
@@ -42,9 +46,6 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
         raise click.BadParameter(message, param_hint="-o")
 
     from cellcolor.cli.inputs import read_instance
-    from cellcolor.cli.terminal import apart_from, say
-    from cellcolor.errors import InputError
-    from cellcolor.files.writing import Output, check_output, write
     from cellcolor.solvers.portable import PORTABLE
 
     form = PORTABLE[kind]
@@ -82,12 +83,8 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
     solver claims the optimum.
     """
     from cellcolor.cli.inputs import read_instance
-    from cellcolor.cli.terminal import apart_from, say
     from cellcolor.data.solution import Solution
-    from cellcolor.data.wording import count
-    from cellcolor.errors import InputError
     from cellcolor.files.documents import read_text
-    from cellcolor.files.writing import Output, check_output, kind_of_format, write
     from cellcolor.solvers.answers import read_answer
 
     inputs, form = [source, given], kind_of_format(Solution.FORMAT)
@@ -109,8 +106,6 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
     """The solution, seen by the checker, with nothing in it that the answer does not prove."""
     from cellcolor.checker.division import check_solution
     from cellcolor.data.solution import InstanceReference, Solution, count_segments
-    from cellcolor.data.wording import count
-    from cellcolor.errors import InputError
 
     segments = count_segments(found.division)
     if found.segments is not None and segments > found.segments:
@@ -159,11 +154,9 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     It is named after INSTANCE.json. Files that contradict themselves are refused: what is wrong in
     them is said by --correct, and written into the instance.
     """
-    from cellcolor.cli.terminal import apart_from, say
     from cellcolor.data.imcgs import read_imcgs
     from cellcolor.data.instance import Instance
     from cellcolor.door.shipped import library
-    from cellcolor.files.writing import Output, check_output, kind_of_format, write
 
     kind = kind_of_format(Instance.FORMAT)
     check_output(output, kind, [source])
@@ -194,10 +187,7 @@ def library(family: str | None, only_open: bool, as_json: bool) -> Exit:
     from rich.table import Table
 
     from cellcolor.cli.tables import console
-    from cellcolor.cli.terminal import print_json
-    from cellcolor.data.wording import count, listed
     from cellcolor.door.shipped import library as shipped
-    from cellcolor.errors import InputError
 
     entries = shipped().index.entries
     families = sorted({entry.family for entry in entries})

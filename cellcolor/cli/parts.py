@@ -8,9 +8,13 @@ from typing import Any
 
 import click
 
-from cellcolor.cli.exits import Exit
+from cellcolor.cli.ending import INTERRUPTS, Exit
 from cellcolor.cli.options import METRES, PATH, TIME_LIMIT, UNIT, cellcolor, json_option
+from cellcolor.cli.progress import at_work
+from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
 from cellcolor.deadline import Deadline
+from cellcolor.errors import InputError
+from cellcolor.files.writing import FileKind, Output, check_output, write
 
 _PART = click.argument("part", metavar="PART.(stl|obj|ply)", type=PATH)
 _JSON = json_option("One JSON object.")
@@ -35,12 +39,8 @@ def inspect(
 
     Says why a scene would refuse it, and what repair would do about that. Nothing is changed.
     """
-    from cellcolor.cli.interrupts import INTERRUPTS
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
     from cellcolor.door import parts
     from cellcolor.door.drawing import kind_of_picture
-    from cellcolor.files.writing import Output, check_output, write
 
     if output is not None:
         kind = kind_of_picture(output)
@@ -98,12 +98,7 @@ def repair(
 
     Lengths are in metres; the mesh keeps the unit of its coordinates. What was changed is listed.
     """
-    from cellcolor.cli.interrupts import INTERRUPTS
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
     from cellcolor.door import parts
-    from cellcolor.errors import InputError
-    from cellcolor.files.writing import FileKind, Output, check_output, write
 
     kind = FileKind("a mesh repaired by cellcolor", re.compile(rb"# repaired by cellcolor\n"))
     if output.suffix != ".obj":
@@ -152,9 +147,6 @@ def new(part: Path, arm: Path, output: Path, **wanted: Any) -> Exit:
     most of the part can be reached and a free home position are found out, and every key is
     explained.
     """
-    from cellcolor.cli.interrupts import INTERRUPTS
-    from cellcolor.cli.progress import at_work
-    from cellcolor.cli.terminal import say
     from cellcolor.door.starting import new as begin
 
     late = "the time limit came first; nothing is written"

@@ -1,4 +1,4 @@
-"""Progress on standard error, only where somebody watches."""
+"""Who does long work, and how far it is: on standard error, only where somebody watches."""
 
 from __future__ import annotations
 
@@ -6,14 +6,17 @@ import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from cellcolor.cli.exits import Ended
-from cellcolor.cli.interrupts import INTERRUPTS
+from cellcolor.cli.ending import INTERRUPTS
 from cellcolor.cli.terminal import shown
 from cellcolor.data.wording import count
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
-from cellcolor.solvers.interface import OnProgress
+
+if TYPE_CHECKING:
+    from cellcolor.lab.executors.work import Workers
+    from cellcolor.solvers.interface import OnProgress
 
 
 @contextmanager
@@ -70,14 +73,14 @@ def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]
         late: what is said where the time limit comes first.
 
     Raises:
-        Ended: the time limit came first.
+        OutOfTime: the time limit came first.
         InputError: with a file.
     """
     try:
         with stages_of(file, work) as report:
             yield report
     except OutOfTime as error:
-        raise Ended(f"{file}: {late}") from error
+        raise OutOfTime(f"{file}: {late}") from error
     except InputError as error:
         raise error if error.file else error.in_file(str(file)) from error
 
@@ -96,3 +99,42 @@ def _line(text: str) -> Iterator[Callable[[str], None] | None]:
     with Display(*columns, console=Console(stderr=True), transient=True) as display:
         task = display.add_task(text, total=None)
         yield lambda text: display.update(task, description=text)
+
+
+@contextmanager
+def progress_bar(total: int) -> Iterator[Callable[[int, str], None]]:
+    """A bar on standard error, only where somebody watches; told what is done, and a text."""
+    if not sys.stderr.isatty():
+        yield lambda *_: None
+        return
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+    from rich.progress import TimeElapsedColumn as Elapsed
+    from rich.progress import TimeRemainingColumn as Remaining
+
+    columns = (TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn())
+    bar = Progress(*columns, Elapsed(), Remaining(), console=Console(stderr=True), transient=True)
+    with bar:
+        task = bar.add_task("", total=total)
+        yield lambda done, text: bar.update(task, completed=done, description=text)
+
+
+def workers_for(jobs: int, cluster: str | None) -> Workers:
+    """Processes of this machine, or those of a Dask cluster.
+
+    Args:
+        jobs: pieces of work at a time; a cluster says itself how many it does.
+        cluster: the address of its scheduler.
+
+    Raises:
+        InputError: there is no such cluster, or no Dask.
+    """
+    if cluster is None:
+        from cellcolor.lab.executors.local import LocalWorkers
+
+        return LocalWorkers(jobs)
+    from cellcolor.door.extras import extras_for
+
+    with extras_for("--cluster"):
+        from cellcolor.lab.executors.cluster import ClusterWorkers
+    return ClusterWorkers(cluster)

@@ -11,16 +11,15 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from itertools import chain
 from pathlib import Path
+from types import FrameType
 from typing import IO
 
 import click
 
 from cellcolor.checker.known_results import contradictions
-from cellcolor.cli.exits import Exit, worst
+from cellcolor.cli.ending import INTERRUPTS, Exit, handled_by, worst
 from cellcolor.cli.inputs import read_subject
-from cellcolor.cli.interrupts import INTERRUPTS
 from cellcolor.cli.progress import progress_of, scheme_progress_of
-from cellcolor.cli.search_end import Interrupted, end_the_search
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
 from cellcolor.data.instance import Instance
@@ -46,6 +45,22 @@ _SOLUTION = kind_of_format(Solution.FORMAT)
 _SURFACE = kind_of_format(LabelledSurface.FORMAT)
 _INSTANCE = kind_of_format(Instance.FORMAT)
 _SCHEMES = 1000  # that are listed unless --limit says otherwise
+
+
+class Interrupted(OutOfTime, KeyboardInterrupt):
+    """A signal that a solver takes for the time limit; it hands over the best it has."""
+
+
+@contextmanager
+def end_the_search() -> Iterator[None]:
+    """Turn signals into :class:`Interrupted` for a while."""
+
+    def handle(_number: int, _frame: FrameType | None) -> None:
+        INTERRUPTS.seen = True
+        raise Interrupted("interrupted")
+
+    with handled_by(handle):
+        yield
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -253,7 +268,7 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
     if target is not None and not is_stream(target) and other:
         beside = [_solved(result, target)]
     if request.picture is not None:
-        from cellcolor.door.refining import draw_steps
+        from cellcolor.door.drawing import draw_steps
 
         draw_steps(result).save(request.picture)
     if not request.every:

@@ -3,23 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import pi
 from os import PathLike
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
-from cellcolor.door.drawing import kind_of_plot
+from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
 from cellcolor.door.leaving_out import front_on
 from cellcolor.door.leaving_out import left_alone as without_place
-from cellcolor.door.placing import place
-from cellcolor.door.setting_up import setups
-from cellcolor.door.subject import Solvable, Subject, open_subject, scene_or_file
+from cellcolor.door.subject import Solvable, open_subject, scene_or_file
 from cellcolor.errors import InputError
-from cellcolor.files.paths import path_of
-from cellcolor.files.writing import Output, write
 from cellcolor.questions.front import Front
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
@@ -27,14 +22,7 @@ from cellcolor.solvers.interface import Options
 if TYPE_CHECKING:
     from cellcolor.arrays import Array
     from cellcolor.frontend import Scene
-    from cellcolor.pictures.report_page.content import AnsweredScene, Answers
     from cellcolor.questions.explanation import Explanation
-
-QUESTIONS = ("tradeoff", "explain", "place", "setups")
-"""What a plan's page can tell besides."""
-
-_MOVED = 0.1  # m; so far the part is moved where nothing else is said
-_PLACEMENTS = 32
 
 
 def tradeoff(
@@ -76,19 +64,14 @@ def tradeoff(
 
 
 def save_front(front: Front, path: str | PathLike[str]) -> None:
-    """Draw a front to a file .png or .svg.
+    """Draw a front to a file .png or .svg; see :func:`~cellcolor.door.drawing.save_plot`."""
 
-    Nothing but an older picture is overwritten.
-
-    Raises:
-        InputError: another ending, something else is there, it cannot be written, or the extra
-            ``viz`` is not installed.
-    """
-    file = path_of(path)
-    kind = kind_of_plot(file)
-    with extras_for("plots"):
+    def render(form: str) -> bytes:
         from cellcolor.pictures.plots import render_front
-    write([Output(file, kind, [render_front(front, file.suffix[1:])])])
+
+        return render_front(front, form)
+
+    save_plot(path, render)
 
 
 def explain(
@@ -133,58 +116,3 @@ def explain(
 
     options = Options(deadline=deadline, workers=workers, seed=seed)
     return explained(prepare(scene, deadline), options, point, progress)
-
-
-def check_questions(names: Sequence[str]) -> None:
-    """Refuse a question that a plan's page cannot answer.
-
-    Raises:
-        InputError: there is none of that name.
-    """
-    for name in names:
-        if name not in QUESTIONS:
-            raise InputError(None, "ask", f"{name!r} is not one of {', '.join(QUESTIONS)}")
-
-
-def asked_besides(
-    names: Sequence[str],
-    subject: Subject,
-    deadline: Deadline,
-    progress: Callable[[str], None] | None = None,
-) -> AnsweredScene:
-    """What a plan's page tells besides, as far as there is time.
-
-    Args:
-        names: of the questions.
-        subject: a scene, built, nothing left out.
-        deadline: when to be content with the answers so far.
-        progress: told what is being done.
-    """
-    from cellcolor.pictures.report_page.content import AnsweredScene
-
-    scene = subject.build().scene
-    x, y = (float(value) for value in scene.placement.position_m[:2])
-    answers: list[Answers] = []
-    try:
-        if "tradeoff" in names:
-            answers.append(tradeoff(subject, time_limit=deadline, progress=progress))
-        if "explain" in names:
-            answers.append(explain(scene, time_limit=deadline, progress=progress))
-        if "place" in names:
-            found = place(
-                scene,
-                x=(x - _MOVED, x + _MOVED),
-                y=(y - _MOVED, y + _MOVED),
-                points=_PLACEMENTS,
-                time_limit=deadline,
-                progress=progress,
-            )
-            answers.append(found)
-        if "setups" in names:
-            position, (roll, pitch, yaw) = scene.placement.position_m, scene.placement.rpy_rad
-            turned = [(*position, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
-            chosen = setups(scene, at=turned, time_limit=deadline, progress=progress)
-            answers.append(chosen.answer)
-    except OutOfTime:
-        pass  # the page is about the plan, and has what there is
-    return AnsweredScene(subject.surface, subject.decomposition, tuple(answers))

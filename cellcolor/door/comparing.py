@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.asking import tradeoff
-from cellcolor.door.drawing import kind_of_plot
+from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
 from cellcolor.door.parts import inspect
 from cellcolor.door.placing import Range, place
@@ -20,7 +20,6 @@ from cellcolor.door.starting import FoundArm, arm_of, best_place, part_keys_of
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.files.shipped import shipped_folder
-from cellcolor.files.writing import Output, write
 from cellcolor.questions.front import Front
 from cellcolor.questions.placements import PlacedMinimum
 
@@ -97,20 +96,14 @@ class Comparison:
         return all(row.complete for row in self.arms)
 
     def save(self, path: str | PathLike[str]) -> None:
-        """Draw what each arm covers to a file .png or .svg.
+        """Draw what each arm covers; see :func:`~cellcolor.door.drawing.save_plot`."""
 
-        Nothing but an older picture is overwritten.
-
-        Raises:
-            InputError: another ending, something else is there, it cannot be written, or the extra
-                ``viz`` is not installed.
-        """
-        file = path_of(path)
-        kind = kind_of_plot(file)
-        with extras_for("plots"):
+        def render(form: str) -> bytes:
             from cellcolor.pictures.plots import render_arms
-        shares = {row.arm: row.shares for row in self.arms}
-        write([Output(file, kind, [render_arms(self.name, shares, file.suffix[1:])])])
+
+            return render_arms(self.name, {row.arm: row.shares for row in self.arms}, form)
+
+        save_plot(path, render)
 
     def __str__(self) -> str:
         asked = f"{100 * self.cover:.1f} % of the area"

@@ -1,4 +1,4 @@
-"""Pictures of any opened subject: the parts that they need, and the files that they go to."""
+"""``cellcolor.show``: pictures of any subject, the parts they need, the files they go to."""
 
 from __future__ import annotations
 
@@ -16,7 +16,8 @@ from cellcolor.checker.division import check_solution
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.door.extras import extras_for
-from cellcolor.door.subject import Subject
+from cellcolor.door.result import Result
+from cellcolor.door.subject import Solvable, Subject, open_subject
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, write
@@ -117,6 +118,66 @@ def kind_of_plot(path: Path) -> FileKind:
     if path.suffix not in (".png", ".svg"):
         raise InputError(str(path), None, "must end in .png or .svg")
     return _KINDS[path.suffix]
+
+
+def show(
+    source: Solvable | Result,
+    path: str | PathLike[str] | None = None,
+    *,
+    view: str | None = None,
+    solution: Solution | Result | str | PathLike[str] | None = None,
+    color: str | int | None = None,
+    vertex: int | None = None,
+    branch: str | int | None = None,
+    plan: Plan | str | PathLike[str] | None = None,
+) -> Drawing:
+    """Draw a scene, a labelled surface, an instance or a result.
+
+    A surface is drawn by cell and a result by segment, unless an option asks for something else;
+    an instance is drawn on the surface that it names, and without one as a graph. Needs the extra
+    ``viz``.
+
+    Args:
+        source: what to draw: its file, its shipped name, or the value.
+        path: a file .html, .png or .svg; None draws without writing, for notebooks.
+        view: the picture: ``cells``, ``color``, ``graph``, ``plan``, ``reasons`` (why points
+            are out of reach), ``segments``, ``why`` (fewer are not enough) or ``arm``; None for
+            what the options below ask for.
+        solution: by segment, in this solution, result or file of one.
+        color: where one color is available, by its name or number.
+        vertex: the arm on this vertex, in one ``branch``.
+        branch: an inverse-kinematic branch, by its name or number.
+        plan: by segment, in this plan of another planner or the file of one.
+
+    Raises:
+        InputError: there is nothing of that kind to be seen, or the file cannot be written.
+    """
+    if path is not None:
+        kind_of_picture(path_of(path))
+    if isinstance(solution, Result):
+        solution = solution.solution
+    subject = source.subject if isinstance(source, Result) else open_subject(source)
+    if view is None:
+        asked = {"color": color, "arm": vertex, "segments": solution, "plan": plan}
+        names = [name for name, given in asked.items() if given is not None]
+        if len(names) > 1:
+            raise InputError(None, None, "one of color, vertex, solution and plan at a time")
+        view = names[0] if names else _usual_view(source, subject)
+    if view in ("segments", "why") and solution is None and isinstance(source, Result):
+        solution = source.solution
+    seen = View(view, solution, color, vertex, branch, plan)
+    drawing = draw(picture_of(seen), subject, seen)
+    if path is not None:
+        drawing.save(path)
+    return drawing
+
+
+def _usual_view(source: Solvable | Result, subject: Subject) -> str:
+    """What says most of what can be drawn."""
+    if not subject.names_surface:
+        return "graph"
+    found = isinstance(source, Result) and source.solution.cells is not None
+    return "segments" if found else "cells"
 
 
 def picture_of(view: View) -> Picture:
@@ -239,3 +300,34 @@ def _checked(
     if solution.cells is None:
         raise InputError(file, "cells", "no division was found")
     return solution, report.bounds
+
+
+def draw_steps(result: Result) -> Drawing:
+    """The meshes that a result's ``refinement`` went through, side by side.
+
+    Raises:
+        InputError: it was not refined.
+    """
+    from cellcolor.pictures.by_refinement import draw_refinement
+
+    if result.refinement is None:
+        raise InputError(None, "refinement", "the result has none: solve with refine_until_stable")
+    return Drawing(draw_refinement(result.refinement))
+
+
+def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None:
+    """Draw curves on axes to a file .png or .svg; only an older picture is overwritten.
+
+    Args:
+        path: the file.
+        render: the bytes of a picture, given its format, ``png`` or ``svg``.
+
+    Raises:
+        InputError: another ending, something else is there, it cannot be written, or the extra
+            ``viz`` is not installed.
+    """
+    file = path_of(path)
+    kind = kind_of_plot(file)
+    with extras_for("plots"):
+        content = render(file.suffix[1:])
+    write([Output(file, kind, [content])])

@@ -1,9 +1,11 @@
-"""Errors for extras that are not installed."""
+"""What is installed: ``cellcolor.show_versions``, and errors for extras that are not."""
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from importlib.metadata import PackageNotFoundError, version
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -27,6 +29,13 @@ _EXTRAS = {
     "potpourri3d": "motion",
     "toppra": "motion",
 }
+DISTRIBUTIONS = (
+    *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
+    *("pin", "python-fcl", "scipy", "trimesh", "EAIK", "ompl", "potpourri3d", "toppra"),
+    *("gpytoolbox", "matplotlib", "plotly"),
+    *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
+)
+"""What the package and its extras need, except those for tests and docs."""
 
 
 @contextmanager
@@ -59,3 +68,27 @@ def require_motion(purpose: str, modules: Sequence[str]) -> None:
 def _lack(purpose: Path | str, module: str, extra: str) -> InputError:
     line = f"needs {module}: pip install '{DISTRIBUTION}[{extra}]'"
     return InputError(str(purpose), None, line)
+
+
+def show_versions() -> None:
+    """Print the versions of cellcolor, of Python and of all that cellcolor uses."""
+    from cellcolor.lab.machine import this_machine
+
+    machine = this_machine()
+    rows = [
+        ("cellcolor", machine.cellcolor),
+        ("python", machine.python),
+        ("system", platform.platform()),
+        ("processor", f"{machine.cpu}, {machine.cores} cores, {machine.memory_mb} MB"),
+        *((name, _version(name)) for name in DISTRIBUTIONS),
+    ]
+    width = max(len(name) for name, _ in rows)
+    for name, value in rows:
+        print(f"{name:<{width}}  {value}")
+
+
+def _version(name: str) -> str:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return "not installed"

@@ -16,10 +16,10 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.deadline import Deadline, TimeLimit
-from cellcolor.door.claims import ReadTrajectory, format_of_claim, read_trajectory
 from cellcolor.door.extras import extras_for
 from cellcolor.door.leaving_out import left_alone as without_place
 from cellcolor.door.oracle import AnyPlan, Oracle
+from cellcolor.door.reading import ReadTrajectory, format_of_claim, read_trajectory
 from cellcolor.door.result import Result
 from cellcolor.door.shipped import find_claim
 from cellcolor.door.subject import Solvable, Subject, open_subject

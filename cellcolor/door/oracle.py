@@ -25,8 +25,8 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
-from cellcolor.door.claims import color_numbers, read_claim
 from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, colors_of_path
+from cellcolor.door.reading import color_numbers, read_claim
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import BeatenBound, InputError, TooLarge

@@ -1,18 +1,30 @@
-"""``cellcolor.paint``: from a solution to one color per vertex."""
+"""``cellcolor.paint`` and ``cover``: a solution as a color per vertex, and as tool paths."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from os import PathLike
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
+from cellcolor.arrays import Array
 from cellcolor.checker.division import check_solution
+from cellcolor.checker.vertex_plan import check_plan
+from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, TimeLimit
+from cellcolor.door.extras import require_motion
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Solvable, open_subject
 from cellcolor.errors import InputError
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted
 from cellcolor.painting.paint import paint as paint_solution
+
+if TYPE_CHECKING:
+    from cellcolor.tool_paths.cover import Covered
 
 
 def paint(
@@ -68,3 +80,91 @@ def paint(
         tool_radius_m=tool_radius_m,
         deadline=deadline,
     ).painted
+
+
+def cover(
+    surface: LabelledSurface | Painted | str | PathLike[str],
+    plan: Plan | str | PathLike[str] | None = None,
+    *,
+    pattern: str = "contour",
+    spacing_m: float,
+    tool_radius_m: float,
+    normals: Any = None,
+    time_limit: TimeLimit = None,
+    progress: Callable[[str], None] | None = None,
+) -> Covered:
+    """Lay one continuous path on every segment of a painted surface (docs/tool-paths.md).
+
+    Args:
+        surface: the painted surface, or its file; or what ``cellcolor.paint`` returns.
+        plan: one color for each vertex of it, or the file of that; None with a ``Painted``.
+        pattern: ``contour``, ``back-and-forth`` or ``tree``, or what another package registers.
+        spacing_m: desired distance between neighboring passes, m.
+        tool_radius_m: of the tool's footprint, m.
+        normals: (n, 3) outward unit normals at the vertices; those of the mesh if it is None.
+        time_limit: seconds, None for no limit.
+        progress: told the name of each stage as it begins.
+
+    Returns:
+        The paths, with the area they cover, how often they pass it and what stays uncovered.
+
+    Raises:
+        InputError: something cannot be used, or the plan does not fit the surface.
+        OutOfTime: the time limit came first.
+    """
+    deadline = Deadline.of(time_limit)
+    if isinstance(surface, Painted):
+        if plan is not None:
+            raise InputError(None, "plan", "is already set by what was painted")
+        painted = surface
+        surface, plan = painted.surface, painted.plan
+    elif not isinstance(surface, LabelledSurface):
+        surface = LabelledSurface.read(surface)
+    if plan is None:
+        raise InputError(None, "plan", "is missing")
+    file = None if isinstance(plan, Plan) else str(plan)
+    if not isinstance(plan, Plan):
+        plan = Plan.read(plan)
+    require_motion("tool paths", ("scipy", "potpourri3d"))
+
+    from cellcolor.tool_paths.cover import check_spacing
+    from cellcolor.tool_paths.cover import cover as cover_segments
+
+    report = check_plan(surface, plan)
+    if not report.valid:
+        raise InputError(file, None, f"the plan is not valid: {report.problems[0]}")
+    segment_of = np.array(report.segment_of, dtype=np.int64)
+    colors = [0] * (report.segments or 0)
+    for segment, color in zip(report.segment_of, plan.vertex_colors, strict=True):
+        if color is not None:
+            colors[segment] = color
+    check_spacing(surface, segment_of, spacing_m)
+    rows = surface.vertex_normals if normals is None else _unit_rows(normals, len(segment_of))
+    return cover_segments(
+        surface,
+        segment_of,
+        colors,
+        rows,
+        pattern=pattern,
+        spacing_m=spacing_m,
+        tool_radius_m=tool_radius_m,
+        deadline=deadline,
+        progress=progress,
+    )
+
+
+def _unit_rows(normals: Any, count: int) -> Array:
+    """Normals of length 1.
+
+    Raises:
+        InputError: they are not one for each vertex, or one of them has no direction.
+    """
+    from cellcolor.data.value import rows_of_three
+
+    rows = rows_of_three(normals, "normals")
+    if len(rows) != count:
+        raise InputError(None, "normals", f"has {len(rows)} entries for {count} vertices")
+    lengths = np.linalg.norm(rows, axis=1)
+    if (lengths == 0).any():
+        raise InputError(None, f"normals[{int(lengths.argmin())}]", "has no direction")
+    return np.asarray(rows / lengths[:, None])

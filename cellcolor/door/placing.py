@@ -9,13 +9,12 @@ from os import PathLike
 from typing import TYPE_CHECKING
 
 from cellcolor.deadline import NEVER, Deadline, OutOfTime, TimeLimit
-from cellcolor.door.drawing import kind_of_plot
+from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
 from cellcolor.door.placements_asked import AskedPlacements, PlacementTable
 from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
-from cellcolor.files.writing import Output, write
 from cellcolor.lab.executors.local import LocalWorkers
 from cellcolor.lab.executors.work import Workers
 from cellcolor.questions.placements import Leeway, PlacedMinimum, PlacementMap, Placements
@@ -205,20 +204,19 @@ def place(
 def save_map(found: Placements, path: str | PathLike[str]) -> None:
     """Draw the map of ``place(..., tiles=…)`` to a file .png or .svg.
 
-    Nothing but an older picture is overwritten.
-
     Raises:
-        InputError: there is no map, another ending, something else is there, it cannot be written,
-            or the extra ``viz`` is not installed.
+        InputError: no map was asked for; or as of :func:`~cellcolor.door.drawing.save_plot`.
     """
-    if found.map is None:
+    tiled = found.map
+    if tiled is None:
         raise InputError(None, "tiles", "no map was asked for")
-    file = path_of(path)
-    kind = kind_of_plot(file)
-    with extras_for("plots"):
+
+    def render(form: str) -> bytes:
         from cellcolor.pictures.plots import render_map
-    picture = render_map(found.name, found.map, found.here, found.best, file.suffix[1:])
-    write([Output(file, kind, [picture])])
+
+        return render_map(found.name, tiled, found.here, found.best, form)
+
+    save_plot(path, render)
 
 
 def _leeway(

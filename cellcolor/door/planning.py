@@ -4,23 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Instance, SurfaceReference
 from cellcolor.data.solution import Solution
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
-from cellcolor.door.asking import asked_besides, check_questions
+from cellcolor.door.asking import explain, tradeoff
 from cellcolor.door.extras import require_motion
 from cellcolor.door.leaving_out import Wanted, rest_of
+from cellcolor.door.placing import place
+from cellcolor.door.plan_files import SIDE, SURFACE, save
 from cellcolor.door.result import Result
 from cellcolor.door.solving import solve
 from cellcolor.door.subject import Subject, scene_or_file
-from cellcolor.door.unfinished import NothingCovered, PlanOutOfTime, UnfinishedPlan
+from cellcolor.errors import InputError
+from cellcolor.exports.registry import EXPORTS
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
 from cellcolor.questions.places import Place
@@ -28,41 +32,39 @@ from cellcolor.solvers.interface import Options
 
 if TYPE_CHECKING:
     from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-    from cellcolor.frontend import BuildResult, Scene
+    from cellcolor.frontend import BuildReport, BuildResult, Scene
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.stage_clock import StageClock
-    from cellcolor.pictures.report_page.content import AnsweredScene
+    from cellcolor.pictures.report_page.content import AnsweredScene, Answers, MotionReport
     from cellcolor.tool_paths.measures import PathMeasures
 
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "potpourri3d", "ompl", "toppra")
 _FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
+_QUESTIONS = ("tradeoff", "explain", "place", "setups")  # that a plan's page can answer besides
+_MOVED = 0.1  # m; so far a question moves the part along x and y
+_PLACEMENTS = 32
+_FOR_BUILDING = 0.6  # of the time that is left then, with several set-ups
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class PlannedScene:
-    """A scene with its fewest lift-offs, a motion that has them, and the judge's verdict on it.
+class UnfinishedPlan:
+    """A scene on its way to a motion, as far as it got within the time limit.
+
+    A trajectory is not part of it: none leaves the program without having been judged.
 
     Attributes:
         subject: the scene, built and decomposed.
-        result: the fewest segments, and what is proved about them.
-        painted: the segments on the surface.
-        paths: where the tool goes.
+        result: the fewest segments that were found, and what is proved; None before the search.
+        painted: the segments on the surface, if they were painted.
+        paths: where the tool goes, if that was laid out.
         measures: of each of these paths.
-        trajectory: how the arm moves.
-        verdict: an independent judge's.
-        seconds: wall time of each stage.
-        answered: what was asked besides, for the page; None if nothing was.
     """
 
     subject: Subject
-    result: Result
-    painted: Painted
-    paths: ToolPaths
+    result: Result | None
+    painted: Painted | None
+    paths: ToolPaths | None
     measures: tuple[PathMeasures, ...]
-    trajectory: Trajectory
-    verdict: TrajectoryVerdict
-    seconds: Mapping[str, float]
-    answered: AnsweredScene | None = None
 
     @property
     def built(self) -> BuildResult:
@@ -75,39 +77,133 @@ class PlannedScene:
         return self.subject.graph()
 
     @property
+    def solution(self) -> Solution | None:
+        """The solver's answer, which the checker has passed."""
+        return None if self.result is None else self.result.solution
+
+    @property
+    def missing(self) -> str:
+        """What the time limit cut off, as a sentence; "" for a whole plan."""
+        if self.result is None or self.result.solution.cells is None:
+            cut = "before any division into segments was found"
+        elif self.painted is None:
+            cut = "before the segments were painted on the surface"
+        elif self.paths is None:
+            cut = "before the tool paths were laid out"
+        else:
+            cut = "before the arm's motion on the tool paths was planned and judged"
+        return f"The time limit came {cut}."
+
+    def _report(self) -> MotionReport:
+        """What the page tells of."""
+        from cellcolor.pictures.report_page.content import MotionReport
+
+        decomposition, painted = self.subject.decomposition, self.painted
+        return MotionReport(
+            self.built,
+            decomposition,
+            self.solution,
+            painted,
+            None,
+            self.measures,
+            None,
+            self.paths,
+            self.missing,
+        )
+
+    def page(self) -> bytes:
+        """``report.html``, complete in itself: what there is, and what is missing."""
+        from cellcolor.pictures.report_page.page import render_page
+
+        return render_page(self._report())
+
+    def _files(self) -> dict[str, bytes]:
+        """All files but the page, by name, as far as the plan came."""
+        surface, decomposition = self.subject.surface, self.subject.decomposition
+        reference = SurfaceReference(SURFACE, tuple(decomposition.vertex_cell), surface.sha256)
+        named = replace(decomposition.instance, surface=reference)
+        content = {
+            SIDE: self.built.candidates.to_bytes(),
+            SURFACE: replace(surface, meta=surface.meta | {"side_file": SIDE}).to_json().encode(),
+            "instance.json": named.to_json().encode(),
+        }
+        if self.solution is not None:
+            content["solution.json"] = self.solution.to_json().encode()
+        if self.painted is not None:
+            content["painted.plan.json"] = self.painted.plan.to_json().encode()
+            content["painted.surface.json"] = self.painted.surface.to_json().encode()
+        if self.paths is not None:
+            content["paths.json"] = self.paths.to_json().encode()
+        return content
+
+    def save(self, folder: str | PathLike[str]) -> tuple[str, ...]:
+        """Write all files that are ready to a folder (docs/plan.md), all of them or none.
+
+        Returns:
+            Their names.
+
+        Raises:
+            InputError: a plan that got further is there, or something else that is not
+                overwritten; or it cannot be written.
+        """
+        return save(path_of(folder), self._files() | {"report.html": self.page()})
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.missing}>"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class PlannedScene(UnfinishedPlan):
+    """A scene with its fewest lift-offs, a motion that has them, and the judge's verdict on it.
+
+    Attributes:
+        trajectory: how the arm moves.
+        verdict: an independent judge's.
+        seconds: wall time of each stage.
+        answered: what was asked besides, for the page; None if nothing was.
+    """
+
+    result: Result
+    painted: Painted
+    paths: ToolPaths
+    measures: tuple[PathMeasures, ...]
+    trajectory: Trajectory
+    verdict: TrajectoryVerdict
+    seconds: Mapping[str, float]
+    answered: AnsweredScene | None = None
+
+    @property
     def solution(self) -> Solution:
         """The solver's answer, which the checker has passed."""
         return self.result.solution
 
-    def page(self) -> bytes:
-        """``report.html``, complete in itself."""
-        from cellcolor.pictures.report_page.content import MotionReport
-        from cellcolor.pictures.report_page.page import render_page
+    @property
+    def missing(self) -> str:
+        """Nothing."""
+        return ""
 
-        return render_page(
-            MotionReport(
-                self.built,
-                self.subject.decomposition,
-                self.solution,
-                self.painted,
-                self.trajectory,
-                self.measures,
-                self.verdict,
-                answered=self.answered,
-            )
+    def _report(self) -> MotionReport:
+        return replace(
+            super()._report(),
+            trajectory=self.trajectory,
+            verdict=self.verdict,
+            paths=None,
+            answered=self.answered,
         )
 
-    def save(self, folder: str | PathLike[str]) -> None:
-        """Write all files of a plan to a folder (docs/plan.md), all of them or none.
+    def _files(self) -> dict[str, bytes]:
+        from cellcolor.exports.interface import PlannedMotion
+        from cellcolor.pictures.report_page.surface_modes import segment_fills
 
-        Raises:
-            InputError: something else is there, or it cannot be written.
-        """
-        from cellcolor.door.plan_files import files_of_motion, files_so_far, save
-
-        files = files_so_far(self.subject, self.solution, self.painted, self.paths)
-        files |= files_of_motion(self.painted, self.paths, self.trajectory, self.verdict)
-        save(path_of(folder), files | {"report.html": self.page()})
+        painted, trajectory = self.painted, self.trajectory
+        fills = segment_fills(painted)
+        motion = PlannedMotion(painted.surface, painted.segment_of, fills, self.paths, trajectory)
+        return {
+            **super()._files(),
+            "trajectory.json": trajectory.to_json().encode(),
+            "verdict.json": self.verdict.to_json().encode(),
+            **{name: export.content(motion) for name, export in EXPORTS.items()},
+        }
 
     def __str__(self) -> str:
         extra = len(self.trajectory.extra_lift_offs)
@@ -130,6 +226,38 @@ class PlannedScene:
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.trajectory}>"
+
+
+class PlanOutOfTime(OutOfTime):
+    """The time limit came before a motion was planned and judged.
+
+    Attributes:
+        unfinished: what there is.
+    """
+
+    def __init__(self, unfinished: UnfinishedPlan) -> None:
+        self.unfinished = unfinished
+        super().__init__(unfinished.missing)
+
+    def __reduce__(self) -> tuple[type[PlanOutOfTime], tuple[UnfinishedPlan]]:
+        # Python would hand the text to __init__, which takes the plan.
+        return type(self), (self.unfinished,)
+
+
+class NothingCovered(InputError):
+    """No point of the object can be covered.
+
+    Attributes:
+        report: what the build found, reachability by reason among it.
+    """
+
+    def __init__(self, report: BuildReport, file: str | None) -> None:
+        self.report = report
+        super().__init__(file, None, report.nothing_covered or "there is nothing to cover")
+
+    def __reduce__(self) -> tuple[type[NothingCovered], tuple[BuildReport, str | None]]:
+        # As in InputError.
+        return type(self), (self.report, self.file)
 
 
 def plan(
@@ -171,7 +299,9 @@ def plan(
     from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 
     wanted = Wanted(cover, required, left_alone)
-    check_questions(ask)
+    for name in ask:
+        if name not in _QUESTIONS:
+            raise InputError(None, "ask", f"{name!r} is not one of {', '.join(_QUESTIONS)}")
     deadline = Deadline.of(time_limit)
 
     given_or_file = scene_or_file(scene)
@@ -195,7 +325,7 @@ def plan(
         check_home(prepared, motion_of(prepared))
     with clock.timed("colors"):
         subject = _built(prepared, path, StageClock(deadline, progress))
-    so_far, whole = UnfinishedPlan(subject), subject
+    so_far, whole = UnfinishedPlan(subject, None, None, None, ()), subject
 
     def has(**more: Any) -> None:
         nonlocal so_far
@@ -247,7 +377,7 @@ def plan(
     answered = None
     if ask:
         with clock.timed("questions"):
-            answered = asked_besides(ask, whole, deadline, progress)
+            answered = _answered(ask, whole, deadline, progress)
     return PlannedScene(
         subject,
         result,
@@ -292,3 +422,41 @@ def _built(prepared: PreparedScene, path: Path | None, clock: StageClock) -> Sub
     if subject.graph(clock.deadline).nothing_to_cover:
         raise NothingCovered(built.report, str(prepared.scene.file or "") or None)
     return subject
+
+
+def _answered(
+    names: Sequence[str],
+    subject: Subject,
+    deadline: Deadline,
+    progress: Callable[[str], None] | None = None,
+) -> AnsweredScene:
+    """What a plan's page tells besides, as far as there is time.
+
+    Args:
+        names: of the questions.
+        subject: a scene, built, nothing left out.
+        deadline: when to be content with the answers so far.
+        progress: told what is being done.
+    """
+    from cellcolor.pictures.report_page.content import AnsweredScene
+    from cellcolor.questions.setting_up import candidates_of, plan_of
+
+    scene = subject.build().scene
+    (x, y, z), (roll, pitch, yaw) = scene.placement.position_m, scene.placement.rpy_rad
+    given: dict[str, Any] = {"time_limit": deadline, "progress": progress}
+    answers: list[Answers] = []
+    try:
+        if "tradeoff" in names:
+            answers.append(tradeoff(subject, **given))
+        if "explain" in names:
+            answers.append(explain(scene, **given))
+        if "place" in names:
+            around: dict[str, Any] = {"x": (x - _MOVED, x + _MOVED), "y": (y - _MOVED, y + _MOVED)}
+            answers.append(place(scene, **around, points=_PLACEMENTS, **given))
+        if "setups" in names:
+            turned = [(x, y, z, roll, pitch, yaw + turns * pi / 2) for turns in (1, 2, 3)]
+            found = candidates_of([scene], turned, deadline.share(_FOR_BUILDING), progress)
+            answers.append(plan_of(found, 1.0, None, Options(deadline=deadline), progress))
+    except OutOfTime:
+        pass  # the page is about the plan, and has what there is
+    return AnsweredScene(subject.surface, subject.decomposition, tuple(answers))

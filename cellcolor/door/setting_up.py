@@ -11,6 +11,8 @@ import numpy as np
 
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import extras_for
+from cellcolor.door.painting import paint
+from cellcolor.door.planning import PlannedScene, plan
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.errors import InputError
@@ -20,7 +22,6 @@ from cellcolor.questions.set_ups import SetUpPlan
 if TYPE_CHECKING:
     from cellcolor.arrays import Mask
     from cellcolor.door.drawing import Drawing
-    from cellcolor.door.planning import PlannedScene
     from cellcolor.frontend import Scene
 
 _FOR_BUILDING = 0.6  # of the time that is left
@@ -50,8 +51,6 @@ class ChosenSetUps:
 
     def left_alone(self) -> list[Mask]:
         """Of each set-up the vertices (n,) that others paint, or nobody."""
-        from cellcolor.door.painting import paint
-
         painted = paint(self.result.subject, self.answer.solution)
         count = len(self.answer.surface.vertices)
         own = np.zeros(count, dtype=int)
@@ -78,8 +77,6 @@ class ChosenSetUps:
         Raises:
             InputError, OutOfTime: as of ``cellcolor.plan``.
         """
-        from cellcolor.door.planning import plan
-
         deadline = Deadline.of(time_limit)
         return [
             plan(scene, left_alone=mask, time_limit=deadline, progress=progress, **given)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import OutOfTime
+from cellcolor.door.drawing import show
 from cellcolor.door.oracle import AnyPlan, KeepingOracle
-from cellcolor.door.showing import show
 from cellcolor.door.subject import Solvable
 from cellcolor.errors import CellcolorError, InputError
 from cellcolor.oracle import ProvenRange, Verdict

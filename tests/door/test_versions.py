@@ -10,7 +10,7 @@ import pytest
 from shipped import TOP
 
 import cellcolor
-from cellcolor.door.versions import DISTRIBUTIONS
+from cellcolor.door.extras import DISTRIBUTIONS
 
 
 def test_every_dependency_is_named_with_its_version(capsys: pytest.CaptureFixture[str]) -> None:

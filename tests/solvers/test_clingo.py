@@ -8,7 +8,7 @@ import pytest
 from library import PAPER
 from rooms import four_colors_in_turn
 
-from cellcolor.cli.search_end import Interrupted
+from cellcolor.cli.solving import Interrupted
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline

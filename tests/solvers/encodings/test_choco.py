@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from library import PAPER
 from rooms import four_colors_in_turn
 
-from cellcolor.cli.search_end import Interrupted
+from cellcolor.cli.solving import Interrupted
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import count_segments

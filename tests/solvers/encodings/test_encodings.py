@@ -13,7 +13,7 @@ from library import PAPER
 from ortools.sat.python import cp_model
 from rooms import four_colors_in_turn
 
-from cellcolor.cli.search_end import Interrupted
+from cellcolor.cli.solving import Interrupted
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import count_segments

@@ -1,4 +1,4 @@
-"""Ctrl-C and SIGTERM: the end of the command.
+"""How a command ends: exit codes (docs/formats.md), Ctrl-C and SIGTERM.
 
 Imported before everything else, and quickly: until the signals have their handlers they end in
 Python's own way, with a traceback or none.
@@ -10,16 +10,37 @@ import signal
 import sys
 import threading
 from contextlib import contextmanager
+from enum import IntEnum
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
     from types import FrameType
     from typing import Any
 
     Handler = Callable[[int, FrameType | None], Any]
 
 _SIGNALS = (signal.SIGINT, signal.SIGTERM)
+
+
+class Exit(IntEnum):
+    """The exit code of a command."""
+
+    DONE = 0
+    INVALID = 1
+    BAD_INPUT = 2
+    STOPPED = 3
+
+    @classmethod
+    def done_if(cls, proved: bool) -> Exit:
+        """Done, or stopped before everything was proved."""
+        return cls.DONE if proved else cls.STOPPED
+
+
+def worst(codes: Iterable[Exit]) -> Exit:
+    """The exit code for several files: bad input wins over a contradiction, that over a limit."""
+    found = set(codes)
+    return next((c for c in (Exit.BAD_INPUT, Exit.INVALID, Exit.STOPPED) if c in found), Exit.DONE)
 
 
 class Stopped(KeyboardInterrupt):
