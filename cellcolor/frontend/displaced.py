@@ -15,6 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from cellcolor.arrays import Mask
+from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Judged, Links, Stages, colored_stages, judged_in_place
@@ -42,13 +43,18 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
         clock: of the build.
         before: of the same scene on a surface whose vertices are the first ones of this one, with
             the same normals. Only new vertices and new mesh edges are asked about, to the same
-            result. An arm whose solutions have no names is asked about everything.
+            result.
     """
     own = None if before is None else before.in_place or before
     found = judged_in_place(prepared, clock, own)
     if prepared.scene.tolerance is None:
         return found
-    prepared.arm.check_named()  # displaced sheets would be others
+    if not prepared.arm.named:
+        message = (
+            "the solutions of this arm have no names, and are told apart on the part where it "
+            "stands: a scene with a tolerance needs an arm whose solutions have names"
+        )
+        raise InputError(None, "robot.kinematics", message)
     elsewhere = []
     for number, there in enumerate(prepared.displaced()):
         known = None if before is None else before.elsewhere[number]

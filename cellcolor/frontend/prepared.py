@@ -29,6 +29,7 @@ from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.always_touching import always_touching, check_capsules
 from cellcolor.frontend.reach.prepared_arm import PreparedArm, prepare_arm
+from cellcolor.frontend.reach.sheets import in_sheets
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
 from cellcolor.frontend.scene import Scene
@@ -114,7 +115,7 @@ class PreparedScene:
         surface, workplace = _in_place(scene, self.part, around)
         check_part(surface, scene, self.kinematics.reach)
         judge = Judge(workplace, scene.validity_test)
-        return PreparedScene(scene, workplace, self.part, surface, judge, self.notes)
+        return named(PreparedScene(scene, workplace, self.part, surface, judge, self.notes))
 
     def displaced(self) -> list[PreparedScene]:
         """The scene without its tolerance, with the part wherever its sample puts it.
@@ -194,7 +195,20 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
             wide = check_capsules(arm.near_itself, home)
         notes += () if wide is None else (wide,)
         notes += _notes_on_contacts(workplace, float(lengths.max()))
-    return PreparedScene(scene, workplace, part, surface, judge, notes)
+    return named(PreparedScene(scene, workplace, part, surface, judge, notes), deadline)
+
+
+def named(prepared: PreparedScene, deadline: Deadline = NEVER) -> PreparedScene:
+    """The scene with an arm whose solutions have names: sheets over its surface, if need be.
+
+    Raises:
+        InputError: the arm is cuspidal on the part, or there are too many sheets.
+        OutOfTime: the deadline came first.
+    """
+    if prepared.arm.named:
+        return prepared
+    arm = in_sheets(prepared.arm, prepared.surface, prepared.judge, deadline)
+    return replace(prepared, workplace=replace(prepared.workplace, arm=arm))
 
 
 def _around(scene: Scene, arm: PreparedArm, part: PreparedPart, deadline: Deadline) -> Workplace:

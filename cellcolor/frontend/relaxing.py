@@ -17,7 +17,7 @@ import numpy as np
 
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.contact.tip import Tip
-from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.prepared import PreparedScene, named
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
 
@@ -381,7 +381,7 @@ def _remade(
     """The scene with another workplace, and with fewer tests."""
     left_out |= prepared.judge.left_out
     judge = Judge(place, prepared.scene.validity_test, left_out)
-    return replace(prepared, workplace=place, judge=judge)
+    return named(replace(prepared, workplace=place, judge=judge))
 
 
 def _around(place: Workplace) -> Workplace:

@@ -18,12 +18,10 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.nameless import arranged_in_sheets
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.reach.between import (
-    Test,
     at_domain_border,
     bytes_of_point,
     remains_valid,
@@ -124,7 +122,7 @@ def judged_in_place(
         clock: of the build.
         before: of the same scene on a surface whose vertices are the first ones of this one, with
             the same normals. Only new vertices and new mesh edges are asked about, to the same
-            result. An arm whose solutions have no names is asked about everything.
+            result.
 
     Raises:
         InputError: a color has two configurations on one vertex; there are too many vertices for
@@ -132,8 +130,7 @@ def judged_in_place(
         OutOfTime: the deadline came first.
     """
     deadline = clock.deadline
-    names, test_on = prepared.kinematics.branches, _test_of_branches(prepared, deadline)
-    known = None if before is None or not names else before.stages
+    names, known = prepared.kinematics.branches, None if before is None else before.stages
     first = 0 if known is None else len(known.surface.vertices)
     setup, surface = prepared.setup, prepared.surface
     if setup.task.turn is not None:
@@ -149,19 +146,11 @@ def judged_in_place(
         verdicts = before.verdicts.followed_by(verdicts)
     candidates, tracked = _candidates(prepared, verdicts), verdicts.tracked
     with clock.timed("continuity"):
-        if names:
-            continuous = _continuous_links(prepared, candidates, known, deadline)
-        else:
-            found = arranged_in_sheets(prepared, candidates, tracked, deadline)
-            candidates, tracked, test_on = found.candidates, found.tracked, found.test_on
-            names = found.sheets.names
-            continuous = Links(prepared.surface.edges(), found.sheets.linked)
+        continuous = _continuous_links(prepared, candidates, known, deadline)
     candidates, links = _with_turn(prepared, candidates), continuous
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
-            links = _valid_links(
-                prepared, candidates, continuous, tracked, test_on, known, deadline
-            )
+            links = _valid_links(prepared, candidates, continuous, tracked, known, deadline)
     return Judged(colored_stages(prepared, names, candidates, continuous, links, clock), verdicts)
 
 
@@ -197,7 +186,6 @@ def judged_again(
                 candidates,
                 continuous,
                 verdicts.tracked,
-                _test_of_branches(prepared, deadline),
                 known,
                 deadline,
                 anew=continuous.linked & ~known.links.linked,
@@ -243,22 +231,8 @@ def colored_stages(
         coloring,
         cleaned,
         names,
-        bool(prepared.kinematics.branches),
+        prepared.arm.named,
     )
-
-
-TestOn = Callable[[Index, Index], Test]
-"""Mesh edges (k, 2) and a branch of each (k,) to a test of points on them."""
-
-
-def _test_of_branches(prepared: PreparedScene, deadline: Deadline) -> TestOn:
-    def test_on(_: Index, branches: Index) -> Test:
-        def test(points: Array, directions: Array, at: Index) -> tuple[Mask, Array]:
-            return prepared.test(points, directions, branches[at], deadline)
-
-        return test
-
-    return test_on
 
 
 def _candidates(prepared: PreparedScene, verdicts: Verdicts) -> Candidates:
@@ -321,7 +295,6 @@ def _valid_links(
     candidates: Candidates,
     continuous: Links,
     tracked: Array,
-    test_on: TestOn,
     known: Stages | None,
     deadline: Deadline,
     anew: Mask | bool = False,
@@ -330,7 +303,6 @@ def _valid_links(
 
     Args:
         tracked: (points, n * branches, 3) of the bodies at the vertices, m.
-        test_on: makes tests of points on mesh edges.
         known: of a surface whose vertices are the first ones of this one.
         anew: (edges, branches) of those that are known, which are asked about again.
     """
@@ -365,7 +337,10 @@ def _valid_links(
     def test_part(part: slice) -> None:
         rows, branches = all_rows[part], all_branches[part]
         pieces = np.where(near_border[rows, branches], counts[rows], 1)
-        test = test_on(edges[rows], branches)
+
+        def test(points: Array, directions: Array, at: Index) -> tuple[Mask, Array]:
+            return prepared.test(points, directions, branches[at], deadline)
+
         linked[rows, branches] = remains_valid(
             surface, edges[rows], branches, pieces, at_vertices, longest, test
         )

@@ -22,12 +22,11 @@ def motion_of(prepared: PreparedScene) -> Motion:
     Raises:
         InputError: there is none, or a list has another number of joints than the arm, the home
             position is outside the limits, a length is larger than the part or the arm's reach, the
-            tool retracts less than it has to keep clear, the arm's solutions have no names, or the
-            arm is planar.
+            tool retracts less than it has to keep clear, or the arm is
+            planar.
     """
     setup, robot = prepared.setup, prepared.robot
     with in_file(setup.file):
-        prepared.arm.check_named()
         if robot.task.plane:
             message = "a planar arm does not lift its tool off the part, so no motion is planned"
             raise InputError(None, "robot.kinematics", message)

@@ -74,13 +74,11 @@ def paint_scene(
         progress: told what is being done.
 
     Raises:
-        InputError: the solution has no division, the radius is not positive, or the arm's
-            solutions have no names.
+        InputError: the solution has no division, or the radius is not positive.
         OutOfTime: the deadline came first.
         TooLarge: a painting would need too many vertices.
     """
     prepared = built.prepared
-    prepared.arm.check_named()  # on a refined surface sheets would be others
     clock = StageClock(deadline, progress)
     motion = prepared.setup.motion
     if tool_radius_m is None and motion is not None:

@@ -61,14 +61,12 @@ def check_trajectory(
 
     Raises:
         InputError: the scene was prepared with another mesh than the labelled surface, the
-            trajectory is of another arm, or the setup's velocities are; or the arm's
-            solutions have no names.
+            trajectory is of another arm, or the setup's velocities are.
         OutOfTime: the deadline came first.
         TooLarge: surface or trajectory would not fit into memory.
     """
     report, prepared = progress or (lambda _: None), built.prepared
     robot, motion, direction = prepared.robot, prepared.setup.motion, prepared.robot.task.direction
-    prepared.arm.check_named()
     _check_mesh(built)
     _check_arm(prepared, trajectory)
     faults = FaultList(trajectory, timed)

@@ -8,6 +8,7 @@ joint makes the turn, in exactly one way.
 
 from __future__ import annotations
 
+import copy
 import dataclasses
 
 import numpy as np
@@ -181,10 +182,10 @@ class TurnedKinematics(InverseKinematics):
         if not family.given_turn.direction:
             _check_along(robot)
         self._robot, self.turn = robot, turn
-        self._straight = on_last_axis(robot)
+        self.straight = on_last_axis(robot)
         # What the last joint is locked at does not matter: it is solved for afterwards.
         locked = float(np.clip(0.0, robot.lower[-1], robot.upper[-1]))
-        self.own = family(self._straight, files.varied(locked_joint_6_rad=locked))
+        self.own = family(self.straight, files.varied(locked_joint_6_rad=locked))
         poses = pose_at_zero(robot)
         self.reach = farthest_reach(robot, shoulder_of(robot))
         self.viewpoints = self.own.viewpoints
@@ -246,7 +247,7 @@ class TurnedKinematics(InverseKinematics):
             across: (n, 3) unit vectors of the tool's x axis, at right angles to the directions.
             branches: (n,) the only one of the family's wanted of each pose; all without it.
         """
-        rotation, tips, axes = self._straightened(points, directions, across)
+        rotation, tips, axes = self._on_last_axis(points, directions, across)
         found = self.own.solve(tips, axes, branches)
         row, branch = np.nonzero(~np.isnan(found[:, :, 0]))
         found[row, branch] = with_last_joint(self._robot, found[row, branch], rotation[row])
@@ -258,26 +259,38 @@ class TurnedKinematics(InverseKinematics):
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """Those of the arm's family on all turns of the tool together."""
+        every = [self.straightened(points, directions, angle) for angle in self._angles]
+        tips, axes = (np.concatenate(each) for each in zip(*every, strict=True))
+        told = ~np.isnan(axes[:, 0])
+        return self.own.remarks(tips[told], axes[told])
+
+    def straightened(
+        self, points: Array, directions: Array, angle: float | None = None
+    ) -> tuple[Array, Array]:
+        """Tips and directions (n, 3) of the tool on the last axis, for a turn of the set in rad.
+
+        Without one it is the first.
+
+        Both are NaN where the rule says nothing.
+        """
+        angle = self._angles[0] if angle is None else angle
         directions = self.taken(directions)
         across = turn_at(self.turn, points, directions)
-        rows = np.flatnonzero(~np.isnan(across[:, 0]))
-        every = [
-            self._straightened(
-                points[rows],
-                directions[rows],
-                turned_about(directions[rows], across[rows], np.full(len(rows), angle)),
-            )
-            for angle in self._angles
-        ]
-        _, tips, axes = (np.concatenate(each) for each in zip(*every, strict=True))
-        return self.own.remarks(tips, axes)
+        turned_by = turned_about(directions, across, np.full(len(points), angle))
+        return self._on_last_axis(points, directions, turned_by)[1:]
 
-    def _straightened(
+    def with_own(self, own: InverseKinematics) -> TurnedKinematics:
+        """The same with other branches; there is one turn."""
+        named = copy.copy(self)
+        named.own, named.branches = own, own.branches
+        return named
+
+    def _on_last_axis(
         self, points: Array, directions: Array, across: Array
     ) -> tuple[Array, Array, Array]:
         """Rotations of the last frame, and tips and directions of the tool on the last axis."""
         rotation, origin = last_frames(self._robot, points, directions, across)
-        tip = self._straight.tip
+        tip = self.straight.tip
         return rotation, origin + rotation @ tip[:3, 3], rotation @ tip[:3, 2]
 
 

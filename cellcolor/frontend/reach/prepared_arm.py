@@ -42,12 +42,26 @@ class PreparedArm:
         robot: arm and tool.
         kinematics: the arm's inverse kinematics.
         conditioning: the thresholds for this arm.
+        nameless: the same arm, where its solutions have no names and its branches are sheets over
+            a surface (:mod:`cellcolor.frontend.reach.sheets`).
     """
 
     setup: Setup
     robot: Robot
     kinematics: InverseKinematics
     conditioning: Conditioning
+    nameless: PreparedArm | None = None
+
+    @property
+    def named(self) -> bool:
+        """Whether the arm's family names the solutions."""
+        return self.nameless is None and bool(self.kinematics.branches)
+
+    @property
+    def bare(self) -> PreparedArm:
+        """With the kinematics of its family."""
+        bare = self if self.nameless is None else replace(self, kinematics=self.nameless.kinematics)
+        return replace(bare, nameless=None)
 
     @cached_property
     def near_object(self) -> Robot:
@@ -113,20 +127,6 @@ class PreparedArm:
         limits = self.conditioning if self.setup.constraints.conditioning else None
         solve = partial(self.inverse, deadline=deadline)
         return Tracker(self.robot, solve, self.measure, limits, self.slots)
-
-    def check_named(self) -> None:
-        """Refuse an arm whose solutions have no names.
-
-        Raises:
-            InputError: it has no branches.
-        """
-        if not self.kinematics.branches:
-            raise InputError(
-                None,
-                "robot.kinematics",
-                "the solutions of this arm have no names: its colors can be found and its minimum "
-                "solved, but without names nothing is painted, planned or judged on the arm",
-            )
 
     def without_turn(self, points: Array, directions: Array) -> Mask:
         """Where the setup gives the tool's turn by a rule that says nothing there, (n,)."""

@@ -1,53 +1,56 @@
-"""Solutions without names, brought into sheets that do the work of branches.
+"""Solutions without names, put into sheets, which then are the branches of the arm.
 
-Idea. A sheet has at most one solution of each vertex, and what is linked along mesh edges is in one
-sheet. So a sheet means the same at neighboring vertices, as a named branch does, and all that comes
-after takes it for one. Colors, the components of linked solutions, are the same either way.
+A sheet has at most one solution of each vertex of the surface, and what is linked along mesh edges
+is in one sheet. So a sheet means the same at neighboring vertices, as a named branch does. Between
+the vertices, and off the surface, a sheet is followed from the nearest vertex where it is valid
+(:class:`SheetKinematics`). Everything that comes after takes a sheet for a branch.
 
-Standard terms. Solutions are the points of a covering of the part; a sheet is one of its sheets,
-or several pieces of them. Links are lifts of mesh edges, made by continuation (path tracking).
-Components are put into sheets by first fit, largest first, as in greedy coloring of a graph: those
-that share a vertex, or have vertices next to each other, are in different sheets.
-
-Steps of the algorithm.
+In standard terms, solutions are the points of a covering of the part, links are lifts of mesh edges
+by continuation (path tracking), and a sheet is a sheet of the covering, or several pieces of one.
 
 1. :class:`Linking` compares all solutions at both ends of a mesh edge. A pair is linked at once if
    the step between them is small and clearly the nearest. What is left over at both ends is
    followed along the edge in small steps, from either end, and is linked if both ways agree.
-2. :func:`sheets_of` finds the components of linked solutions, and refuses one that has two
-   solutions of a vertex: the arm is cuspidal there.
-3. Components are put into sheets, largest first, each into the first sheet where it fits.
-4. Solutions that are not valid fill places that are free, so that each has a reason somewhere.
+2. :func:`sheets_of` finds the components of linked solutions. It refuses one that has two solutions
+   of a vertex: the arm is cuspidal there.
+3. Components are put into sheets, largest first, each into the first sheet where it fits: first
+   fit, as in greedy coloring of a graph. Two that share a vertex, or have vertices next to each
+   other, are in different sheets.
+4. Solutions that are not valid fill free places, so that each has a reason somewhere.
 
 Example. Vertices 0, 1 and 2 are a triangle, each with solutions a and b. The links 0a-1b and 1b-2a
 make a component; 0b, 1a and 2b are linked to nothing. Sheet 1 has the component, with a of vertex
 0, b of vertex 1 and a of vertex 2. As 0b, 1a and 2b are next to each other, each of them has a
 sheet of its own: sheets 2, 3 and 4.
 
-Complexity. For k edges and s solutions of a vertex O(k s^2) comparisons, edges in batches that fit
+For k edges and s solutions of a vertex there are O(k s^2) comparisons, edges in batches that fit
 into memory, and the steps of what is followed. Packing c components into t sheets looks at each
-solution t times at most, and t is bounded by ``MOST_SHEETS`` afterwards only.
+solution t times at most; ``MOST_SHEETS`` bounds t afterwards only.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TypeVar
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
+from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.arm.inverse import InverseKinematics
+from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import stays_in_limits
+from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.reach.smooth import bytes_of_following, joint_step, shorter_way
-from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
-from cellcolor.memory import at_once
+from cellcolor.frontend.reach.tracking import NewtonTracker, Solutions, Tracker, clearly_nearest
+from cellcolor.frontend.reach.validity import Judge
+from cellcolor.memory import at_once, chunks
 from cellcolor.mesh.triangle_mesh import grouped
-
-T = TypeVar("T", bound=np.generic)
 
 MOST_SHEETS = 60
 """A set of branches has to fit into one integer where slivers are cleaned."""
@@ -58,29 +61,128 @@ def edges_at_once(slots: int, joints: int) -> int:
     return at_once(slots * (slots * 8 * (4 * joints + 8) + bytes_of_following(joints)))
 
 
-@dataclass(frozen=True)
-class Sheets:
-    """Which solution of a vertex each sheet has.
+def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadline) -> PreparedArm:
+    """An arm whose solutions have no names, with sheets over a surface as branches.
 
-    Attributes:
-        slot: (n, sheets) the index of the solution among those of the vertex, -1 for none.
-        linked: (k, sheets) along which mesh edges the sheet is continuous.
+    Raises:
+        InputError: linked solutions are two of one vertex, or there are too many sheets.
+        OutOfTime: the deadline came first.
+    """
+    bare, robot, tracker = arm.bare, arm.robot, arm.bare.tracker(deadline)
+    found = bare.inverse(surface.vertices, -surface.normals, deadline)
+    verdicts = judge(found.reshape(-1, robot.joints), deadline)
+    solutions = tracker.described(verdicts.configurations.reshape(found.shape))
+    nodes = (verdicts.reasons == VALID).reshape(found.shape[:2])
+    limits = (robot.lower, robot.upper) if arm.setup.constraints.collision else None
+    linking = Linking(surface, nodes, solutions, tracker, limits)
+    edges = surface.edges()
+    links = [np.empty((0, 3), dtype=np.int64)]
+    together = edges_at_once(nodes.shape[1], robot.joints)
+    for first in range(0, len(edges), together):
+        deadline.check()
+        links.append(linking.links(edges[first : first + together]) + np.array([first, 0, 0]))
+    slot = sheets_of(surface, np.concatenate(links), nodes, solutions)
+    vertex = np.arange(len(slot))[:, None]
+    joints = np.where((slot >= 0)[:, :, None], solutions.joints[vertex, slot], np.nan)
+    valid = nodes[vertex, slot] & (slot >= 0)
+    own, kinematics = bare.kinematics, bare.kinematics
+    if isinstance(kinematics, TurnedKinematics):
+        robot, own = kinematics.straight, kinematics.own
+        poses = kinematics.straightened(surface.vertices, -surface.normals)
+    else:
+        poses = surface.vertices, -surface.normals
+    measure = replace(arm.measure, lever=own.lever)
+    sheets = SheetKinematics(own, NewtonTracker(robot, measure), poses, joints, valid)
+    if isinstance(kinematics, TurnedKinematics):
+        return replace(arm, kinematics=kinematics.with_own(sheets), nameless=bare)
+    return replace(arm, kinematics=sheets, nameless=bare)
+
+
+class SheetKinematics(InverseKinematics):
+    """Inverse kinematics whose branches are sheets over a surface.
+
+    The solutions at the vertices are known. Any other pose is reached from the nearest vertex where
+    the sheet is valid: the tip goes straight, and the tool's direction turns with it. There is none
+    if the motion jumps or meets a singularity on its way, or none of the nearest vertices will do.
     """
 
-    slot: Index
-    linked: Mask
+    def __init__(
+        self,
+        own: InverseKinematics,
+        tracker: NewtonTracker,
+        poses: tuple[Array, Array],
+        joints: Array,
+        valid: Mask,
+    ) -> None:
+        """Sheets over vertices.
 
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Of the sheets; the first one has the largest component."""
-        return tuple(f"sheet-{k}" for k in range(1, self.slot.shape[1] + 1))
+        Args:
+            own: the arm's family, which knows no names.
+            tracker: follows solutions.
+            poses: points (n, 3) in m and unit vectors (n, 3) of the tool at the vertices.
+            joints: (n, sheets, joints) in rad, NaN for none.
+            valid: (n, sheets) which of them are followed.
+        """
+        self.own, self._tracker = own, tracker
+        self.branches = tuple(f"sheet-{k}" for k in range(1, joints.shape[1] + 1))
+        self.reach, self.lever, self.viewpoints = own.reach, own.lever, own.viewpoints
+        there = np.isfinite(poses[0] + poses[1]).all(axis=1)  # a rule for the turn may say nothing
+        self._points, self._directions = (each[there] for each in poses)
+        self._joints, self._valid = joints[there], valid[there]
+        self._places = cKDTree(self._place(self._points, self._directions))
 
-    def arranged(self, values: NDArray[T], missing: float) -> NDArray[T]:
-        """Values (n, slots, ...) of solutions, by sheets (n, sheets, ...)."""
-        rows = np.arange(len(self.slot))[:, None]
-        arranged = values[rows, self.slot]
-        arranged[self.slot < 0] = missing
-        return arranged
+    def _place(self, points: Array, directions: Array) -> Array:
+        """Poses as points (n, 6), so that both sides of a thin part are far from each other."""
+        return np.concatenate([points, max(self.lever, self.reach / 10) * directions], axis=1)
+
+    def solve(
+        self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
+    ) -> Array:
+        """See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`."""
+        count = 1 if branches is not None else len(self.branches)
+        if branches is None:
+            branches = np.tile(np.arange(count), len(points))
+        every = np.repeat(np.arange(len(points)), count)
+        found = self._followed(points[every], directions[every], branches)
+        return found.reshape(len(points), count, self._joints.shape[2])
+
+    def _followed(self, points: Array, directions: Array, sheets: NDArray[np.intp]) -> Array:
+        found = np.full((len(points), self._joints.shape[2]), np.nan)
+        asked = np.flatnonzero(np.isfinite(points + directions).all(axis=1))
+        if not len(asked) or not len(self._points):
+            return found
+        places = self._place(points[asked], directions[asked])
+        off, near = self._places.query(places, k=np.arange(1, min(_NEAREST, len(self._points)) + 1))
+        at_vertex = off[:, 0] <= _SAME_PLACE
+        here = asked[at_vertex]
+        found[here] = self._joints[near[at_vertex, 0], sheets[here]]
+        ready = self._valid[near, sheets[asked][:, None]] & ~at_vertex[:, None]
+        rows = np.flatnonzero(ready.any(axis=1))
+        start, to = near[rows, np.argmax(ready[rows], axis=1)], asked[rows]
+        for part in chunks(len(rows), bytes_of_following(self._joints.shape[2])):
+            at, target = start[part], to[part]
+            way = Surface(
+                np.concatenate([self._points[at], points[target]]),
+                np.empty((0, 3), dtype=np.int64),
+                -np.concatenate([self._directions[at], directions[target]]),
+            )
+            ends = np.column_stack([np.arange(len(at)), np.arange(len(at)) + len(at)])
+            known = self._tracker.described(self._joints[at, sheets[target]][:, None])
+            begin, whole = known.take(slice(None), 0), np.ones(len(at))
+            found[target] = self._tracker.walk(way, ends, begin, whole)[0]
+        return found
+
+    def taken(self, directions: Array) -> Array:
+        """Those of the arm's family."""
+        return self.own.taken(directions)
+
+    def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
+        """Those of the arm's family."""
+        return self.own.remarks(points, directions)
+
+
+_NEAREST = 12  # vertices that are tried, one of which has the sheet
+_SAME_PLACE = 1e-9  # m
 
 
 @dataclass(frozen=True)
@@ -157,8 +259,8 @@ class Linking:
         return stays_in_limits(*self.limits, start, lowest, highest)
 
 
-def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions) -> Sheets:
-    """Sheets of all solutions, the valid ones by their links.
+def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions) -> Index:
+    """Which solution of a vertex each sheet has, (n, sheets), -1 for none; largest sheets first.
 
     Args:
         surface: the part.
@@ -181,10 +283,7 @@ def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions)
     if slot.shape[1] > MOST_SHEETS:
         message = f"its solutions fall into {slot.shape[1]} sheets, at most {MOST_SHEETS} fit"
         raise InputError(None, "robot.kinematics", message)
-    continuous = np.zeros((len(edges), slot.shape[1]), dtype=bool)
-    link, sheet = np.nonzero(slot[edges[row, 0]] == first[:, None])
-    continuous[row[link], sheet] = True
-    return Sheets(slot, continuous)
+    return slot
 
 
 def _by_size(present: Index, component: Index) -> list[Index]:

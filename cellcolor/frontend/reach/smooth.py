@@ -73,9 +73,10 @@ class Measure:
         clear = (nearest >= self.near_singular) & (step <= np.minimum(bound / 2, _TRUSTED))
         return np.asarray(clear | ((change <= self.policy.probe_spacing_m) & (step <= bound)))
 
-    def too_short(self, change: Array) -> Mask:
-        """Which steps (k,) are so short that one that is not settled is a jump."""
-        return np.asarray(change <= self.policy.probe_spacing_m / 2**_HALVINGS)
+    @property
+    def shortest(self) -> float:
+        """A change in m so small that a step with it that is not settled is a jump."""
+        return float(self.policy.probe_spacing_m / 2**_HALVINGS)
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,7 @@ def follow_edges(
         nearest = np.fmin(steps.first_determinant, steps.last_determinant)
         done = measure.settled(step, change, nearest)
         settled.append(steps.take(done))
-        smooth[row[~done & measure.too_short(change)]] = False
+        smooth[row[~done & (change <= measure.shortest)]] = False
         rest = steps.take(~done)
         return [rest.take(part) for part in chunks(len(rest), probing)]
 

@@ -22,6 +22,7 @@ from cellcolor.frontend.arm.kinematics import (
     signed_task_determinant,
     tip_jacobian,
 )
+from cellcolor.frontend.arm.newton import polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.frontend.reach.smooth import Measure, Motions, joint_step, shorter_way
@@ -45,7 +46,7 @@ class Solutions:
     apart: Array
     good: Mask
 
-    def take(self, *index: Index) -> Solutions:
+    def take(self, *index: Index | slice | int) -> Solutions:
         """Some of them, as numpy indexes."""
         return Solutions(*(getattr(self, each.name)[index] for each in fields(self)))
 
@@ -83,6 +84,7 @@ class Tracker:
         """
         self._robot, self._solve, self.measure, self._limits = robot, solve, measure, limits
         self._pose = slots * bytes_of_poses(robot.joints)  # bytes
+        self._shortest = measure.shortest
 
     def described(self, joints: Array) -> Solutions:
         """Solutions (n, s, joints) of n poses, with what is needed to tell them apart."""
@@ -91,7 +93,7 @@ class Tracker:
             joints, np.full(shape, np.nan), np.full(shape, np.inf), np.zeros(shape, dtype=bool)
         )
         for rows in chunks(len(joints), joints.shape[1] * bytes_of_poses(self._robot.joints)):
-            self._describe(whole.take(rows))  # type: ignore[arg-type]
+            self._describe(whole.take(rows))
         return whole
 
     def _describe(self, part: Solutions) -> None:
@@ -139,12 +141,10 @@ class Tracker:
             here = now.take(rows)
             way = shorter_way(here.joints, there.joints)
             step = np.abs(way).max(axis=1)
-            nearest = np.fmin(np.abs(here.determinants), np.abs(there.determinants))
             change = measure.changes(lengths[rows], turns[rows], at[rows], ahead[rows])
-            sure = clearly_nearest(step, here.apart, there.apart)
-            sure &= measure.settled(step, change, nearest)
+            sure = self._sure(step, change, here, there)
             # What is lost for good: a jump, or surely a point that no motion may pass.
-            smooth[rows[~sure & measure.too_short(change)]] = False
+            smooth[rows[~sure & (change <= self._shortest)]] = False
             smooth[rows[sure & ~there.good]] = False
             gone, landed = rows[sure], np.flatnonzero(sure)
             for each in fields(now):
@@ -160,11 +160,17 @@ class Tracker:
         now.joints[~smooth] = np.nan
         return now.joints, Motions(smooth, lowest, highest)
 
+    def _sure(self, step: Array, change: Array, here: Solutions, there: Solutions) -> Mask:
+        """Which steps (k,) lead to the same solution without a jump."""
+        nearest = np.fmin(np.abs(here.determinants), np.abs(there.determinants))
+        clear = clearly_nearest(step, here.apart, there.apart)
+        return clear & self.measure.settled(step, change, nearest)
+
     def _nearest(self, surface: Surface, edges: Index, way: Array, now: Solutions) -> Solutions:
         """The solutions (k,) at points of edges that are nearest to others of the same sign."""
         parts = []
         for rows in chunks(len(edges), self._pose):
-            here = now.take(rows)  # type: ignore[arg-type]
+            here = now.take(rows)
             found = self.described(self._solve(*along_edges(surface, edges[rows], way[rows])))
             step = joint_step(found.joints, here.joints[:, None])
             same = np.sign(found.determinants) == np.sign(here.determinants)[:, None]
@@ -179,6 +185,35 @@ class Tracker:
         return Solutions(
             *(np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(now))
         )
+
+
+_NEAR = 0.25  # rad; no joint moves farther on a step of Newton's method
+_CHANGE = 4.0  # by this factor at most the determinant changes on it
+_SHORTER = 8  # than the spacing of probes: no step is shorter
+
+
+class NewtonTracker(Tracker):
+    """Follows one solution by Newton's method, without knowing the others of a pose.
+
+    It finds out which solution is meant at a pose. Whether a motion there is continuous is tested
+    as of named branches (:mod:`cellcolor.frontend.reach.smooth`), in much shorter steps.
+    """
+
+    def __init__(self, robot: Robot, measure: Measure) -> None:
+        """An arm whose tool is on the last axis, and what is a jump."""
+        super().__init__(robot, lambda points, _: np.empty((len(points), 0, 0)), measure, None, 1)
+        self._shortest = measure.policy.probe_spacing_m / _SHORTER
+
+    def _sure(self, step: Array, change: Array, here: Solutions, there: Solutions) -> Mask:  # noqa: ARG002
+        """Small steps on which the determinant changes little, and so keeps its sign."""
+        with np.errstate(divide="ignore", invalid="ignore"):
+            ratio = np.asarray(there.determinants / here.determinants)
+        return np.asarray((step <= _NEAR) & (ratio >= 1 / _CHANGE) & (ratio <= _CHANGE))
+
+    def _nearest(self, surface: Surface, edges: Index, way: Array, now: Solutions) -> Solutions:
+        points, directions = along_edges(surface, edges, way)
+        joints = polished(self._robot, now.joints[:, None], points, directions, np.inf)
+        return self.described(joints).take(slice(None), 0)
 
 
 def _none(like: Solutions) -> Solutions:

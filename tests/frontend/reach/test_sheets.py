@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from independent import wrapped
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import shortest_path
-from shipped import shipped
+from shipped import ROBOTS, shipped
 
 import cellcolor
 from cellcolor.arrays import Array
@@ -30,7 +30,7 @@ from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, 
 from cellcolor.frontend.displaced import run_stages
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.prepared import PreparedScene, prepare
+from cellcolor.frontend.prepared import PreparedScene, named, prepare
 from cellcolor.frontend.reach.sheets import Linking, edges_at_once, sheets_of
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
@@ -38,17 +38,16 @@ from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Stages
 from cellcolor.memory import MEMORY
-from cellcolor.motion.limits import motion_of
 
 
-class Unnamed:
+class Unnamed(InverseKinematics):
     """A family of arms without its names, its solutions in another order at every point."""
 
     branches = ()
 
     def __init__(self, inner: InverseKinematics) -> None:
         self._inner = inner
-        self.lever = inner.lever
+        self.lever, self.reach, self.viewpoints = inner.lever, inner.reach, inner.viewpoints
 
     def solve(self, points: Array, directions: Array, branches: Any = None) -> Array:
         assert branches is None
@@ -57,14 +56,18 @@ class Unnamed:
         return np.take_along_axis(found, np.argsort(salt, axis=1)[:, :, None], axis=1)
 
 
-def both(scene: Scene) -> tuple[Stages, Stages]:
-    """What comes out with names and without."""
+def without_names(scene: Scene) -> tuple[PreparedScene, PreparedScene]:
+    """A scene as it is, and with its arm's solutions told apart by continuity alone."""
     prepared = prepare(scene)
     arm = replace(prepared.arm, kinematics=Unnamed(prepared.kinematics))
-    unnamed = replace(prepared, workplace=replace(prepared.workplace, arm=arm))
-    return run_stages(prepared, StageClock(NEVER, None)), run_stages(
-        unnamed, StageClock(NEVER, None)
-    )
+    unnamed = named(replace(prepared, workplace=replace(prepared.workplace, arm=arm)))
+    return prepared, unnamed
+
+
+def both(scene: Scene) -> tuple[Stages, Stages]:
+    """What comes out with names and without."""
+    first, second = (run_stages(each, StageClock(NEVER, None)) for each in without_names(scene))
+    return first, second
 
 
 def as_sets(stages: Stages) -> set[frozenset[tuple[int, tuple[float, ...]]]]:
@@ -80,14 +83,12 @@ def as_sets(stages: Stages) -> set[frozenset[tuple[int, tuple[float, ...]]]]:
 @pytest.mark.second
 @pytest.mark.parametrize("name", ["wok", "square", "half_pipe"])
 def test_colors_are_the_same_without_names(name: str) -> None:
-    named, unnamed = both(shipped(name, 200))
-    assert len(as_sets(named)) >= 3
-    assert as_sets(unnamed) == as_sets(named)
-    assert [(c.i, c.j) for c in unnamed.cleaned.cracks] == [
-        (c.i, c.j) for c in named.cleaned.cracks
-    ]
+    own, unnamed = both(shipped(name, 200))
+    assert len(as_sets(own)) >= 3
+    assert as_sets(unnamed) == as_sets(own)
+    assert [(c.i, c.j) for c in unnamed.cleaned.cracks] == [(c.i, c.j) for c in own.cleaned.cracks]
     # Reasons too, but for the order.
-    for first, second in zip(named.candidates.reasons, unnamed.candidates.reasons, strict=True):
+    for first, second in zip(own.candidates.reasons, unnamed.candidates.reasons, strict=True):
         assert sorted(first.tolist()) == sorted(second.tolist())
     assert unnamed.branches[0] == "sheet-1" and not unnamed.named
 
@@ -97,9 +98,9 @@ def test_colors_are_the_same_without_names(name: str) -> None:
     "name", ["wok", "wok_obstacle", "square", "half_pipe", "hemisphere_flat", "hemisphere_tilted"]
 )
 def test_colors_of_the_six_scenes_are_the_same_without_names(name: str) -> None:
-    named, unnamed = both(shipped(name))
-    assert as_sets(unnamed) == as_sets(named)
-    assert unnamed.links.linked.sum() == named.links.linked.sum()
+    own, unnamed = both(shipped(name))
+    assert as_sets(unnamed) == as_sets(own)
+    assert unnamed.links.linked.sum() == own.links.linked.sum()
 
 
 @given(
@@ -136,19 +137,20 @@ def test_without_names_an_arm_with_passing_wrist_axes_has_colors() -> None:
 def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     """All solutions (n, s, joints) of a scene, the valid ones (n, s), and links (l, 3) of them."""
     surface = prepared.surface
-    found = prepared.arm.inverse(surface.vertices, -surface.normals)
+    arm = prepared.arm.bare
+    found = arm.inverse(surface.vertices, -surface.normals)
     verdicts = prepared.judge(found.reshape(-1, 6))
     nodes = (verdicts.reasons == 0).reshape(found.shape[:2])
-    solutions = prepared.arm.tracker().described(verdicts.configurations.reshape(found.shape))
+    solutions = arm.tracker().described(verdicts.configurations.reshape(found.shape))
     limits = prepared.robot.lower, prepared.robot.upper
-    pairs = Linking(surface, nodes, solutions, prepared.arm.tracker(), limits).links(
-        surface.edges()
-    )
+    pairs = Linking(surface, nodes, solutions, arm.tracker(), limits).links(surface.edges())
     return solutions.joints, nodes, pairs
 
 
 @pytest.mark.second
-def test_a_cuspidal_arm_is_refused_with_both_configurations() -> None:
+def test_a_cuspidal_arm_is_refused_with_both_configurations(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     scene = cuspidal_scene()
     with pytest.raises(InputError, match="cuspidal") as caught:
         build_surface(scene)
@@ -157,6 +159,7 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations() -> None:
     vertex = int(str(caught.value.field).removeprefix("vertices[").removesuffix("]"))
 
     # It is true: an independent motion through regular configurations leads from one to the other.
+    monkeypatch.setattr("cellcolor.frontend.prepared.named", lambda prepared, _: prepared)
     prepared = prepare(scene)
     surface, robot = prepared.surface, prepared.robot
     edges = surface.edges()
@@ -184,22 +187,6 @@ def test_a_cuspidal_arm_is_refused_with_both_configurations() -> None:
     assert wrapped(q - joints[vertex, own[first] % slots]).max() < 1e-6
     assert wrapped(q - joints[vertex, last % slots]).max() > 0.1
     assert (values > 0).all() or (values < 0).all()
-
-
-def test_without_names_an_arm_is_solved_and_nothing_is_painted_or_planned() -> None:
-    scene = plate(dh_arms.urdf("passing"), "eaik", vertices=60)
-    built = cellcolor.build(scene)
-    solution = cellcolor.solve(built.surface)
-    assert solution.segments == 1
-    with pytest.raises(InputError, match="have no names") as caught:
-        motion_of(prepare(scene))
-    assert caught.value.field == "robot.kinematics"
-    with pytest.raises(InputError, match="have no names"):
-        cellcolor.paint(built, solution)
-    told: list[str] = []
-    with pytest.raises(InputError, match="have no names"):
-        cellcolor.plan(scene, progress=told.append)
-    assert "colors" not in told  # refused before anything long begins
 
 
 def test_out_of_reach_of_all_there_are_no_colors() -> None:
@@ -233,9 +220,8 @@ def test_components_next_to_each_other_are_in_different_sheets() -> None:
     ring = {frozenset(e) for e in disc.edges.tolist() if 0 not in e}
     sheets = sheets_of(disc.surface, disc.along(0, 0, ring), nodes, disc.solutions)
     # The ring in the first, the center in the second; what is not valid fills what is free.
-    assert sheets.slot[1:, 0].tolist() == [0] * 6 and sheets.slot[0].tolist() == [1, 0]
-    assert (np.sort(sheets.slot, axis=1) == [0, 1]).all()
-    assert sheets.linked.sum() == len(ring) and not sheets.linked[:, 1].any()
+    assert sheets[1:, 0].tolist() == [0] * 6 and sheets[0].tolist() == [1, 0]
+    assert (np.sort(sheets, axis=1) == [0, 1]).all()
 
 
 def test_a_component_and_what_is_linked_to_nothing() -> None:
@@ -248,9 +234,7 @@ def test_a_component_and_what_is_linked_to_nothing() -> None:
     solutions = Solutions(np.zeros((3, 2, 6)), ones, ones, ones > 0)
     sheets = sheets_of(surface, links, ones > 0, solutions)
     none = -1
-    assert sheets.slot.T.tolist() == [[a, b, a], [b, none, none], [none, a, none], [none, none, b]]
-    linked = {tuple(each) for each in np.argwhere(sheets.linked).tolist()}
-    assert linked == {(rows[0, 1], 0), (rows[1, 2], 0)}
+    assert sheets.T.tolist() == [[a, b, a], [b, none, none], [none, a, none], [none, none, b]]
 
 
 def test_a_solution_linked_to_another_one_of_its_vertex_is_refused() -> None:
@@ -317,3 +301,12 @@ def test_as_many_edges_as_are_compared_at_once_take_what_was_estimated(
     assert len(found) == count * slots
     # The estimate counts motions that are followed as well, most of it for two slots of two joints.
     assert MEMORY / 12 < peak <= MEMORY
+
+
+def test_an_arm_without_names_is_driven_and_judged_like_the_others() -> None:
+    """Painting, motion and judge follow sheets where they follow branches of other arms."""
+    bare = plate(dh_arms.urdf("passing"), "eaik", vertices=60)
+    tool = {"tool_urdf": str(ROBOTS / "polishing_tool.urdf")}
+    planned = cellcolor.plan(bare.with_setup(bare.setup.varied(robot=tool)))
+    assert planned.verdict.valid and planned.verdict.lift_offs == 0
+    assert planned.solution.lower_bound == 1 and "sheet" in planned.built.branches[0]
