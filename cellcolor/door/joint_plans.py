@@ -1,4 +1,7 @@
-"""Plans in joint angles at the front door, converted to colors of their scene."""
+"""Plans in joint angles at the front door, converted to colors of their scene.
+
+What holds of the coloring that a tool path makes is proved in docs/semantics.md, section 9.
+"""
 
 from __future__ import annotations
 
@@ -10,14 +13,15 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.data.joint_plan import ContactPath, JointPlan
 from cellcolor.data.plan import Plan
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
+from cellcolor.data.vertex_contacts import VertexContacts
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.extras import extras_for
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.oracle.contact_coloring import ContactColoring, coloring_of
-from cellcolor.oracle.joint_verdicts import JointViolation
+from cellcolor.oracle import JointViolation
 
 if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult
@@ -26,6 +30,24 @@ AnyPath: TypeAlias = ContactPath | Trajectory | TrajectoryTable
 """A tool path with its joints."""
 
 _NO_COLOR = -1  # in a plan: a configuration of no color, which no vertex has
+
+
+@dataclass(frozen=True)
+class ContactColoring:
+    """What a path's contacts make of a surface.
+
+    Attributes:
+        plan: each vertex in the color of its first contact, None without any.
+        color_changes: how often the color changes in contact: between one contact and the next of
+            the same stroke.
+        runs: into how many stretches the contacts fall that are in the color of ``plan``, if they
+            are cut wherever the stroke ends, the color changes, or the path does not stay at its
+            vertex or go on to a neighbor along an uncracked edge.
+    """
+
+    plan: Plan
+    color_changes: int
+    runs: int
 
 
 @dataclass(frozen=True)
@@ -128,6 +150,31 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
     ]
     problems = (*misplaced, *map(str, violations))
     return PathColors(path, coloring, tuple(violations), problems, len(reachable))
+
+
+def coloring_of(surface: LabelledSurface, contacts: VertexContacts) -> ContactColoring:
+    """The coloring that the first contacts make, and the path's stretches in it."""
+    stroke, vertex, color = contacts.stroke, contacts.vertex, contacts.color
+    touched, first = np.unique(vertex, return_index=True)
+    own = np.full(len(surface.vertices), -1, dtype=np.int64)
+    own[touched] = color[first]
+    together = stroke[1:] == stroke[:-1]
+    changes = int((together & (color[1:] != color[:-1])).sum())
+    kept = np.flatnonzero(color == own[vertex])
+    joined = 0
+    for one, other in zip(kept[:-1].tolist(), kept[1:].tolist(), strict=True):
+        if stroke[one] == stroke[other] and color[one] == color[other]:
+            joined += _adjoin(surface, int(vertex[one]), int(vertex[other]), int(color[one]))
+    plan = Plan(tuple([None if number < 0 else number for number in own.tolist()]))
+    return ContactColoring(plan, changes, len(kept) - joined)
+
+
+def _adjoin(surface: LabelledSurface, a: int, b: int, color: int) -> bool:
+    """Whether two vertices are one, or have an edge along which a color is continuous."""
+    if a == b:
+        return True
+    edge = (a, b) in surface.left_of or (b, a) in surface.left_of
+    return edge and color not in surface.cracked(a, b)
 
 
 def _violation(

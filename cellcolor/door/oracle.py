@@ -181,7 +181,7 @@ class Oracle:
 
         Returns:
             For a tool path a
-            :class:`PathVerdict <cellcolor.oracle.joint_verdicts.PathVerdict>`.
+            :class:`PathVerdict <cellcolor.oracle.verdict.PathVerdict>`.
 
         Raises:
             BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.

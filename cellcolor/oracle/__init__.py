@@ -17,9 +17,8 @@ that are proved to have too many; it passes as well if nothing is known.
 """
 
 from cellcolor.oracle.improvement import BetterPainting, Improvement
-from cellcolor.oracle.joint_verdicts import JointViolation, PathVerdict
 from cellcolor.oracle.ranges import Proof, ProvenRange, prove
-from cellcolor.oracle.verdict import Verdict
+from cellcolor.oracle.verdict import JointViolation, PathVerdict, Verdict
 
 __all__ = [
     "BetterPainting",

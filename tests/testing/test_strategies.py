@@ -13,8 +13,13 @@ from cellcolor.checker.vertex_plan import PlanReport, check_plan
 from cellcolor.data.instance import Instance
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.testing.sheets import sheet
-from cellcolor.testing.strategies import broken_plans, instances, labelled_surfaces, valid_plans
+from cellcolor.testing.strategies import (
+    broken_plans,
+    instances,
+    labelled_surfaces,
+    sheet,
+    valid_plans,
+)
 from examples import examples
 
 

@@ -14,8 +14,8 @@ import cellcolor
 from cellcolor.checker.vertex_plan import check_plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.vertex_contacts import VertexContacts
+from cellcolor.door.joint_plans import coloring_of
 from cellcolor.oracle import ProvenRange
-from cellcolor.oracle.contact_coloring import coloring_of
 from examples import examples
 
 RED, BLUE = 0, 1
