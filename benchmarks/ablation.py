@@ -15,8 +15,8 @@ from ortools.sat.python import cp_model
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
-from cellcolor.lab.executors.alone import Limits, run_alone
 from cellcolor.lab.families import hub_grid
+from cellcolor.processes import Limits, run_alone
 from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, Group

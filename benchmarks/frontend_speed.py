@@ -30,9 +30,9 @@ from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, Scene, build_surface
 from cellcolor.frontend.contact.fcl_bodies import body_shape
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.lab.executors.alone import Ended
 from cellcolor.lab.runs.table import TableFile
 from cellcolor.lab.runs.timings import Timing, timing
+from cellcolor.processes import Ended
 
 SCENE = Path(__file__).parents[1] / "instances" / "scenes" / "hemisphere_flat.toml"
 BUILDS = 3

@@ -27,7 +27,7 @@ from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.solution import SearchSpace, Solution, Status
 from cellcolor.deadline import Deadline
 from cellcolor.lab.library import INDEX, SOLUTIONS, Origin, entry_of, graph_files, graph_of
-from cellcolor.lab.machine import this_version
+from cellcolor.machine import this_version
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options, Start
 

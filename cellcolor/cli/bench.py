@@ -123,7 +123,7 @@ def run(output: Path | None, **given: Any) -> Exit:
 @_TABLES
 def summary(tables: tuple[Path, ...]) -> Exit:
     """Sum tables up as Markdown; exit code 1 if two runs contradict each other."""
-    from cellcolor.lab.runs.agreement import disagreements
+    from cellcolor.lab.runs.row import disagreements
     from cellcolor.lab.runs.summary import summary_of_runs, summary_of_timings
 
     rows, timings = _read(tables)
@@ -151,7 +151,7 @@ def summary(tables: tuple[Path, ...]) -> Exit:
 def plots(tables: tuple[Path, ...], output: Path) -> Exit:
     """Draw tables: cactus, growth, scatter against the strongest rival, performance profile."""
     from cellcolor.door.extras import extras_for
-    from cellcolor.lab.runs.series import plots_of
+    from cellcolor.lab.runs.statistics import plots_of
 
     with extras_for("plots"):
         from cellcolor.pictures.plots import render_plot

@@ -23,12 +23,18 @@ from cellcolor.data.solution import SearchSpace
 from cellcolor.data.wording import count
 from cellcolor.door.shipped import find_file, library
 from cellcolor.errors import CellcolorError, InputError, SolverMissing
-from cellcolor.lab.runs.agreement import disagreements
-from cellcolor.lab.runs.contestants import Contestant, contestant
-from cellcolor.lab.runs.row import Row
+from cellcolor.lab.runs.row import Row, disagreements
 from cellcolor.lab.runs.statistics import by, contestants_of, median_seconds
-from cellcolor.lab.runs.subjects import Specimen, families_like, of_family, taking_turns
-from cellcolor.lab.runs.sweep import Experiment, Sweep
+from cellcolor.lab.runs.sweep import (
+    Contestant,
+    Experiment,
+    Specimen,
+    Sweep,
+    contestant,
+    families_like,
+    of_family,
+    taking_turns,
+)
 from cellcolor.lab.runs.table import TableFile
 
 _LIBRARY = "library"

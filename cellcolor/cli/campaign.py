@@ -18,8 +18,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
 from cellcolor.files.temporary import remove_strays
 from cellcolor.files.writing import Output, is_folder_or_nothing, kind_of_format, write
-from cellcolor.lab.campaign.pool import Outcome, outcomes_of_campaign
-from cellcolor.lab.campaign.summary import Summary, Tally
+from cellcolor.lab.campaign.pool import Outcome, Summary, Tally, outcomes_of_campaign
 
 
 def run_campaign(

@@ -15,7 +15,7 @@ from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
-    from cellcolor.lab.executors.work import Workers
+    from cellcolor.lab.workers import Workers
     from cellcolor.solvers.interface import OnProgress
 
 
@@ -130,11 +130,11 @@ def workers_for(jobs: int, cluster: str | None) -> Workers:
         InputError: there is no such cluster, or no Dask.
     """
     if cluster is None:
-        from cellcolor.lab.executors.local import LocalWorkers
+        from cellcolor.lab.workers import LocalWorkers
 
         return LocalWorkers(jobs)
     from cellcolor.door.extras import extras_for
 
     with extras_for("--cluster"):
-        from cellcolor.lab.executors.cluster import ClusterWorkers
+        from cellcolor.lab.cluster import ClusterWorkers
     return ClusterWorkers(cluster)

@@ -72,7 +72,7 @@ def _lack(purpose: Path | str, module: str, extra: str) -> InputError:
 
 def show_versions() -> None:
     """Print the versions of cellcolor, of Python and of all that cellcolor uses."""
-    from cellcolor.lab.machine import this_machine
+    from cellcolor.machine import this_machine
 
     machine = this_machine()
     rows = [

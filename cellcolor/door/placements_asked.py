@@ -15,9 +15,9 @@ from annotated_types import Ge, Le
 
 from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError, InputError
-from cellcolor.lab.executors.alone import Limits
-from cellcolor.lab.executors.work import Task, Workers, as_they_end
 from cellcolor.lab.runs.table import TableFile
+from cellcolor.lab.workers import Task, Workers, as_they_end
+from cellcolor.processes import Limits
 from cellcolor.questions.placements import PlacedMinimum, Pose
 from cellcolor.version import __version__
 

@@ -15,8 +15,7 @@ from cellcolor.door.placements_asked import AskedPlacements, PlacementTable
 from cellcolor.door.subject import scene_or_file
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
-from cellcolor.lab.executors.local import LocalWorkers
-from cellcolor.lab.executors.work import Workers
+from cellcolor.lab.workers import LocalWorkers, Workers
 from cellcolor.questions.placements import Leeway, PlacedMinimum, PlacementMap, Placements
 
 if TYPE_CHECKING:

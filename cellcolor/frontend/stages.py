@@ -18,9 +18,9 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
+from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.reach.between import (
     at_domain_border,
     bytes_of_point,

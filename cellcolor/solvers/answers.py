@@ -10,8 +10,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 from cellcolor.errors import InputError
 from cellcolor.solvers.joined_chains import division_of_chains
-from cellcolor.solvers.linear.coloring import Coloring
-from cellcolor.solvers.linear.reading import joined_and_linked, require_solution
+from cellcolor.solvers.linear.coloring import Coloring, joined_and_linked, require_solution
 from cellcolor.solvers.seamed import Seamed
 
 

@@ -10,9 +10,8 @@ from cellcolor.data.instance import Instance
 from cellcolor.files.writing import FileKind
 from cellcolor.solvers.clingo import asp_facts
 from cellcolor.solvers.linear.coloring import Coloring
-from cellcolor.solvers.linear.constraints import Model
-from cellcolor.solvers.linear.formats import mps, opb, wcnf
-from cellcolor.solvers.minizinc.data import minizinc_data
+from cellcolor.solvers.linear.model import Model, mps, opb, wcnf
+from cellcolor.solvers.minizinc import minizinc_data
 from cellcolor.solvers.seamed import Seamed
 
 

@@ -36,11 +36,11 @@ _OWN = {
     "dfs": "cellcolor.solvers.dfs:ReferenceSolver",
     "clingo": "cellcolor.solvers.clingo:ClingoSolver",
     "choco": "cellcolor.solvers.encodings.choco:ChocoSolver",
-    "highs": "cellcolor.solvers.linear.rival:HighsSolver",
-    "scip": "cellcolor.solvers.linear.rival:ScipSolver",
-    "maxsat": "cellcolor.solvers.linear.rival:MaxSatSolver",
-    "gecode": "cellcolor.solvers.minizinc.solver:GecodeSolver",
-    "chuffed": "cellcolor.solvers.minizinc.solver:ChuffedSolver",
+    "highs": "cellcolor.solvers.linear.rivals:HighsSolver",
+    "scip": "cellcolor.solvers.linear.rivals:ScipSolver",
+    "maxsat": "cellcolor.solvers.linear.rivals:MaxSatSolver",
+    "gecode": "cellcolor.solvers.minizinc:GecodeSolver",
+    "chuffed": "cellcolor.solvers.minizinc:ChuffedSolver",
 }
 OWN_NAMES = tuple(_OWN)
 """The names of this package's own solvers."""

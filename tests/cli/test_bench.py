@@ -152,8 +152,8 @@ class TestRun:
     def test_a_solver_that_does_not_hear_of_the_end(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("cellcolor.lab.runs.once._START_UP", 3.0)
-        monkeypatch.setattr("cellcolor.lab.runs.once._CHECKING", 0.0)
+        monkeypatch.setattr("cellcolor.lab.runs.sweep._START_UP", 3.0)
+        monkeypatch.setattr("cellcolor.lab.runs.sweep._CHECKING", 0.0)
         table = tmp_path / "t.csv"
         solvers = ("--solver", "deaf", "--solver", "dfs")
         assert run("bench", "run", RING, *solvers, "--time-limit", "0.1", "-o", table) == 0
@@ -225,7 +225,7 @@ class TestRun:
     def test_no_cluster_there(self, capsys: Capture, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setitem(sys.modules, "distributed", None)
         # Another test may have imported it before.
-        monkeypatch.delitem(sys.modules, "cellcolor.lab.executors.cluster", raising=False)
+        monkeypatch.delitem(sys.modules, "cellcolor.lab.cluster", raising=False)
         assert run("bench", "run", RING, "--cluster", "tcp://127.0.0.1:9") == 2
         assert "--cluster: needs distributed: pip install 'fewest-lift-offs[cluster]'" in (
             capsys.readouterr().err

@@ -215,7 +215,7 @@ def test_more_than_the_machine_has_is_refused(monkeypatch: pytest.MonkeyPatch) -
 def test_a_whole_build(arm: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Beside what is kept for each vertex, no more than the steps that call each other may take."""
     scene = prepared(arm).scene.varied(object={"target_vertices": 1_000})
-    monkeypatch.setattr("cellcolor.frontend.processes._cores", lambda: 1)
+    monkeypatch.setattr("cellcolor.frontend.forked._cores", lambda: 1)
     monkeypatch.setattr(memory, "MEMORY", SMALL)
     monkeypatch.setattr(memory, "CACHE", SMALL)
     vertices = 1_000

@@ -28,15 +28,21 @@ from cellcolor.lab.campaign.agreement import (
     MeshFinding,
     compare_on_mesh,
     compare_solvers,
+    fewest_by_vertices,
 )
-from cellcolor.lab.campaign.cases import KINDS, draw_case
-from cellcolor.lab.campaign.pool import Outcome, Wrong, examine, outcomes_of_campaign
+from cellcolor.lab.campaign.pool import (
+    KINDS,
+    Outcome,
+    Summary,
+    Wrong,
+    draw_case,
+    examine,
+    outcomes_of_campaign,
+)
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
-from cellcolor.lab.campaign.summary import Summary
-from cellcolor.lab.campaign.vertex_colorings import fewest_by_vertices
-from cellcolor.lab.executors.alone import Ended
-from cellcolor.lab.executors.work import Task
 from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.lab.workers import Task
+from cellcolor.processes import Ended
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Answer, OnProgress, Options

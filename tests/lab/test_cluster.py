@@ -14,14 +14,14 @@ from library import PAPER
 
 import cellcolor
 from cellcolor.errors import InputError
-from cellcolor.lab.executors.alone import Ended, Limits
-from cellcolor.lab.executors.work import Task, as_they_end
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.table import read_table
+from cellcolor.lab.workers import Task, as_they_end
+from cellcolor.processes import Ended, Limits
 
 distributed = pytest.importorskip("distributed", reason="the extra 'cluster' is not installed")
 
-from cellcolor.lab.executors.cluster import ClusterWorkers  # noqa: E402
+from cellcolor.lab.cluster import ClusterWorkers  # noqa: E402
 
 pytestmark = pytest.mark.second
 
@@ -97,6 +97,6 @@ def test_leaving_ends_the_work(address: str, tmp_path: Path) -> None:
 
 
 def test_nobody_there(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("cellcolor.lab.executors.cluster._PATIENCE", 0.2)
+    monkeypatch.setattr("cellcolor.lab.cluster._PATIENCE", 0.2)
     with pytest.raises(InputError, match=r"cluster: tcp://127\.0\.0\.1:9 does not answer"):
         ClusterWorkers("tcp://127.0.0.1:9")

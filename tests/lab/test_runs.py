@@ -13,24 +13,27 @@ from hypothesis import strategies as st
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError
-from cellcolor.lab.runs.agreement import compared, disagreements
-from cellcolor.lab.runs.row import Row
-from cellcolor.lab.runs.series import cactus, growth, plots_of, profile, scatter
+from cellcolor.lab.runs.row import Row, compared, disagreements
 from cellcolor.lab.runs.statistics import (
+    cactus,
     common,
     contestants_of,
+    growth,
     median_seconds,
     par2,
+    plots_of,
+    profile,
     ratios,
+    scatter,
     strongest,
 )
-from cellcolor.lab.runs.subjects import (
+from cellcolor.lab.runs.summary import summary_of_runs
+from cellcolor.lab.runs.sweep import (
     families_like,
     family_names,
     of_family,
     taking_turns,
 )
-from cellcolor.lab.runs.summary import summary_of_runs
 from cellcolor.lab.runs.table import TableFile, read_table
 
 ROW = Row(

@@ -23,8 +23,8 @@ from cellcolor.deadline import NEVER
 from cellcolor.door.placing import save_map
 from cellcolor.frontend import Scene
 from cellcolor.frontend.parts.placement import Placement
-from cellcolor.lab.executors.alone import Ended
-from cellcolor.lab.executors.work import Task, Workers
+from cellcolor.lab.workers import Task, Workers
+from cellcolor.processes import Ended
 from cellcolor.questions.placements import (
     VARIABLES,
     PlacedMinimum,

@@ -22,8 +22,7 @@ from cellcolor.solvers.bounds.conflicts import conflicts
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat import model_search, windows
-from cellcolor.solvers.cpsat.cuts import fewest
+from cellcolor.solvers.cpsat import cuts, model_search, windows
 from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.full import full_model, model_size
@@ -352,7 +351,7 @@ def test_what_there_is_no_time_to_build_is_not_begun(
         raise AssertionError("a model was begun")
 
     monkeypatch.setattr(model_search, "full_model", never)
-    monkeypatch.setattr(fewest, "build_apart", never)
+    monkeypatch.setattr(cuts, "build_apart", never)
     instance = hub(1, 130, 4)
     options = Options(deadline=Deadline.after(1.0), fewest_cuts=fewest_cuts)
     assert 4e5 * model_module.SECONDS_A_TERM > 1.0

@@ -25,7 +25,7 @@ from cellcolor.solvers.answers import read_answer
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.linear.coloring import Coloring, estimated_terms
-from cellcolor.solvers.linear.constraints import Model
+from cellcolor.solvers.linear.model import Model
 from cellcolor.solvers.portable import PORTABLE
 from cellcolor.solvers.registry import REFERENCE
 from examples import examples

@@ -11,17 +11,17 @@ import pytest
 from library import PAPER
 from rooms import four_colors_in_turn
 
+from cellcolor import processes
 from cellcolor.cli.solving import Interrupted
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
 from cellcolor.lab.families import hub, hub_grid, planar_graph
-from cellcolor.solvers import child as child_module
+from cellcolor.processes import Child
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.child import Child
 from cellcolor.solvers.interface import Options
-from cellcolor.solvers.linear import rival
+from cellcolor.solvers.linear import rivals
 from cellcolor.solvers.linear.coloring import Coloring
 from cellcolor.solvers.registry import REFERENCE, make_solver, solver_version
 
@@ -85,10 +85,10 @@ def test_the_best_at_the_time_limit(monkeypatch: pytest.MonkeyPatch) -> None:
     model = Coloring(instance).model
     alone = [f"x{v}" for v in model.costs if model.names[v][0] == "alone"]
     says = f"echo bound 1.99999; echo solution {' '.join(alone)}; exec sleep 600"
-    start = child_module.subprocess.Popen
-    monkeypatch.setattr(rival, "find_spec", lambda _: True)
+    start = processes.subprocess.Popen
+    monkeypatch.setattr(rivals, "find_spec", lambda _: True)
     monkeypatch.setattr(
-        child_module.subprocess,
+        processes.subprocess,
         "Popen",
         lambda _, **options: start(["/bin/sh", "-c", says], **options),
     )
@@ -160,14 +160,14 @@ def test_a_program_that_is_not_there(tmp_path: Path) -> None:
 def test_a_solver_that_fails_is_an_error_or_a_note(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without any result it is an error; what it had found or proved before is kept."""
     instance = planar_graph(3, 7, 11, 3)
-    start = child_module.subprocess.Popen
+    start = processes.subprocess.Popen
     scripts = iter(("raise SystemExit('broken')", "print('bound 2'); raise SystemExit('broken')"))
 
     def replaced(_command: object, **options: object) -> object:
         return start([sys.executable, "-c", next(scripts)], **options)
 
-    monkeypatch.setattr(rival, "find_spec", lambda _: True)
-    monkeypatch.setattr(child_module.subprocess, "Popen", replaced)
+    monkeypatch.setattr(rivals, "find_spec", lambda _: True)
+    monkeypatch.setattr(processes.subprocess, "Popen", replaced)
     with pytest.raises(CellcolorError, match=r"highs: .*broken"):
         solve(instance, Options(), "highs")
     solution = solve(instance, Options(), "highs")
@@ -176,7 +176,7 @@ def test_a_solver_that_fails_is_an_error_or_a_note(monkeypatch: pytest.MonkeyPat
 
 
 def test_missing_ones_say_how_to_get_them(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(rival, "find_spec", lambda _: None)
+    monkeypatch.setattr(rivals, "find_spec", lambda _: None)
     monkeypatch.setenv("PATH", "")
     for name in RIVALS:
         with pytest.raises(SolverMissing, match=f"the solver {name} is not installed: "):

@@ -11,7 +11,7 @@ import cellcolor
 from cellcolor.data.instance import Instance
 from cellcolor.errors import SolverMissing, TooLarge
 from cellcolor.lab.families import hub_with_loops
-from cellcolor.lab.families.small import small_islands_and_holes
+from cellcolor.lab.families.registry import SMALL
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.registry import make_solver
@@ -33,7 +33,7 @@ def test_a_rival_finds_what_the_depth_first_search_finds(solver: str, seed: int)
         make_solver(solver)
     except SolverMissing:
         pytest.skip(f"{solver} is not installed")
-    made = small_islands_and_holes(seed)
+    made = SMALL["islands, holes"](seed)
     instance = made if isinstance(made, Instance) else cellcolor.decompose(made)
     assert instance.most_live_loops > 1
     expected = solve(instance, Options(), "dfs")

@@ -16,8 +16,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any
 
-from cellcolor.lab.executors.alone import Ended
-from cellcolor.lab.executors.work import Task, Workers
+from cellcolor.lab.workers import Task, Workers
+from cellcolor.processes import Ended
 
 _CHILD = "import os, sys, time; open(sys.argv[1], 'a').write(f'{os.getpid()}\\n'); time.sleep(600)"
 

@@ -9,14 +9,11 @@ neighbor.
 
 from __future__ import annotations
 
-import io
-import subprocess
-import sys
-import tempfile
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
-from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numpy as np
 import trimesh
@@ -29,10 +26,13 @@ from cellcolor.frontend.parts.cleaning import borders, flat_faces, used
 from cellcolor.frontend.parts.repairing import Change, Mending, Telling, mended
 from cellcolor.frontend.parts.surface import SHARP, Faces, refine
 from cellcolor.frontend.sizes import MOST_VERTICES
+from cellcolor.mesh.remesher import distances, remesh
 from cellcolor.mesh.triangle_mesh import TriangleMesh
+from cellcolor.processes import Limits, run_alone
 
-_CHILD = Path(__file__).with_name("remesh_child.py")
-_ASK = 0.2  # s, between two looks at the time
+_T = TypeVar("_T")
+
+_MEMORY = 3072.0  # MB (2**20 bytes) that the remesher may take
 _LONGEST = 4 / 3  # of the wanted length: edges of a border above that are halved first
 _ROUNDS = 3  # of mending folds and what else is wrong; the second seldom finds more
 _FEWEST = 10  # vertices; a mesh so coarse has lost its shape
@@ -102,20 +102,14 @@ def remeshed(
     vertices, faces = mesh.points, mesh.corners
     kept = mesh.edges[mesh.sharp_edges(SHARP)]
     tell(f"remeshing to about {expected:,.0f} vertices")
-    made = _asked(deadline, vertices=vertices, faces=faces, length=length, kept=kept)
+    made = _asked(deadline, remesh, vertices, faces, length, kept)
     tell("mending folds")
-    points, corners, changes = _mended(
-        made["vertices"], made["faces"].astype(np.int64), fold_angle(mesh), length,
-        deadline,
-    )  # fmt: skip
+    points, corners, changes = _mended(*made, fold_angle(mesh), length, deadline)
     if borders(TriangleMesh(points, corners)) > borders(mesh):
         message = "gpytoolbox tore holes into the mesh; shorter edges keep more of its shape"
         raise InputError(None, "edge_length_m", message)
     tell("measuring the deviation")
-    measured = _asked(
-        deadline, vertices=vertices, faces=faces, new_vertices=points, new_faces=corners
-    )
-    deviation = Deviation(*measured["there"].tolist(), *measured["back"].tolist())
+    deviation = Deviation(*_asked(deadline, distances, vertices, faces, points, corners))
     return points, corners, changes, deviation
 
 
@@ -144,45 +138,16 @@ def _mended(
     return vertices, faces, changes
 
 
-def _asked(deadline: Deadline, **question: Any) -> Any:
-    """What the child answers to an archive of arrays, which is one as well."""
-    given = io.BytesIO()
-    np.savez(given, **question)
-    return np.load(io.BytesIO(_run(given.getvalue(), deadline)))
-
-
-def _run(given: bytes, deadline: Deadline) -> bytes:
-    """What the child answers."""
-    command = [sys.executable, "-P", str(_CHILD)]
-    pipe = subprocess.PIPE
-    with tempfile.TemporaryFile() as stored:
-        stored.write(given)
-        stored.seek(0)
-        with subprocess.Popen(command, stdin=stored, stdout=pipe, stderr=pipe) as child:
-            try:
-                answer, complaint = _answer(child, deadline)
-            finally:
-                child.kill()
-    if child.returncode:
-        lines = complaint.decode(errors="replace").split("\n")
-        why = next((line for line in reversed(lines) if line.strip()), "")
-        if "MemoryError" in why or "bad_alloc" in why:
-            why = "out of memory, 3 GiB"
-        raise InputError(
-            None,
-            "edge_length_m",
-            f"gpytoolbox could not remesh it ({why or f'signal {-child.returncode}'})",
-        )
-    return answer
-
-
-def _answer(child: subprocess.Popen[bytes], deadline: Deadline) -> tuple[bytes, bytes]:
-    """What the child writes until it ends, to standard output and to standard error."""
-    while True:
-        try:
-            return child.communicate(timeout=_ASK)
-        except subprocess.TimeoutExpired:
-            deadline.check()
+def _asked(deadline: Deadline, function: Callable[..., _T], *arguments: Any) -> _T:
+    """What a function of the remesher returns, called in a process of its own."""
+    ended = run_alone(function, arguments, Limits(math.inf, _MEMORY), lambda: deadline.over)
+    if ended.end == "stopped":
+        deadline.check()
+    if ended.end != "done":
+        out = ended.end == "memory" or "bad_alloc" in ended.error
+        why = "out of memory, 3 GiB" if out else ended.error
+        raise InputError(None, "edge_length_m", f"gpytoolbox could not remesh it ({why})")
+    return cast(_T, ended.value)
 
 
 _LEAST, _MOST = np.radians(150.0), np.radians(175.0)

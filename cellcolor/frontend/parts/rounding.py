@@ -15,8 +15,8 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import SHARP, Surface
-from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.sizes import check_rounding
 from cellcolor.memory import at_once
 

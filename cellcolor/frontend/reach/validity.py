@@ -15,7 +15,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import bytes_of_poses
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
-from cellcolor.frontend.processes import share_out, shared
+from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
     Postures,

@@ -7,8 +7,7 @@ from numpy.typing import NDArray
 
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
-from cellcolor.lab.families.cracks import crack_paths
-from cellcolor.lab.families.meshes import grid_faces
+from cellcolor.lab.families.meshes import crack_paths, grid_faces
 
 
 def blobs(

@@ -1,57 +1,272 @@
-"""Every random family by name, and who draws from it (docs/how-to/add-a-family.md)."""
+"""Every random family by name, and who draws from it (docs/how-to/add-a-family.md).
+
+Each is a function of a seed.
+"""
 
 from __future__ import annotations
 
+import math
+import random
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.lab.families import growing, large, medium, small
+from cellcolor.decomposition import decompose
+from cellcolor.errors import InputError
 from cellcolor.lab.families.blobs import blobs
-from cellcolor.lab.families.meshes import SHAPES
+from cellcolor.lab.families.graphs import planar_graph
+from cellcolor.lab.families.hubs import cover_tree, hub, hub_grid, hub_with_loops, wide_hub
+from cellcolor.lab.families.meshes import SHAPES, Topology
+from cellcolor.lab.families.parts import part
+from cellcolor.lab.families.voronoi import voronoi
+
+MOST_SMALL_CELLS = 10
+MOST_CELL_DARTS = 9
+"""Live darts of a cell."""
+
+MOST_CELL_DARTS_WITH_LOOPS = 5
+"""The same where cells have several live loops: seams between them multiply the darts."""
+
+_Made = Instance | LabelledSurface
+_Recipe = Callable[[random.Random], _Made]
+
+
+def _bearable(recipe: _Recipe, seed: int, *, several_loops: bool | None = False) -> _Made:
+    """The first instance of a recipe that has 2 to 10 cells, none of them with many live darts.
+
+    Args:
+        recipe: makes one after the other, of random numbers.
+        seed: of these.
+        several_loops: whether some cell has to have several live loops; None if either will do.
+    """
+    rng = random.Random(f"small {seed}")
+    most = MOST_CELL_DARTS_WITH_LOOPS if several_loops else MOST_CELL_DARTS
+    while True:
+        made = recipe(rng)
+        instance = made if isinstance(made, Instance) else decompose(made)
+        if (
+            2 <= len(instance.cells) <= MOST_SMALL_CELLS
+            and instance.most_live_darts <= most
+            and several_loops in (None, instance.most_live_loops > 1)
+        ):
+            return made
+
+
+def small_hub(seed: int) -> Instance:
+    """One hub, as large as it is made."""
+    rng = random.Random(f"small {seed}")
+    return hub(seed, rng.randint(3, MOST_CELL_DARTS), rng.randint(3, 4))
+
+
+def small_hub_grid(seed: int) -> Instance:
+    """Up to four hubs, as large as they are made."""
+    rng = random.Random(f"small {seed}")
+    rows, columns, side = rng.choice([(1, 1, 2), (1, 2, 1), (1, 3, 1), (2, 2, 1)])
+    return hub_grid(seed, rows, columns, rng.randint(2, 4), side)
+
+
+def _graph(rng: random.Random, self_edges: bool = True) -> Instance:
+    cells = rng.randint(3, 7)
+    edges = cells + rng.randint(-1, 5)
+    return planar_graph(
+        rng.randrange(2**31), cells, edges, rng.randint(2, 4), self_edges=self_edges
+    )
+
+
+def _surface(
+    rng: random.Random, sizes: tuple[int, int], colors: tuple[int, int], **recipe: Any
+) -> LabelledSurface:
+    return blobs(rng.randrange(2**31), rng.randint(*sizes), rng.randint(*colors), **recipe)
+
+
+def _smooth(rng: random.Random) -> LabelledSurface:
+    return _surface(rng, (6, 9), (2, 4), waves=rng.uniform(0.3, 1.0))
+
+
+def _thin(rng: random.Random) -> LabelledSurface:
+    return _surface(rng, (7, 9), (2, 3), waves=0.5, thin=True)
+
+
+def _rim(rng: random.Random) -> LabelledSurface:
+    """One large cell with many colors and small ones at its border, which ask for cutting paths."""
+    rim = rng.randint(4, 8)
+    return _surface(rng, (7, 9), (2, 3), coverage=(0.8, 1.0), rim=rim)
+
+
+def _cracks(rng: random.Random) -> LabelledSurface:
+    recipe = {"coverage": (0.6, 1.0), "rim": rng.randint(0, 5)}
+    return _surface(rng, (6, 8), (2, 3), waves=0.4, cracks=rng.randint(1, 4), **recipe)
+
+
+def _loops(rng: random.Random) -> LabelledSurface:
+    extras = {"islands": rng.randint(0, 2), "holes": rng.randint(0, 1), "cracks": rng.randint(0, 2)}
+    return _surface(rng, (7, 9), (2, 3), coverage=(0.8, 1.0), rim=rng.randint(0, 4), **extras)
+
+
+def large_voronoi(topology: Topology) -> Callable[[int], LabelledSurface]:
+    """Voronoi regions on a surface of that topology."""
+
+    def make(seed: int) -> LabelledSurface:
+        rng = random.Random(f"{topology} {seed}")
+        size = rng.randint(12, 64)
+        low = rng.uniform(0.05, 0.6)
+        return voronoi(
+            seed,
+            topology,
+            size,
+            round(math.exp(rng.uniform(1.5, math.log(size**2 / 3)))),
+            rng.randint(2, 30),
+            scattered=rng.random() < 0.4,
+            coverage=(low, rng.uniform(low, 0.9)),
+            cracks=rng.randint(0, 15),
+            islands=rng.randint(0, 10),
+            holes=rng.randint(0, 4),
+        )
+
+    return make
+
+
+def large_part(seed: int) -> LabelledSurface:
+    """A machined part of about a hundred to 1500 cells."""
+    rng = random.Random(f"part {seed}")
+    cells = round(math.exp(rng.uniform(math.log(100), math.log(1500))))
+    return part(seed, cells, min(500, round(cells * rng.uniform(0.2, 0.5))))
+
+
+def large_hub_with_loops(seed: int) -> Instance:
+    """A hub with a ring of petals round each of up to a dozen loops."""
+    rng = random.Random(f"loops {seed}")
+    return hub_with_loops(seed, rng.randint(2, 12), rng.randint(2, 10), rng.randint(3, 8))
+
+
+def large_hub(seed: int) -> Instance:
+    """A hub of up to 400 petals, of one color each or of several."""
+    rng = random.Random(f"petals {seed}")
+    petals = rng.randint(50, 400)
+    if seed % 2:
+        return hub(seed, petals, rng.randint(3, 100))
+    colors = rng.randint(4, 100)
+    return wide_hub(seed, petals, colors, rng.randint(1, max(1, colors // 4)))
+
+
+def large_tree(seed: int) -> Instance:
+    """A tree of hubs and leaves, whose set cover is hard to find."""
+    rng = random.Random(f"trees {seed}")
+    hubs = rng.randint(5, 70)
+    return cover_tree(seed, hubs, rng.randint(2, 8), rng.randint(10, 80), rng.randint(2, 5))
+
+
+def large_hub_grid(seed: int) -> Instance:
+    """Up to 144 hubs that share their petals."""
+    rng = random.Random(f"grids {seed}")
+    rows, columns = rng.randint(2, 12), rng.randint(2, 12)
+    return hub_grid(seed, rows, columns, rng.randint(3, 8), rng.randint(1, 4))
+
+
+def large_patches(seed: int) -> LabelledSurface:
+    """Blobs with whatever makes them hard: cracks, rims, islands, holes."""
+    rng = random.Random(f"patches {seed}")
+    return blobs(
+        seed,
+        rng.randint(24, 110),
+        rng.randint(3, 14),
+        waves=rng.uniform(0.5, 3.0),
+        coverage=(0.2, rng.uniform(0.4, 0.95)),
+        thin=rng.random() < 0.3,
+        cracks=rng.randint(0, 10),
+        rim=rng.randint(0, 30),
+        islands=rng.randint(0, 60),
+        holes=rng.randint(0, 5),
+    )
+
+
+_COLORS = 4
+_OF_A_SIZE = 3
+"""Hubs with the same number of petals."""
+
+_GRIDS = (
+    (2, 2, 3),
+    (3, 3, 2),
+    (3, 3, 3),
+    (4, 4, 2),
+    (5, 5, 2),
+    (4, 4, 3),
+    (6, 6, 2),
+    (5, 5, 3),
+    (8, 8, 2),
+    (10, 10, 2),
+)
+"""Rows, columns, and petals at each side of a hub, from 40 to 540 cells."""
+
+
+def growing_blobs(seed: int) -> LabelledSurface:
+    """Blobs of 2 to 10 colors with more and more waves: 3 cells at seed 0, 1120 at seed 39."""
+    size = min(24 + 2 * seed, 110)
+    return blobs(seed, size, 2 + min(seed // 4, 8), waves=0.4 + 0.1 * seed)
+
+
+def growing_hub(seed: int) -> Instance:
+    """A hub of 6 petals for seeds 0 to 2, of 9 petals for the next three, …"""
+    return hub(seed, 6 + 3 * (seed // _OF_A_SIZE), _COLORS)
+
+
+def growing_hub_grid(seed: int) -> Instance:
+    """A grid of hubs of 40 to 540 cells.
+
+    Raises:
+        InputError: there are no more sizes.
+    """
+    if seed >= len(_GRIDS):
+        raise InputError(None, None, f"grids of hubs have seeds 0 to {len(_GRIDS) - 1}")
+    return hub_grid(0, *_GRIDS[seed][:2], _COLORS, _GRIDS[seed][2])
+
 
 Family = Callable[[int], Instance | LabelledSurface]
 """The instance that a family makes of a seed, always the same of the same seed."""
 
 SMALL: dict[str, Family] = {
-    "graphs": small.small_graph,
-    "graphs with self-edges": small.small_graph_with_self_edges,
-    "hubs": small.small_hub,
-    "grids of hubs": small.small_hub_grid,
-    "smooth blobs": small.small_blobs,
-    "thin blobs": small.small_thin_blobs,
-    "rim": small.small_rim,
-    "cracks": small.small_cracks,
-    "islands, holes": small.small_islands_and_holes,
+    "graphs": partial(_bearable, partial(_graph, self_edges=False), several_loops=None),
+    "graphs with self-edges": partial(
+        _bearable, partial(_graph, self_edges=True), several_loops=None
+    ),
+    "hubs": small_hub,
+    "grids of hubs": small_hub_grid,
+    "smooth blobs": partial(_bearable, _smooth),
+    "thin blobs": partial(_bearable, _thin),
+    "rim": partial(_bearable, _rim),
+    "cracks": partial(_bearable, _cracks),
+    "islands, holes": partial(_bearable, _loops, several_loops=True),
 }
 """What every solver can bear, a depth-first search among them: campaigns take them in turn."""
 
 MEDIUM: dict[str, Family] = {
     "blobs": blobs,
-    "more waves": medium.more_waves,
-    "cracks": medium.cracks,
-    "islands, holes": medium.islands_and_holes,
-    "rim": medium.rim,
-    "thin": medium.thin,
-    "48 × 48 points, 8 colors": medium.points_48,
-    "64 × 64 points, 10 colors": medium.points_64,
+    "more waves": partial(blobs, waves=1.0),
+    "cracks": partial(blobs, cracks=4),
+    "islands, holes": partial(blobs, holes=3, islands=3),
+    "rim": partial(blobs, rim=8, coverage=(0.6, 0.9)),
+    "thin": partial(blobs, thin=True, colors=5),
+    "48 × 48 points, 8 colors": partial(blobs, size=48, colors=8, waves=1.2),
+    "64 × 64 points, 10 colors": partial(blobs, size=64, colors=10, waves=1.6),
 }
 """As hard as real scenes."""
 
 LARGE: dict[str, Family] = {
-    **{topology: large.large_voronoi(topology) for topology in SHAPES},
-    "parts": large.large_part,
-    "loops": large.large_hub_with_loops,
-    "petals": large.large_hub,
-    "trees": large.large_tree,
-    "grids": large.large_hub_grid,
-    "patches": large.large_patches,
+    **{topology: large_voronoi(topology) for topology in SHAPES},
+    "parts": large_part,
+    "loops": large_hub_with_loops,
+    "petals": large_hub,
+    "trees": large_tree,
+    "grids": large_hub_grid,
+    "patches": large_patches,
 }
 """At the limits of the solvers and beyond: ``benchmarks/limits.py``."""
 
 GROWING: dict[str, Family] = {
-    "blobs": growing.growing_blobs,
-    "hubs": growing.growing_hub,
-    "grids of hubs": growing.growing_hub_grid,
+    "blobs": growing_blobs,
+    "hubs": growing_hub,
+    "grids of hubs": growing_hub_grid,
 }
 """Larger and larger with the seed, to see where solvers reach their limits."""

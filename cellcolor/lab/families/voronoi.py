@@ -8,8 +8,7 @@ import numpy as np
 
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.errors import InputError
-from cellcolor.lab.families.cracks import crack_paths
-from cellcolor.lab.families.meshes import Topology, make_mesh
+from cellcolor.lab.families.meshes import Topology, crack_paths, make_mesh
 from cellcolor.mesh.oriented import directed_edges
 
 Regions = list[int]

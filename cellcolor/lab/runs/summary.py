@@ -7,8 +7,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from statistics import median
 
 from cellcolor.data.wording import count
-from cellcolor.lab.runs.agreement import compared, disagreements
-from cellcolor.lab.runs.row import FINISHED, Row
+from cellcolor.lab.runs.row import FINISHED, Row, compared, disagreements
 from cellcolor.lab.runs.statistics import (
     by,
     common,

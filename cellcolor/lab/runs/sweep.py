@@ -2,20 +2,198 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
-from itertools import product
+from fnmatch import fnmatchcase
+from functools import partial
+from itertools import product, zip_longest
 
+from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace
-from cellcolor.errors import CellcolorError
-from cellcolor.lab.executors.alone import Ended
-from cellcolor.lab.executors.work import Task, Workers, as_they_end
-from cellcolor.lab.runs.contestants import Contestant
-from cellcolor.lab.runs.once import Answered, Solve, task_of
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.decomposition import decompose
+from cellcolor.errors import CellcolorError, InputError, RefusedResult, SolverMissing, TooLarge
+from cellcolor.lab.families.registry import GROWING, LARGE, MEDIUM, SMALL, Family
 from cellcolor.lab.runs.row import Key, Row, Status
-from cellcolor.lab.runs.subjects import Specimen
+from cellcolor.lab.workers import Task, Workers, as_they_end
+from cellcolor.processes import Ended, Limits
+from cellcolor.solvers.interface import Options
+from cellcolor.solvers.registry import solver_version
+
+
+@dataclass(frozen=True, slots=True)
+class Contestant:
+    """A solver that takes part.
+
+    Attributes:
+        solver: its registered name.
+        workers: the number to use, None if it chooses itself.
+        version: what answers.
+    """
+
+    solver: str
+    workers: int | None
+    version: str
+
+
+def contestant(text: str) -> Contestant:
+    """A solver from its name, or from ``NAME@WORKERS``.
+
+    Raises:
+        InputError: there is no such solver, or no such number of workers.
+        SolverMissing: what it needs is not installed.
+    """
+    name, at, number = text.partition("@")
+    workers = None
+    if at:
+        try:
+            workers = Options(workers=int(number)).workers
+        except (ValueError, InputError) as error:
+            raise InputError(None, "solver", f"{text}: no number of workers after @") from error
+    return Contestant(name, workers, solver_version(name))
+
+
+SETS: Mapping[str, Mapping[str, Family]] = {
+    "small": SMALL,
+    "medium": MEDIUM,
+    "large": LARGE,
+    "growing": GROWING,
+}
+"""The families, by the name of their set and their own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Specimen:
+    """An instance that is made when its turn comes.
+
+    Attributes:
+        family: what it is from.
+        seed: within the family, None for a file.
+        name: for messages.
+        make: makes it, and may raise a :class:`~cellcolor.errors.CellcolorError`.
+    """
+
+    family: str
+    seed: int | None
+    name: str
+    make: Callable[[], Instance]
+
+
+def family_names() -> list[str]:
+    """All families, as ``set/family``."""
+    return [f"{group}/{name}" for group, families in SETS.items() for name in families]
+
+
+def families_like(pattern: str) -> list[str]:
+    """The families meant by the name of a set, or by ``set/family`` with ``*`` and ``?`` in it."""
+    wanted = f"{pattern}/*" if pattern in SETS else pattern
+    return [name for name in family_names() if fnmatchcase(name, wanted)]
+
+
+def of_family(name: str, seeds: Iterable[int]) -> list[Specimen]:
+    """Instances of a family, such as ``medium/thin``."""
+    group, _, family = name.partition("/")
+    recipe = SETS[group][family]
+    return [
+        Specimen(name, seed, f"{name}, seed {seed}", partial(_made, recipe, seed)) for seed in seeds
+    ]
+
+
+def taking_turns(groups: Sequence[Sequence[Specimen]]) -> Iterator[Specimen]:
+    """The first of each group, then the second of each, …: a part of the runs is of use as well."""
+    for turn in zip_longest(*groups):
+        yield from (subject for subject in turn if subject is not None)
+
+
+def _made(family: Family, seed: int) -> Instance:
+    made = family(seed)
+    return made if isinstance(made, Instance) else decompose(made)
+
+
+_START_UP = 20.0
+"""Seconds for the start of a process and its imports, on a busy machine."""
+
+_CHECKING = 10.0
+"""Seconds for the checker, and for solvers that hear of the end of their time late."""
+
+_WARM_UP = Instance("warm-up", ("any",), (Cell(0, (0,), ()),), ())
+
+
+@dataclass(frozen=True, slots=True)
+class Solve:
+    """How to solve.
+
+    Attributes:
+        solver: a registered name.
+        workers: None for as many as the solver likes.
+        limit: seconds.
+        seed: of what is random in the solver.
+        search_space: where to search.
+    """
+
+    solver: str
+    workers: int | None
+    limit: float
+    seed: int
+    search_space: SearchSpace
+
+
+@dataclass(frozen=True, slots=True)
+class Answered:
+    """What a solver answered.
+
+    Attributes:
+        status: how the run ended.
+        segments: of the best division, None without one.
+        lower_bound: that was proved in the search space, None without an answer.
+        proved_for_surface: whether the minimum is proved for any division of the surface.
+        seconds: of solving.
+        error: a line, None if nothing went wrong.
+    """
+
+    status: Status
+    segments: int | None = None
+    lower_bound: int | None = None
+    proved_for_surface: bool | None = None
+    seconds: float | None = None
+    error: str | None = None
+
+
+def task_of(instance: Instance, solve: Solve, megabytes: float) -> Task:
+    """A solve as a piece of work, with limits that only what does not keep its own will meet."""
+    seconds = _START_UP + 1.1 * solve.limit + 1.0 + _CHECKING
+    return Task(answer, (instance, solve), Limits(seconds, megabytes))
+
+
+def answer(instance: Instance, how: Solve) -> Answered:
+    """Solve an instance; the checker sees the result."""
+    from cellcolor.solvers.checked import solve
+    from cellcolor.solvers.interface import Options
+
+    try:
+        # Solvers import what they need on first use, which is not what is measured here.
+        solve(_WARM_UP, Options(search_space=how.search_space), how.solver)
+        deadline = Deadline.after(how.limit)
+        options = Options(how.search_space, deadline=deadline, workers=how.workers, seed=how.seed)
+        solution = solve(instance, options, how.solver)
+    except (InputError, SolverMissing) as error:
+        return Answered("unsupported", error=str(error))
+    except TooLarge as error:
+        return Answered("memory", error=str(error))
+    except OutOfTime as error:
+        return Answered("unknown", error=str(error))
+    except RefusedResult as error:
+        return Answered("refused", error=str(error))
+    return Answered(
+        solution.status,
+        solution.segments,
+        solution.lower_bound,
+        solution.proved_for_surface,
+        solution.seconds,
+    )
+
 
 _STATUS: dict[str, Status] = {"timeout": "timeout", "memory": "memory"}
 """Of runs that did not come back; all the others have crashed."""

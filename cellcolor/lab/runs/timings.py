@@ -10,7 +10,7 @@ from pathlib import Path
 
 from pydantic import ConfigDict
 
-from cellcolor.lab.executors.alone import Ended, Limits, watch
+from cellcolor.processes import Ended, Limits, watch
 
 _LIMITS = Limits(120.0)
 
@@ -37,7 +37,7 @@ class Timing:
         seconds: by the clock.
         cpu_seconds: of all processors.
         peak_mb: the most memory of the process, 2**20 bytes.
-        cores, memory_mb, cpu, python, cellcolor: as in :class:`cellcolor.lab.machine.Machine`.
+        cores, memory_mb, cpu, python, cellcolor: as in :class:`cellcolor.machine.Machine`.
         load: average of the machine's last minute.
         date: when it ended, UTC.
         command: that measured it.

@@ -17,7 +17,7 @@ from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.solvers.bounds.domination import LeftOut, drop_dominated, left_out
 from cellcolor.solvers.cpsat.conflict_certificate import conflict_certificate
-from cellcolor.solvers.cpsat.cuts.fewest import FewestCuts
+from cellcolor.solvers.cpsat.cuts import FewestCuts
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
 from cellcolor.solvers.cpsat.model.painting import (
     Block,

@@ -1,8 +1,8 @@
 """The paper's depth-first enumerative solver, to be read with sections IV and V.
 
 ``cell_schemes`` enumerates the schemes of one cell (section IV), ``search`` paints the graph cell
-by cell (section V), ``segment_counts`` carries the cost (section V-A), ``zero_darts`` checks what a
-complete painting shows across its edges in state 0, ``graph`` is the topological graph as all of
+by cell (section V), carries the cost (section V-A), and checks what a complete painting shows
+across its edges in state 0, ``graph`` is the topological graph as all of
 them see it.
 """
 

@@ -2,7 +2,8 @@
 
 Depth first, cell by cell: each scheme of a cell that agrees with its solved neighbours is a
 branch. The cost is that of the painting so far, carried along; a branch ends where the segments
-it cannot lose any more exceed what is asked for.
+it cannot lose any more exceed what is asked for. Of a complete painting the darts in state 0 are
+tested (``zeros_fit``).
 """
 
 from __future__ import annotations
@@ -12,10 +13,8 @@ from itertools import chain, islice
 
 from cellcolor.data.darts import DartName, twin
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.solvers.dfs.cell_schemes import CellScheme, DartKnowledge, cell_schemes
+from cellcolor.solvers.dfs.cell_schemes import CellScheme, DartKnowledge, cell_schemes, zero_colors
 from cellcolor.solvers.dfs.graph import GraphCell
-from cellcolor.solvers.dfs.segment_counts import SegmentCounts
-from cellcolor.solvers.dfs.zero_darts import zeros_fit
 
 _REMEMBERED = 5000
 """Longer lists of cell schemes are enumerated anew each time, so that memory stays small."""
@@ -210,3 +209,132 @@ def _hits(sets: frozenset[int], bits: int) -> Iterator[tuple[frozenset[int], int
         bit = smallest & -smallest
         smallest ^= bit
         yield frozenset(s for s in sets if not s & bit), bits
+
+
+class SegmentCounts:
+    """Sub-cells joined into segments: a union-find whose last steps can be taken back.
+
+    Attributes:
+        cost: the paper's cost of the current painting, "the number of color segments in the
+            current portion of the graph".
+        region: of each sub-cell, where its segment must stay.
+    """
+
+    def __init__(self) -> None:
+        self.cost = 0
+        self.region: list[int] = []
+        self._parent: list[int] = []
+        self._size: list[int] = []
+        self._joined: list[int] = []
+
+    def add(self, region: int) -> int:
+        """A new sub-cell, a segment of its own so far. Returns its number."""
+        self.cost += 1
+        self.region.append(region)
+        self._parent.append(len(self._parent))
+        self._size.append(1)
+        return len(self._parent) - 1
+
+    def find(self, subcell: int) -> int:
+        """A sub-cell that stands for the whole segment."""
+        parent = self._parent
+        while parent[subcell] != subcell:
+            subcell = parent[subcell]
+        return subcell
+
+    def join(self, a: int, b: int) -> None:
+        """The painting continues from one sub-cell to the other; it may have done so before."""
+        a, b = self.find(a), self.find(b)
+        if a == b:
+            return
+        if self._size[a] < self._size[b]:
+            a, b = b, a
+        self._parent[b] = a
+        self._size[a] += self._size[b]
+        self._joined.append(b)
+        self.cost -= 1
+
+    def mark(self) -> tuple[int, int]:
+        """Where to come back to."""
+        return len(self._parent), len(self._joined)
+
+    def undo(self, mark: tuple[int, int]) -> None:
+        """Take back every step since the mark."""
+        subcells, joined = mark
+        while len(self._joined) > joined:
+            child = self._joined.pop()
+            self._size[self._parent[child]] -= self._size[child]
+            self._parent[child] = child
+            self.cost += 1
+        self.cost -= len(self._parent) - subcells
+        del self._parent[subcells:], self._size[subcells:], self.region[subcells:]
+
+
+Literal = int
+"""``+n`` or ``-n``: variable n (from 1) is true, or false."""
+
+
+def zeros_fit(cells: Sequence[GraphCell], schemes: Sequence[CellScheme]) -> bool:
+    """Whether the runs of zeros can be divided so that no edge in state 0 could be joined.
+
+    Args:
+        cells: cells that no live edge connects to others.
+        schemes: the scheme of each of them.
+    """
+    clauses: list[tuple[Literal, Literal]] = []
+    shows: dict[DartName, list[tuple[int, Literal]]] = {}
+    variables = 0
+    for cell, scheme in zip(cells, schemes, strict=True):
+        painted = [side[1] if side and side[0] == 1 else None for side in scheme.sides]
+        shown = zero_colors(painted, scheme.subcells[0][0])
+        variable_at: dict[int, int] = {}
+        for i, colors in enumerate(shown):
+            if colors is None:
+                continue
+            before, after = colors
+            if before == after:
+                shows[cell.darts[i]] = [(before, 0)]
+                continue
+            variables += 1
+            variable_at[i] = variables  # true: it lies in the sub-cell after the gap
+            shows[cell.darts[i]] = [(before, -variables), (after, variables)]
+        for i, variable in variable_at.items():
+            following = variable_at.get((i + 1) % len(painted))
+            if following is not None:  # once the run has changed sub-cells it stays there
+                clauses.append((-variable, following))
+    joinable = {d: j for cell in cells for d, j in zip(cell.darts, cell.joinable, strict=True)}
+    for dart, choices in shows.items():
+        for color, literal in choices:
+            for other_color, other in shows[twin(dart)]:
+                if color != other_color or color not in joinable[dart]:
+                    continue
+                if literal == 0 and other == 0:
+                    return False
+                clauses.append((-literal or -other, -other or -literal))
+    return _satisfiable(variables, clauses)
+
+
+def _satisfiable(variables: int, clauses: Sequence[tuple[Literal, Literal]]) -> bool:
+    """2-SAT: what one value implies without contradiction can be kept for good."""
+    implied: dict[Literal, list[Literal]] = {}
+    for a, b in clauses:
+        implied.setdefault(-a, []).append(b)
+        implied.setdefault(-b, []).append(a)
+    chosen: set[Literal] = set()
+    for variable in range(1, variables + 1):
+        if variable in chosen or -variable in chosen:
+            continue
+        for literal in (variable, -variable):
+            reached = {literal}
+            stack = [literal]
+            while stack:
+                for following in implied.get(stack.pop(), ()):
+                    if following not in reached:
+                        reached.add(following)
+                        stack.append(following)
+            if not any(-literal in reached for literal in reached):
+                chosen |= reached
+                break
+        else:
+            return False
+    return True

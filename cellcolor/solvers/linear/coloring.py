@@ -8,12 +8,56 @@ constraints below, each of which is a function here.
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Collection
 from itertools import combinations
+from typing import NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError, TooLarge
-from cellcolor.solvers.linear.constraints import Model
-from cellcolor.solvers.linear.regions import Region, color_regions
+from cellcolor.solvers.linear.model import Model
+
+
+class Region(NamedTuple):
+    """A color region of two cells or more.
+
+    Attributes:
+        cell: the first of its cells.
+        color: which one continues.
+        longest_way: no way without a circle in a tree of sub-cells crosses more edges.
+    """
+
+    cell: int
+    color: int
+    longest_way: int
+
+
+def color_regions(instance: Instance) -> dict[tuple[int, int], Region]:
+    """The region of each (cell, color) that can be joined to a neighbor."""
+    exits: dict[tuple[int, int], list[int]] = {}
+    for edge in instance.live_edges:
+        for color in instance.joinable(edge):
+            for dart in (edge, -edge):
+                exits.setdefault((instance.across(-dart), color), []).append(dart)
+    found: dict[tuple[int, int], Region] = {}
+    for begin in exits:
+        if begin in found:
+            continue
+        cells, waiting = {begin[0]}, [begin[0]]
+        while waiting:
+            for dart in exits[waiting.pop(), begin[1]]:
+                other = instance.across(dart)
+                if other not in cells:
+                    cells.add(other)
+                    waiting.append(other)
+        color = begin[1]
+        edges = {abs(dart) for cell in cells for dart in exits[cell, color]}
+        # The color goes no further in a cell with one exit: a way meets two such cells at most.
+        ends = {abs(exits[cell, color][0]) for cell in cells if len(exits[cell, color]) == 1}
+        longest = len(edges) - len(ends) + min(2, len(ends))
+        for cell in cells:
+            found[cell, color] = Region(min(cells), color, longest)
+    return found
+
 
 MOST_TERMS = 5_000_000
 """The most literals that the constraints of a model may have: some 100 MB as a file, and below 2 GB
@@ -25,11 +69,12 @@ def estimated_terms(instance: Instance) -> int:
 
     Nearly all are those that keep cutting paths from crossing and those of ranks.
     """
-    levels = _levels(color_regions(instance))
+    regions = color_regions(instance)
     total = 0
     for cell in instance.cells:
         darts = sum(map(len, instance.live_loops[cell.id]))
-        highest = max((levels.get((cell.id, color), 0) for color in cell.colors), default=0)
+        own = [regions[cell.id, color] for color in cell.colors if (cell.id, color) in regions]
+        highest = max((region.longest_way for region in own), default=0)
         total += darts**3 // 3 + darts**2 * (len(cell.colors) * 4 + highest * 3) + 8 * darts
     return total
 
@@ -161,13 +206,15 @@ class Coloring:
     def _no_circles(self) -> None:
         """Ranks are equal along chains and fall towards the parent, so that no circle is counted.
 
-        ``rank[dart, n]`` says that the rank is n or more.
+        Ranks count joined edges on the way to the root, so none is higher than the longest way in
+        the color region. ``rank[dart, n]`` says that the rank is n or more.
         """
         model = self.model
-        levels = _levels(self._regions)
         cell_of = {dart: cell for cell, loop in enumerate(self._loops) for dart in loop}
         highest = {
-            dart: max(levels[cell, color] for color in self._instance.joinable(dart))
+            dart: max(
+                self._regions[cell, color].longest_way for color in self._instance.joinable(dart)
+            )
             for dart, cell in cell_of.items()
         }
         rank = {
@@ -215,10 +262,35 @@ class Coloring:
             model.some(alone, *(used[region] for region in regions))
 
 
-def _levels(regions: dict[tuple[int, int], Region]) -> dict[tuple[int, int], int]:
-    """For each (cell, color) the highest rank that a tree in its color region can have.
+def require_solution(coloring: Coloring, true: Collection[int]) -> None:
+    """Refuse values that break a constraint of the model.
 
-    Ranks count joined edges on the way to the root. That way meets an edge once, and of the edges
-    to cells in which the color goes no further one where it begins and one where it ends.
+    Args:
+        coloring: the model of an instance.
+        true: the variables that are 1; those above the model's own are left alone.
+
+    Raises:
+        InputError: a constraint does not hold; the first is identified by its variables.
     """
-    return {place: region.longest_way for place, region in regions.items()}
+    model = coloring.model
+    for sense, literals in model.rows():
+        count = sum((literal > 0) == (abs(literal) in true) for literal in literals)
+        if (count > 1 and sense != ">=") or (count < 1 and sense != "<="):
+            names = ", ".join(
+                f"{'not ' if literal < 0 else ''}{' '.join(map(str, model.names[abs(literal)]))}"
+                for literal in literals[:4]
+            )
+            more = ", …" if len(literals) > 4 else ""
+            message = (
+                f"is not a solution of the model: of ({names}{more}) {count} hold, not {sense} 1"
+            )
+            raise InputError(None, None, message)
+
+
+def joined_and_linked(
+    coloring: Coloring, true: Collection[int]
+) -> tuple[dict[int, int], dict[int, int]]:
+    """The color of each edge that is joined, and the dart that follows each linked dart."""
+    color = {edge: c for (edge, c), variable in coloring.joined.items() if variable in true}
+    after = {dart: d for (dart, d), variable in coloring.link.items() if variable in true}
+    return color, after

@@ -20,6 +20,7 @@ from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.mesh_file import read_mesh
 from cellcolor.frontend.parts.repaired import repair_mesh
 from cellcolor.frontend.parts.shapes import grid_mesh
+from cellcolor.mesh.remesher import remesh
 
 
 def lengths(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
@@ -68,9 +69,9 @@ def test_holes_torn_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     ball = trimesh.creation.icosphere(2)
     ask = remeshing._asked
 
-    def losing(deadline: Deadline, **question: Any) -> Any:
-        made = dict(ask(deadline, **question))
-        return made | {"faces": made["faces"][1:]} if "faces" in made else made
+    def losing(deadline: Deadline, function: Any, *arguments: Any) -> Any:
+        made = ask(deadline, function, *arguments)
+        return (made[0], made[1][1:]) if function is remesh else made
 
     monkeypatch.setattr(remeshing, "_asked", losing)
     with pytest.raises(InputError, match="tore holes into the mesh; shorter edges") as caught:
@@ -121,9 +122,9 @@ def test_the_deadline_ends_the_other_process(monkeypatch: pytest.MonkeyPatch) ->
         children.append(begin(*arguments, **options))
         return children[-1]
 
-    run = remeshing._run
+    ask = remeshing._asked
     monkeypatch.setattr(subprocess, "Popen", noted)
-    monkeypatch.setattr(remeshing, "_run", lambda given, _: run(given, Deadline.after(0.5)))
+    monkeypatch.setattr(remeshing, "_asked", lambda _, *call: ask(Deadline.after(0.5), *call))
     said: list[str] = []
     with pytest.raises(OutOfTime):
         repair_mesh(flat, faces, edge_length_m=0.003, tell=said.append)

@@ -8,7 +8,7 @@ from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
-from cellcolor.lab.families.medium import rim
+from cellcolor.lab.families.registry import MEDIUM
 from cellcolor.solvers.bounds.domination import drop_dominated, left_out
 from cellcolor.solvers.cpsat.model.painting import division_of
 from cellcolor.solvers.cpsat.model_runs import Runner
@@ -20,7 +20,7 @@ from cellcolor.solvers.interface import Options
 def test_what_segments_avoid_proves_the_last_one() -> None:
     """Where segments two and three at a time may pass through each other's cells, six are not ruled
     out. But one that touches the cell between two of another color cannot get out of there."""
-    instance = decompose(rim(26))
+    instance = decompose(MEDIUM["rim"](26))
     (part,) = split(instance, drop_dominated(instance, left_out(instance)))
     options = Options()
     search = PartSearch(part, options, Runner(options), lambda: None)
@@ -52,7 +52,7 @@ def test_a_large_part_begins_with_local_search() -> None:
 
 
 def test_a_small_part_is_left_to_other_routes() -> None:
-    instance = decompose(rim(26))
+    instance = decompose(MEDIUM["rim"](26))
     (part,) = split(instance, drop_dominated(instance, left_out(instance)))
     options = Options()
     search = PartSearch(part, options, Runner(options), lambda: None)

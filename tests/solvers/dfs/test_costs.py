@@ -12,7 +12,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, SubCell
 from cellcolor.errors import InputError
 from cellcolor.solvers.dfs import literal_cost
-from cellcolor.solvers.dfs.segment_counts import SegmentCounts
+from cellcolor.solvers.dfs.search import SegmentCounts
 from cellcolor.solvers.interface import Options
 
 

@@ -19,8 +19,8 @@ from cellcolor.data.solution import count_segments
 from cellcolor.deadline import Deadline
 from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, planar_graph
+from cellcolor.processes import Child
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.child import Child
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.encodings import choco
 from cellcolor.solvers.encodings.problem import Problem

@@ -21,8 +21,7 @@ from cellcolor.errors import CellcolorError, InputError
 from cellcolor.solvers.cpsat.model.painting import Painting, division_of
 from cellcolor.solvers.cpsat.model.seams import SeamWriter
 from cellcolor.solvers.cpsat.model_runs import Runner
-from cellcolor.solvers.cpsat.schemes.scheme_model import SchemeModel, check_size
-from cellcolor.solvers.cpsat.schemes.several_loops import unconnected_differ
+from cellcolor.solvers.cpsat.schemes.scheme_model import SchemeModel, check_size, unconnected_differ
 from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
 from cellcolor.solvers.interface import Options
 

@@ -12,7 +12,7 @@ import pytest
 import cellcolor
 from cellcolor.version import __version__
 
-PRINT = "from cellcolor.lab.machine import this_version; print(this_version())"
+PRINT = "from cellcolor.machine import this_version; print(this_version())"
 
 
 def version_of(clone: Path) -> str:

@@ -1,7 +1,8 @@
-"""The answer-set solver clingo as a :class:`cellcolor.solvers.interface.Solver`.
+"""The answer-set solver clingo, on the model ``models/constraints/coloring.lp``.
 
-The problem is stated in ``models/constraints/coloring.lp``. This module writes an instance as facts
-for that model, runs clingo, and reads the division off the last answer set.
+This module writes an instance as facts for that model, runs clingo, and reads the division off the
+last answer set. It shares nothing with the other solvers, so its answers are independent evidence.
+It needs the extra ``peers``.
 """
 
 from __future__ import annotations

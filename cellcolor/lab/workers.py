@@ -1,16 +1,21 @@
-"""Pieces of work, and what came of them, whoever does them."""
+"""Pieces of work, and what came of them, whoever does them; the workers of this machine.
+
+Each piece of work is done in a process of its own. ``cluster`` has the workers of a Dask cluster.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from itertools import islice
+from threading import Event
+from types import TracebackType
 from typing import Any, Protocol, TypeVar
 
 from cellcolor.errors import CellcolorError
-from cellcolor.lab.executors.alone import Ended, Limits
+from cellcolor.processes import Ended, Limits, run_alone
 
 _Name = TypeVar("_Name")
 
@@ -75,3 +80,36 @@ def _ended(future: Future[Ended]) -> Ended:
         raise CellcolorError("the cluster has dropped the work; is its scheduler gone?") from error
     except Exception as error:  # a cluster gives up work whose workers die again and again
         return Ended("crashed", error=" ".join(f"{type(error).__name__}: {error}".split())[:300])
+
+
+class LocalWorkers(Workers):
+    """Each piece of work in a process of its own on this machine, watched by a thread.
+
+    Args:
+        jobs: pieces of work at a time.
+    """
+
+    def __init__(self, jobs: int) -> None:
+        self._jobs = jobs
+        self._watchers = ThreadPoolExecutor(jobs)
+        self._stop = Event()
+
+    @property
+    def slots(self) -> int:
+        """How many pieces of work are done at a time."""
+        return self._jobs
+
+    def submit(self, task: Task, /) -> Future[Ended]:
+        """Hand in a piece of work."""
+        work = (task.function, task.arguments, task.limits, self._stop.is_set)
+        return self._watchers.submit(run_alone, *work)
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """End what is still being done, at once."""
+        self._stop.set()
+        self._watchers.shutdown(cancel_futures=True)

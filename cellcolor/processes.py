@@ -1,8 +1,16 @@
-"""One piece of work in a process of its own, which is watched and killed with its children.
+"""Programs and functions in processes of their own, which can be ended at any moment.
+
+:class:`Child` reads what a program prints until a deadline. :func:`watch` runs a command, and
+:func:`run_alone` a function, within limits of time and memory. Work that is spread over cores and
+writes into shared arrays is forked instead (``cellcolor.frontend.forked``).
 
 Limits hold whatever the work does: the process is looked at from outside, and what takes too long
-or too much memory is killed. If the watching process is killed itself, a shell beside the work
-notices that its standard input has ended, and ends the work.
+or too much memory is killed with its children. If the watching process is killed itself, a shell
+beside the work notices that its standard input has ended, and ends the work.
+
+No library does this: pebble's pools kill a worker, not its children, and have no limit of memory;
+psutil finds the children of a process and not what its dead children have left behind, which is in
+the session. With psutil some ten lines would go and a dependency come.
 """
 
 from __future__ import annotations
@@ -14,14 +22,108 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from fcntl import F_DUPFD_CLOEXEC, fcntl
 from pathlib import Path
+from queue import Empty, SimpleQueue
+from threading import Thread
 from typing import IO, Any, Literal
 
-from cellcolor.lab.machine import Machine, this_machine
+from cellcolor.deadline import Deadline
+from cellcolor.errors import CellcolorError
+from cellcolor.machine import Machine, this_machine
+
+_LOOKED_AFTER = 0.1
+"""Seconds between two looks at the deadline. Python handles a signal, such as Ctrl-C, only then."""
+
+
+class Child:
+    """A program that runs once and, on exit from the context, is killed with all its children.
+
+    Used as a context manager. The program cannot overrun the deadline: it is killed, not asked
+    to end.
+    """
+
+    def __init__(self, command: Sequence[str | Path], folder: Path) -> None:
+        """Start it.
+
+        Args:
+            command: the program and its arguments.
+            folder: for its temporary files, also those that it would have removed had it not been
+                killed, and for what it complains of. It works where this process does.
+
+        Raises:
+            CellcolorError: it cannot be started.
+        """
+        self._name = Path(command[0]).name
+        self._errors = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115, closed in __exit__
+        try:
+            self._process = subprocess.Popen(
+                command,
+                env=os.environ | {"TMPDIR": str(folder)},
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.PIPE,
+                stderr=self._errors,
+                encoding="utf-8",
+                errors="replace",
+                # Ctrl-C reaches it by way of us only. It stays in the session, by which who watches
+                # this process finds and kills all that belongs to it.
+                process_group=0 if os.name == "posix" else None,
+            )
+        except OSError as error:
+            self._errors.close()
+            raise CellcolorError(f"{self._name}: {error.strerror}") from error
+        self._lines: SimpleQueue[str | None] = SimpleQueue()
+        self._reader = Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def __enter__(self) -> Child:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        if self._process.poll() is None:
+            self._kill()
+        self._process.wait()
+        self._reader.join()
+        self._errors.close()
+
+    def lines(self, deadline: Deadline) -> Iterator[str]:
+        """What it prints, line by line, until it ends or the deadline comes."""
+        while not deadline.over:
+            try:
+                line = self._lines.get(timeout=min(_LOOKED_AFTER, deadline.left))
+            except Empty:
+                continue
+            if line is None:
+                return
+            yield line.rstrip("\r\n")
+
+    @property
+    def failure(self) -> str | None:
+        """Its last complaint if it has ended with an exit code other than 0."""
+        if self._process.poll() in (None, 0):
+            return None
+        said = _last_line(self._errors) or f"exit code {self._process.returncode}"
+        return f"{self._name}: {said}"
+
+    def _read(self) -> None:
+        assert self._process.stdout is not None
+        with self._process.stdout as output:
+            for line in output:
+                self._lines.put(line)
+        self._process.wait()
+        self._lines.put(None)
+
+    def _kill(self) -> None:
+        try:
+            if os.name == "posix":
+                os.killpg(self._process.pid, signal.SIGKILL)
+            else:
+                self._process.kill()
+        except ProcessLookupError:
+            pass  # it has just ended by itself
+
 
 End = Literal["done", "failed", "timeout", "memory", "crashed", "stopped"]
 """How a piece of work ended: it came back; it raised an error; it was killed for its time or for
@@ -96,12 +198,14 @@ def run_alone(
         limits: what is beyond them is killed.
         stop: asked again and again; the work is killed once it says so.
     """
+    from fcntl import F_DUPFD_CLOEXEC, fcntl  # which Windows does not have
+
     with tempfile.TemporaryFile() as task, tempfile.TemporaryFile() as result:
         pickle.dump((function, tuple(arguments)), task)
         task.seek(0)
         handles = [fcntl(file, F_DUPFD_CLOEXEC, _SHELLS) for file in (task, result)]
         start = "import sys; sys.path[:] = sys.argv[3:]\n"
-        start += "from cellcolor.lab.executors.child import main; main()"
+        start += "from cellcolor.processes import main; main()"
         command = [sys.executable, "-c", start, *map(str, handles), *sys.path]
         try:
             ended = watch(command, limits, stop, handles)
@@ -173,8 +277,7 @@ def watch(
             process.stdin.close()
         _, status, usage = found
         process.returncode = os.waitstatus_to_exitcode(status)
-        errors.seek(0)
-        error = _complaint(end, process.returncode, limits, errors.read())
+        error = _complaint(end, process.returncode, limits, _last_line(errors))
         return Ended(
             end or ("done" if process.returncode == 0 else "crashed"),
             error=error,
@@ -185,7 +288,7 @@ def watch(
         )
 
 
-def _complaint(end: End | None, code: int, limits: Limits, printed: bytes) -> str:
+def _complaint(end: End | None, code: int, limits: Limits, said: str) -> str:
     """Why a process did not come back, in a line."""
     if end == "timeout":
         return f"killed after {limits.seconds:.0f} s"
@@ -193,11 +296,16 @@ def _complaint(end: End | None, code: int, limits: Limits, printed: bytes) -> st
         return f"killed at more than {limits.megabytes:.0f} MB"
     if code == 0:
         return ""
-    said = printed.decode(errors="replace").strip().splitlines()
     if code < 0:
         name = signal.Signals(-code).name
-        return _line(f"ended by {name}" + (f": {said[-1]}" if said else ""))
-    return _line(said[-1] if said else f"exit code {code}")
+        return _line(f"ended by {name}" + (f": {said}" if said else ""))
+    return _line(said or f"exit code {code}")
+
+
+def _last_line(errors: IO[bytes]) -> str:
+    """The last of what a process complained of; empty if it said nothing."""
+    errors.seek(0)
+    return errors.read().decode(errors="replace").strip().rpartition("\n")[2]
 
 
 def _line(text: object) -> str:
@@ -241,13 +349,9 @@ def _members(session: int) -> list[int]:
     """The processes of a session."""
     found = []
     for place in Path("/proc").glob("[0-9]*"):
-        try:
-            # The name, in brackets, may have anything in it: state, parent, group, session.
-            fields = (place / "stat").read_bytes().rpartition(b")")[2].split()
-        except OSError:
-            continue
-        if int(fields[3]) == session:
-            found.append(int(place.name))
+        with suppress(OSError):
+            if os.getsid(int(place.name)) == session:
+                found.append(int(place.name))
     return found
 
 
@@ -258,3 +362,37 @@ def _kill(session: int) -> None:
     for pid in _members(session):
         with suppress(ProcessLookupError):
             os.kill(pid, signal.SIGKILL)
+
+
+def main() -> None:
+    """What the process of :func:`run_alone` does: read the task, and write what came of it.
+
+    The numbers of both files are the first two arguments of the command.
+    """
+    with os.fdopen(int(sys.argv[1]), "rb") as task:
+        outcome = _outcome(task.read())
+    with os.fdopen(int(sys.argv[2]), "wb") as result:
+        result.write(outcome)
+
+
+def _outcome(task: bytes) -> bytes:
+    """How the call ended, what it returned or complained of, and the most memory, pickled."""
+    end, content = "failed", ""
+    try:
+        function, arguments = pickle.loads(task)
+        value: Any = function(*arguments)
+        return pickle.dumps(("done", value, _peak_mb()))
+    except MemoryError:
+        end, content = "memory", "out of memory"
+    except Exception as error:
+        content = f"{type(error).__name__}: {error}"
+    return pickle.dumps((end, content, _peak_mb()))
+
+
+def _peak_mb() -> float:
+    """The most memory that this process has had, megabytes; 0 where that cannot be known."""
+    with suppress(OSError):
+        for line in Path("/proc/self/status").read_text().splitlines():
+            if line.startswith("VmHWM:"):
+                return int(line.split()[1]) / 1024
+    return 0.0

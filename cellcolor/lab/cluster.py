@@ -13,8 +13,8 @@ from types import TracebackType
 from distributed import Client, Worker, get_worker
 
 from cellcolor.errors import InputError
-from cellcolor.lab.executors.alone import Ended, run_alone
-from cellcolor.lab.executors.work import Task, Workers
+from cellcolor.lab.workers import Task, Workers
+from cellcolor.processes import Ended, run_alone
 
 _PATIENCE = 10.0
 """Seconds in which a scheduler has to answer."""

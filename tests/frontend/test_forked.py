@@ -17,9 +17,9 @@ from hypothesis import strategies as st
 
 from cellcolor import memory
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.frontend import Scene, build_surface, processes, stages
+from cellcolor.frontend import Scene, build_surface, forked, stages
+from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.processes import share_out, shared
 from cellcolor.frontend.reach import validity
 from examples import examples
 
@@ -141,7 +141,7 @@ def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
     monkeypatch.setattr(stages, "share_out", noted)
     several = build_surface(fine_scene)
     assert shares.count(4) >= 4  # candidates, links, room for the tip, links between vertices
-    monkeypatch.setattr(processes, "_cores", lambda: 1)
+    monkeypatch.setattr(forked, "_cores", lambda: 1)
     alone = build_surface(fine_scene)
     assert several.surface.sha256 == alone.surface.sha256
     assert several.candidates == alone.candidates
@@ -152,13 +152,13 @@ def test_a_time_out_in_several_processes(fine_scene, monkeypatch):
     place = prepare(fine_scene).workplace
     monkeypatch.setattr(memory, "CACHE", 300_000)
     monkeypatch.setattr(validity, "_PAYS", 1)
-    begun, forked = [], processes._forked
+    begun, fork = [], forked._forked
 
     def noted(*arguments):
-        begun.append(forked(*arguments))
+        begun.append(fork(*arguments))
         return begun[-1]
 
-    monkeypatch.setattr(processes, "_forked", noted)
+    monkeypatch.setattr(forked, "_forked", noted)
     with pytest.raises(OutOfTime):
         validity.Judge(place)(np.zeros((640, 6)), Deadline.after(0))
     assert len(begun) == 3 and not multiprocessing.active_children()

@@ -50,7 +50,7 @@ def this_version() -> str:
     ``.dirty`` at its end says that a file was changed after the commit. As a local version of
     Python's version specifiers (PEP 440).
     """
-    package = Path(__file__).parents[1]
+    package = Path(__file__).parent
     tracked = _git(package, "ls-files", "version.py")
     if not tracked:
         return __version__

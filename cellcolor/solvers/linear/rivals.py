@@ -1,10 +1,10 @@
 """A solver from outside on the 0-1 model, in a process of its own that is killed at the deadline.
 
 HiGHS cannot be loaded into a process that has loaded OR-Tools, both of which bring the same library
-in different versions; and none of these solvers keeps a time limit to the second. So each is a
-small program (``run_highs``, ``run_scip``, ``run_maxsat``) that reads the file that
-``cellcolor export`` writes and prints, as soon as it knows them, lines ``bound B`` and ``solution
-x1 x7 …`` (the variables that are 1), and ``done`` once the last solution is proved the best.
+in different versions; and none of these solvers keeps a time limit to the second. So each is run as
+a program (``programs``). It reads the file that ``cellcolor export`` writes and prints what it
+knows at once: lines ``bound B`` and ``solution x1 x7 …`` (the variables that are 1), and ``done``
+once the last solution is proved the best.
 """
 
 from __future__ import annotations
@@ -25,12 +25,11 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing
-from cellcolor.solvers.child import Child
+from cellcolor.processes import Child
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains
-from cellcolor.solvers.linear.coloring import Coloring
-from cellcolor.solvers.linear.formats import mps, wcnf
-from cellcolor.solvers.linear.reading import joined_and_linked
+from cellcolor.solvers.linear.coloring import Coloring, joined_and_linked
+from cellcolor.solvers.linear.model import mps, wcnf
 
 
 @dataclass
@@ -108,10 +107,10 @@ class _Rival:
             with file.open("w", encoding="ascii") as stream:
                 for line in deadline.watch(self._lines(coloring, instance.sha256)):
                     stream.write(f"{line}\n")
-            runner = f"cellcolor.solvers.linear.run_{self.name}"
             # Its own limit comes earlier, so that it can say what it knows in the end.
-            arguments = str(file), f"{0.9 * deadline.left:.2f}", str(options.seed)
-            with Child([sys.executable, "-m", runner, *arguments], Path(place)) as child:
+            arguments = self.name, str(file), f"{0.9 * deadline.left:.2f}", str(options.seed)
+            command = [sys.executable, "-m", "cellcolor.solvers.linear.programs", *arguments]
+            with Child(command, Path(place)) as child:
                 # A signal may stand for the end of the time: OutOfTime.
                 for line in child.lines(deadline):
                     if heard.take(line) and progress is not None:

@@ -13,9 +13,8 @@ from typing import Any
 import odd_jobs
 import pytest
 
-from cellcolor.lab.executors.alone import Ended, Limits, run_alone, watch
-from cellcolor.lab.executors.local import LocalWorkers
-from cellcolor.lab.executors.work import Task, as_they_end
+from cellcolor.lab.workers import LocalWorkers, Task, as_they_end
+from cellcolor.processes import Ended, Limits, run_alone, watch
 
 pytestmark = pytest.mark.second
 
@@ -117,9 +116,9 @@ class TestManyProcesses:
         script = (
             "import odd_jobs, signal, sys\n"
             "signal.signal(signal.SIGINT, signal.default_int_handler)\n"  # if it was ignored
-            "from cellcolor.lab.executors.alone import Limits\n"
-            "from cellcolor.lab.executors.local import LocalWorkers\n"
-            "from cellcolor.lab.executors.work import Task, as_they_end\n"
+            "from cellcolor.processes import Limits\n"
+            "from cellcolor.lab.workers import LocalWorkers\n"
+            "from cellcolor.lab.workers import Task, as_they_end\n"
             "task = Task(odd_jobs.hang, (sys.argv[1],), Limits(600.0))\n"
             "with LocalWorkers(1) as workers:\n"
             "    list(as_they_end(workers, [(0, task)]))\n"

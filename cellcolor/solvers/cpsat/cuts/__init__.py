@@ -1,1 +1,0 @@
-"""The fewest cutting paths among the divisions with the fewest segments."""
