@@ -21,7 +21,7 @@ from fnmatch import fnmatch
 from importlib.metadata import version
 from pathlib import Path
 
-from cellcolor.data.bound import Bound, greatest
+from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.solution import SearchSpace, Solution, Status

@@ -15,7 +15,7 @@ from functools import partial
 from statistics import median
 from typing import Any
 
-from cellcolor.data.bound import greatest
+from cellcolor.data.bounds import greatest
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose

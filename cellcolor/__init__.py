@@ -16,7 +16,7 @@ package waits for no library. ``__init__.pyi`` says the same to type checkers an
 from cellcolor.version import __version__
 
 _ROOMS = {
-    "cellcolor.data.bound": ("Bound",),
+    "cellcolor.data.bounds": ("Bound",),
     "cellcolor.data.cells_and_edges": ("OUTSIDE", "Cell", "Edge"),
     "cellcolor.data.coverage": ("Coverage",),
     "cellcolor.data.instance": ("Instance",),

@@ -1,6 +1,6 @@
 # The public names for type checkers and editors; a test holds them to those of __init__.py.
 
-from cellcolor.data.bound import Bound as Bound
+from cellcolor.data.bounds import Bound as Bound
 from cellcolor.data.cells_and_edges import OUTSIDE as OUTSIDE
 from cellcolor.data.cells_and_edges import Cell as Cell
 from cellcolor.data.cells_and_edges import Edge as Edge

@@ -14,8 +14,8 @@ from cellcolor.checker.color_regions import ColorRegion
 from cellcolor.checker.parts_proof import verify_cells, verify_parts
 from cellcolor.checker.plan_search import BudgetExceeded
 from cellcolor.checker.proof import Proof, Refused
-from cellcolor.data.bound import Bound
-from cellcolor.data.bounds.kinds import certificate_of
+from cellcolor.data.bound_kinds import certificate_of
+from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError

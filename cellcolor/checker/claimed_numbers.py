@@ -1,4 +1,7 @@
-"""The numbers of a solution: against its division, against the instance, against each other."""
+"""The numbers of a solution: against its division, the instance, results known from elsewhere, and
+each other.
+
+"""
 
 from __future__ import annotations
 
@@ -7,10 +10,10 @@ from math import isclose
 
 from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.cutting_paths import cutting_paths
-from cellcolor.checker.whole_cells import segments_of_whole_cells
-from cellcolor.data.bound import greatest
+from cellcolor.checker.groups import Groups
+from cellcolor.data.bounds import greatest
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.instance import Instance
+from cellcolor.data.instance import Instance, KnownResult
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 
@@ -160,3 +163,79 @@ def _cutting_problems(instance: Instance, solution: Solution) -> list[str]:
     if bound > own:
         problems.append(f"cutting_paths_lower_bound: {bound} cannot be above the {own} found")
     return problems
+
+
+_Node = tuple[int, int]
+"""A cell, and one of its colors."""
+
+
+def segments_of_whole_cells(instance: Instance) -> int:
+    """The segments of a painting of undivided cells, a large region of one color after another.
+
+    To paint every cell whole is legal in both search spaces, with any number of strands, and cells
+    of one color are joined wherever they can be. So the fewest segments are at most these.
+    """
+    regions: Groups[_Node] = Groups()
+    for cell in instance.cells:
+        for color in cell.colors:
+            regions.find((cell.id, color))
+    for edge in instance.edges:
+        for color in instance.joinable(edge.id):
+            regions.join((edge.left, color), (edge.right, color))
+    painted: dict[int, int] = {}
+    for region in sorted(regions.sets(), key=len, reverse=True):
+        for cell_id, color in region:
+            painted.setdefault(cell_id, color)
+    segments: Groups[_Node] = Groups()
+    for node in painted.items():
+        segments.find(node)
+    for edge in instance.edges:
+        color = painted.get(edge.left, -1)
+        if color in instance.joinable(edge.id) and painted[edge.right] == color:
+            segments.join((edge.left, color), (edge.right, color))
+    return len(segments.sets())
+
+
+def contradictions(instance: Instance, solution: Solution) -> list[str]:
+    """Where a solution that the checker has passed and ``known`` cannot both be right.
+
+    Args:
+        instance: the topological graph, with results known from elsewhere or without.
+        solution: a valid solution of it, in either search space.
+    """
+    known = instance.known
+    if known is None:
+        return []
+    found = []
+    if known.surface is not None:
+        # Every division is one of the surface; bounds for fewer of them say nothing of all.
+        found += _minimum("surface", known.surface, solution.segments, solution.surface_lower_bound)
+    if known.paper is not None:
+        paper = solution.search_space == "paper"
+        bound = solution.lower_bound if paper else solution.surface_lower_bound
+        segments = solution.segments if paper else None
+        found += _minimum("paper", known.paper, segments, bound)
+        found += _schemes(known.paper, solution)
+    return found
+
+
+def _minimum(space: str, known: KnownResult, segments: int | None, bound: int) -> list[str]:
+    where = f"known.{space}.segments: {known.segments} are claimed to be the fewest"
+    if segments is not None and segments < known.segments:
+        return [f"{where}, the division found has {segments}"]
+    if bound > known.segments:
+        return [f"{where}, the lower bound found is {bound}"]
+    return []
+
+
+def _schemes(known: KnownResult, solution: Solution) -> list[str]:
+    if known.schemes is None or not solution.schemes or solution.segments != known.segments:
+        return []
+    wrong = solution.schemes > known.schemes
+    if solution.complete:
+        wrong = solution.schemes != known.schemes
+    if not wrong:
+        return []
+    return [
+        f"known.paper.schemes: {known.schemes} are said to be all, {solution.schemes} are found"
+    ]

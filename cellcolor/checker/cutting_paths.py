@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from cellcolor.checker.groups import Groups
-from cellcolor.data.cells_and_edges import Cell
-from cellcolor.data.darts import Strand, strand_of, twin
+from cellcolor.data.cells_and_edges import Cell, Strand, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam
 

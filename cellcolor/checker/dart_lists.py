@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from cellcolor.data.darts import Strand
+from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 

@@ -15,13 +15,15 @@ from cellcolor.checker.groups import Groups
 from cellcolor.checker.scheme_rules import (
     Joinable,
     PaintedCell,
+    PaintedLoops,
     crossing,
     idle_cut,
+    on_loops,
     superfluous,
     unavoidable_join,
+    unavoidable_join_on_loops,
 )
-from cellcolor.checker.several_loops import PaintedLoops, on_loops, unavoidable_join_on_loops
-from cellcolor.data.darts import Strand, strand_of, twin
+from cellcolor.data.cells_and_edges import Strand, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam, Solution
 from cellcolor.data.wording import count

@@ -26,8 +26,12 @@ from cellcolor.checker.plan_search import (
 )
 from cellcolor.checker.proof import Proof, Refused, few
 from cellcolor.checker.tangles import Tangled, cannot_be_drawn, is_connected
-from cellcolor.data.bounds.cells import CertifiedCells
-from cellcolor.data.bounds.parts import CertifiedPart, CertifiedParts, CertifiedTangle
+from cellcolor.data.bound_kinds import (
+    CertifiedCells,
+    CertifiedPart,
+    CertifiedParts,
+    CertifiedTangle,
+)
 
 
 def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:

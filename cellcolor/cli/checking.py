@@ -15,12 +15,18 @@ from cellcolor.cli.motion import check_painted, write_painted
 from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain, print_json
 from cellcolor.cli.verdict_lines import say_better, say_plan, say_solution, say_trajectory
-from cellcolor.data.check_error import CheckError
 from cellcolor.data.plan import Plan
-from cellcolor.data.plan_verdict import PlanImprovement, PlanVerdict, PlanViolation, SegmentRange
 from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
-from cellcolor.data.solution_verdict import CheckedBound, SolutionVerdict
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.verdicts import (
+    CheckedBound,
+    CheckError,
+    PlanImprovement,
+    PlanVerdict,
+    PlanViolation,
+    SegmentRange,
+    SolutionVerdict,
+)
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.leaving_out import left_alone

@@ -16,7 +16,7 @@ from typing import IO
 
 import click
 
-from cellcolor.checker.known_results import contradictions
+from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.cli.ending import INTERRUPTS, Exit, handled_by, worst
 from cellcolor.cli.inputs import read_subject
 from cellcolor.cli.progress import progress_of, scheme_progress_of

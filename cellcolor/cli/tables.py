@@ -13,10 +13,16 @@ from rich.text import Text
 
 from cellcolor.cli.terminal import shown
 from cellcolor.data.instance import Instance
-from cellcolor.data.proof_wording import reason_of, witness_in_words
-from cellcolor.data.segment_rows import BASES, segment_rows
-from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, Shares, percent, shares_of
-from cellcolor.data.solution import Solution
+from cellcolor.data.shares import (
+    BASES,
+    GIVEN_UP,
+    UNREACHABLE,
+    Shares,
+    percent,
+    segment_rows,
+    shares_of,
+)
+from cellcolor.data.solution import Solution, witness_in_words
 from cellcolor.data.wording import count
 
 _SEGMENTS_SHOWN = 200
@@ -138,7 +144,7 @@ def _extent(solution: Solution) -> str:
 
 def _because(instance: Instance, solution: Solution) -> list[tuple[str, str]]:
     """Why there cannot be fewer segments."""
-    reason = witness_in_words(instance, solution.witness) or reason_of(solution)
+    reason = witness_in_words(instance, solution.witness) or solution.reason
     return [] if reason is None else [("because", reason)]
 
 

@@ -6,10 +6,9 @@ import json
 
 from cellcolor.cli.terminal import say
 from cellcolor.data.instance import Instance
-from cellcolor.data.plan_verdict import PlanVerdict
 from cellcolor.data.solution import Solution
-from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.data.verdicts import PlanVerdict, SolutionVerdict
 from cellcolor.data.wording import count
 from cellcolor.door.shipped import library
 

@@ -1,13 +1,11 @@
-"""Cells and edges, the parts of an instance, and the rules that make them a topological graph.
-
-They are imported from :mod:`cellcolor.data.instance`.
-"""
+"""Cells, edges and darts, and the rules that make them a topological graph."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import overload
 
 from pydantic import NonNegativeFloat
 
@@ -193,3 +191,25 @@ def check_color_names(colors: Sequence[str]) -> None:
         if first.setdefault(name, number) != number:
             message = f"{name!r} is the name of color {first[name]} already"
             raise InputError(None, f"colors[{number}]", message)
+
+
+DartName = int | tuple[int, int]
+"""A dart ``±e``, or ``(±e, strand)`` where an edge or a seam has several parallel strands, which
+are numbered from 1 along ``+e``."""
+
+Strand = tuple[int, int]
+"""A dart and its strand."""
+
+
+def strand_of(dart: DartName) -> Strand:
+    """A dart with its strand; one that is named without a strand has its edge's only one."""
+    return (dart, 1) if isinstance(dart, int) else dart
+
+
+@overload
+def twin(dart: Strand) -> Strand: ...
+@overload
+def twin(dart: DartName) -> DartName: ...
+def twin(dart: DartName) -> DartName:
+    """The other side of the same edge, or of the same strand of it."""
+    return -dart if isinstance(dart, int) else (-dart[0], dart[1])

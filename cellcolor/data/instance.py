@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+import hashlib
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -20,11 +21,9 @@ from cellcolor.data.cells_and_edges import (
 )
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.value import Document, Value
-from cellcolor.data.version_1 import fingerprint_of_version_1
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines
-from cellcolor.files.fingerprint import sha256_of
+from cellcolor.files.documents import dump_lines, sha256_of
 from cellcolor.files.validation import json_content, settle
 
 if TYPE_CHECKING:
@@ -172,6 +171,32 @@ class Instance(Document):
         """
         return not self.cells and self.coverage is not None and self.coverage.covered == 0
 
+    def without_cells(self, left_out: Collection[int]) -> tuple[Instance, list[int]]:
+        """The graph of a surface that is not to be covered in some cells.
+
+        Args:
+            left_out: the cells that are not to be covered.
+
+        Returns:
+            The graph of the other cells, which are numbered anew in the same order, without a
+            reference to the surface; and the number that each of them had.
+        """
+        kept = [cell.id for cell in self.cells if cell.id not in set(left_out)]
+        number = {cell: place for place, cell in enumerate(kept)}
+        cells = tuple(replace(self.cells[cell], id=number[cell]) for cell in kept)
+        edges = []
+        for edge in self.edges:
+            left, right = number.get(edge.left, OUTSIDE), number.get(edge.right, OUTSIDE)
+            if left == OUTSIDE and right == OUTSIDE:
+                continue
+            # A list of joinable colors is one of those that both sides share.
+            colors = None if OUTSIDE in (left, right) else edge.colors
+            edges.append(Edge(edge.id, left, right, colors, edge.length))
+        graph = replace(
+            self, cells=cells, edges=tuple(edges), surface=None, known=None, coverage=None
+        )
+        return graph, kept
+
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
         """Draw it; see ``cellcolor.show`` for the options in ``view``."""
         import cellcolor  # the whole package's face, which only somebody who looks at it needs
@@ -239,7 +264,7 @@ class Instance(Document):
     @cached_property
     def sha256_of_version_1(self) -> str:
         """Fingerprint of this instance in a solution of version 1: that of the whole file."""
-        return fingerprint_of_version_1(self._body())
+        return _fingerprint_of_version_1(self._body())
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:
@@ -247,7 +272,7 @@ class Instance(Document):
         instance = super().from_document(document)
         if document["version"] == 1:
             # The old fingerprint depends on the order of colors, which an instance does not keep.
-            instance.__dict__["sha256_of_version_1"] = fingerprint_of_version_1(document)
+            instance.__dict__["sha256_of_version_1"] = _fingerprint_of_version_1(document)
         return instance
 
 
@@ -258,3 +283,31 @@ def _from_smallest(loops: Sequence[tuple[int, ...]]) -> list[tuple[tuple[int, ..
 
 def _given(document: dict[str, Any], **optional: object) -> dict[str, Any]:
     return document | {name: value for name, value in optional.items() if value is not None}
+
+
+def _fingerprint_of_version_1(body: dict[str, Any]) -> str:
+    """SHA-256 of the text that was written for an instance when there was only version 1."""
+
+    def part(element: dict[str, Any], names: Sequence[str], measure: str = "") -> dict[str, Any]:
+        taken = {name: element[name] for name in names if element.get(name) is not None}
+        size = element.get(measure)
+        return taken | ({} if size is None else {measure: float(size)})
+
+    document: dict[str, Any] = {"format": "cellcolor/instance", "version": 1}
+    document |= {"name": body["name"], "colors": body["colors"]}
+    document["cells"] = [part(c, ("id", "colors", "loops"), "area") for c in body["cells"]]
+    document["edges"] = [
+        part(e, ("id", "left", "right", "colors"), "length") for e in body["edges"]
+    ]
+    if body.get("meta") is not None:
+        document["meta"] = body["meta"]
+    if body.get("surface") is not None:
+        document["surface"] = part(body["surface"], ("path", "vertex_cell"))
+    if body.get("known") is not None:
+        document["known"] = {
+            space: part(body["known"][space], ("segments", "schemes"))
+            for space in ("paper", "surface")
+            if body["known"].get(space) is not None
+        }
+    text = dump_lines(document, frozenset({"cells", "edges"}))
+    return hashlib.sha256(text.encode()).hexdigest()

@@ -106,3 +106,18 @@ class ContactPath:
     def __repr__(self) -> str:
         samples, strokes = count(len(self.joints), "sample"), count(self.strokes, "stroke")
         return f"<{type(self).__name__}: {samples}, {strokes}>"
+
+
+@dataclass(frozen=True, eq=False)
+class VertexContacts:
+    """Contacts of a path with vertices, in the order of the path, each in a color of its vertex.
+
+    Attributes:
+        stroke: (c,) the stroke that each is in.
+        vertex: (c,) the vertex that is touched.
+        color: (c,) the color, which the vertex has.
+    """
+
+    stroke: NDArray[np.int64]
+    vertex: NDArray[np.int64]
+    color: NDArray[np.int64]

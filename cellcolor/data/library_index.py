@@ -9,7 +9,7 @@ from typing import Annotated
 
 from pydantic import Field, NonNegativeInt
 
-from cellcolor.data.bound import Extent
+from cellcolor.data.bounds import Extent
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.value import Document, Value
 from cellcolor.data.wording import count, span

@@ -6,17 +6,19 @@ import json
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from itertools import combinations
 from os import PathLike
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
-from cellcolor.data.bound import Bound
-from cellcolor.data.bounds.kinds import certificate_of
+from cellcolor.data.bound_kinds import certificate_of, kind_of
+from cellcolor.data.bounds import Bound
+from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.coverage import Coverage
-from cellcolor.data.darts import DartName, twin
-from cellcolor.data.proof_wording import in_words
+from cellcolor.data.instance import Instance
 from cellcolor.data.value import Document, Value, adapter_of
+from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.documents import (
     dump_lines,
@@ -202,8 +204,45 @@ class Solution(Document):
                         return cells
         return ()
 
+    @property
+    def reason(self) -> str | None:
+        """Why no division of the surface has fewer segments, by the kind of its greatest bound.
+
+        None where nothing needs a reason (a single segment) or none is given in the self.
+        """
+        if not self.proved_for_surface or (self.segments or 0) < 2:
+            return None
+        for bound in self.bounds or ():
+            if bound.holds_for == "surface" and bound.value == self.surface_lower_bound:
+                return kind_of(bound).because or None
+        return None
+
+    def in_words(self, reason: str | None = None) -> str:
+        """Segments, lift-offs and proof, like ``2 segments, 1 lift-off, optimal: proved for …``.
+
+        Args:
+            reason: why there cannot be fewer segments, a clause, where more is known of it than the
+                solution's bounds say; only used if the number is proved for any division.
+        """
+        if self.segments is None or self.lift_offs is None:
+            if self.coverage is not None and self.coverage.covered == 0:
+                return "no division: no point of the surface can be covered"
+            return f"no division found; at least {count(self.lower_bound, 'segment')}"
+        found = f"{count(self.segments, 'segment')}, {count(self.lift_offs, 'lift-off')}"
+        if self.proved_for_surface:
+            reason = reason or self.reason
+            because = "" if reason is None else f", because {reason}"
+            return f"{found}, optimal: proved for any division of the surface{because}"
+        everywhere = f"any division of the surface has at least {self.surface_lower_bound}"
+        if self.status == "optimal":
+            return f"{found}, optimal in the search space {self.search_space}; {everywhere}"
+        return (
+            f"{found}, not proved to be the fewest: at least {self.lower_bound} in the search "
+            f"space {self.search_space}; {everywhere}"
+        )
+
     def __str__(self) -> str:
-        return in_words(self)
+        return self.in_words()
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"
@@ -302,6 +341,25 @@ class _SchemeLine(Value):
     FORMAT: ClassVar[str] = "cellcolor/scheme"
 
     cells: Division
+
+
+def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:
+    """What is to be seen at cells no two of which can share a segment, a clause.
+
+    Args:
+        instance: the topological graph.
+        cells: as many as there are segments; with none there is nothing to be said.
+    """
+    if not cells:
+        return None
+    colors = (set(instance.cells[cell].colors) for cell in cells)
+    disjoint = all(a.isdisjoint(b) for a, b in combinations(colors, 2))
+    if len(cells) == 2:
+        return f"cells {listed(cells)} " + (
+            "share no color" if disjoint else "can share no segment"
+        )
+    shared = "share a color" if disjoint else "can be in one segment"
+    return f"no two of the cells {listed(cells)} {shared}"
 
 
 def division_document(division: Division) -> list[dict[str, Any]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -11,12 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import ConfigDict, TypeAdapter
 
+from cellcolor.arrays import Mask
 from cellcolor.data.cells_and_edges import check_color_names
+from cellcolor.data.coverage import Coverage
 from cellcolor.data.value import Document, RowsOfThree, Triples, Value, WithArrays, adapter_of
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
-from cellcolor.files.documents import dump_lines, take_body, validate
-from cellcolor.files.fingerprint import sha256_of
+from cellcolor.files.documents import dump_lines, sha256_of, take_body, validate
 from cellcolor.files.validation import json_content, plain, settle, validate_python
 from cellcolor.mesh.oriented import directed_edges
 from cellcolor.mesh.triangle_mesh import TriangleMesh
@@ -207,6 +208,35 @@ class LabelledSurface(WithArrays, Document):
         A vertex without triangles, or with triangles that cancel out, has (0, 0, 1).
         """
         return self.mesh.vertex_normals
+
+    @property
+    def coverage(self) -> Coverage | None:
+        """How much of the surface is unreachable or given up; None if it has no area at all.
+
+        Areas are those of the barycentric dual of the mesh.
+        """
+        areas = self.vertex_areas
+        total = float(areas.sum())
+        if not 0 < total < np.inf:
+            return None
+        given_up = list(self.given_up)
+        unreachable = np.array([not colors for colors in self.vertex_colors])
+        unreachable[given_up] = False
+        shares = (float(areas[own].sum()) / total for own in (unreachable, given_up))
+        first, second = (round(min(share, 1.0), 12) for share in shares)
+        return Coverage(float(f"{total:.12g}"), first, second)
+
+    def without_vertices(self, mask: Mask) -> LabelledSurface:
+        """The surface without colors at some vertices (n,), which it gives up."""
+        out = np.flatnonzero(mask).tolist()
+        colors = list(self.vertex_colors)
+        given_up = {*self.given_up, *(vertex for vertex in out if colors[vertex])}
+        for vertex in out:
+            colors[vertex] = ()
+        cracks = tuple(crack for crack in self.cracks if not (mask[crack.i] or mask[crack.j]))
+        return replace(
+            self, vertex_colors=tuple(colors), given_up=tuple(sorted(given_up)), cracks=cracks
+        )
 
     @cached_property
     def crack_colors(self) -> dict[tuple[int, int], frozenset[int]]:

@@ -13,7 +13,6 @@ from cellcolor.data.instance import Instance, SurfaceReference
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve, Step
-from cellcolor.decomposition.coverage import coverage_of
 from cellcolor.decomposition.on_mesh import Decomposition
 from cellcolor.errors import InputError
 
@@ -76,7 +75,7 @@ def decomposition_of(
         tuple(edges),
         surface.meta or None,
         reference,
-        coverage=coverage_of(surface),
+        coverage=surface.coverage,
     )
     return Decomposition(instance, dict(enumerate(curves, start=1)), vertex_cell)
 

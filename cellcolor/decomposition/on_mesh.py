@@ -11,7 +11,6 @@ from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition.borders import Borders, ClosedMesh, Curve
-from cellcolor.decomposition.coverage import coverage_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +49,7 @@ def locate(
         replace(cell, area=float(area)) for cell, area in zip(instance.cells, areas, strict=True)
     )
     return Decomposition(
-        replace(instance, cells=measured, coverage=coverage_of(surface)),
+        replace(instance, cells=measured, coverage=surface.coverage),
         _curves(surface, instance, list(vertex_cell)),
         tuple(vertex_cell),
     )

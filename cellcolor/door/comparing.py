@@ -18,8 +18,7 @@ from cellcolor.door.parts import inspect
 from cellcolor.door.placing import Range, place
 from cellcolor.door.starting import FoundArm, arm_of, best_place, part_keys_of
 from cellcolor.errors import InputError
-from cellcolor.files.paths import path_of
-from cellcolor.files.shipped import shipped_folder
+from cellcolor.files.paths import path_of, shipped_folder
 from cellcolor.questions.front import Front
 from cellcolor.questions.placements import PlacedMinimum
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
-from cellcolor.data.restricted import without_cells, without_vertices
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.questions.front import Front, FrontPoint
@@ -139,7 +138,7 @@ def _restricted(subject: Subject, mask: Mask) -> Subject:
     if subject.built is not None:
         built = subject.built.without(mask)
         return Subject(subject.path, built, built.surface)
-    return Subject(None, given_surface=without_vertices(subject.surface, mask))
+    return Subject(None, given_surface=subject.surface.without_vertices(mask))
 
 
 def _without_cells(subject: Subject, cells: Sequence[int]) -> Subject:
@@ -147,7 +146,7 @@ def _without_cells(subject: Subject, cells: Sequence[int]) -> Subject:
     if not cells:
         return subject
     if subject.given_instance is not None:
-        return Subject(None, given_instance=without_cells(subject.given_instance, cells)[0])
+        return Subject(None, given_instance=subject.given_instance.without_cells(cells)[0])
     return _restricted(subject, np.isin(_cells(subject), cells))
 
 

@@ -19,8 +19,7 @@ from cellcolor.checker.division import check_solution
 from cellcolor.checker.vertex_plan import PlanReport, check_plan
 from cellcolor.data.joint_plan import ContactPath, JointPlan
 from cellcolor.data.plan import Plan
-from cellcolor.data.proof_wording import reason_of, witness_in_words
-from cellcolor.data.solution import Solution
+from cellcolor.data.solution import Solution, witness_in_words
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
@@ -274,7 +273,7 @@ class Oracle:
         if proof.solution is None or proof.decomposition is None:
             return None
         cells = witness_in_words(proof.decomposition.instance, proof.solution.witness)
-        return cells or reason_of(proof.solution)
+        return cells or proof.solution.reason
 
 
 @contextmanager

@@ -8,10 +8,8 @@ from os import PathLike
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.proof_wording import in_words, witness_in_words
-from cellcolor.data.segment_rows import BASES, segment_rows
-from cellcolor.data.shares import shares_of
-from cellcolor.data.solution import Solution
+from cellcolor.data.shares import BASES, segment_rows, shares_of
+from cellcolor.data.solution import Solution, witness_in_words
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
@@ -93,7 +91,7 @@ class Result:
         return cellcolor.show(self, path, **view)
 
     def __str__(self) -> str:
-        return in_words(self.solution, witness_in_words(self.instance, self.solution.witness))
+        return self.solution.in_words(witness_in_words(self.instance, self.solution.witness))
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} of {self.instance.name!r}: {self}>"

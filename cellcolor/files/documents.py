@@ -1,7 +1,8 @@
-"""JSON files as text and back: strict, and with the field named in every error."""
+"""JSON files as text and back, strict, with the field named in every error; fingerprints."""
 
 from __future__ import annotations
 
+import hashlib
 import json
 from collections.abc import Callable, Sequence
 from os import PathLike
@@ -204,3 +205,13 @@ def dump_lines(document: dict[str, Any], one_per_line: frozenset[str]) -> str:
 
 def _dump(value: Any) -> str:
     return json.dumps(value, ensure_ascii=False, allow_nan=False)
+
+
+def sha256_of(content: Any) -> str:
+    """The fingerprint of JSON content of lists, objects, integers and text.
+
+    The text is ASCII, without spaces, members in alphabetical order. Numbers that are no integers
+    have no canonical text and must not be in it.
+    """
+    text = json.dumps(content, sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return hashlib.sha256(text.encode("ascii")).hexdigest()

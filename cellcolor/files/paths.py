@@ -1,4 +1,4 @@
-"""The names of files that callers hand over."""
+"""The names of files that callers hand over, and where the files are that come with the package."""
 
 from __future__ import annotations
 
@@ -20,3 +20,10 @@ def path_of(name: str | PathLike[str]) -> Path:
         return Path(name)
     except TypeError as error:
         raise InputError(None, None, f"{name!r:.100} is not a file name") from error
+
+
+def shipped_folder() -> Path:
+    """The folder that has ``instances`` and ``models``."""
+    package = Path(__file__).parents[1]
+    inside = package / "shipped"
+    return inside if inside.is_dir() else package.parent

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import CandidateTable
-from cellcolor.data.restricted import without_vertices
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.value import same_members
 from cellcolor.deadline import NEVER, Deadline
@@ -133,7 +132,7 @@ class BuildResult:
             cracks=find_cracks(stages.links.edges, stages.links.linked, stages.coloring),
             given_up=(),
         )
-        return raw if self.left_alone is None else without_vertices(raw, self.left_alone)
+        return raw if self.left_alone is None else raw.without_vertices(self.left_alone)
 
     def without(self, mask: Mask) -> BuildResult:
         """The same scene with some vertices (n,) that are not to be covered, on purpose."""
@@ -141,7 +140,7 @@ class BuildResult:
             mask = mask | self.left_alone
         cleaned = self.stages.cleaned
         node_color = np.where(mask[:, None], -1, cleaned.coloring.node_color)
-        surface = without_vertices(self.surface, mask)
+        surface = self.surface.without_vertices(mask)
         coloring = replace(cleaned.coloring, node_color=node_color)
         cleaned = replace(cleaned, coloring=coloring, cracks=surface.cracks)
         stages = replace(self.stages, cleaned=cleaned)

@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import TypeVar
 
 from cellcolor.checker.certificates import BoundVerdict
+from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.checker.division import check_solution
-from cellcolor.checker.known_results import contradictions
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import (
     KnownRange,

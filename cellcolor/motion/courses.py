@@ -13,7 +13,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.mesh.small_triangles import small_triangle_at
+from cellcolor.mesh.dividing import small_triangle_at
 from cellcolor.motion.following import Followed, bowed, follow
 from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP

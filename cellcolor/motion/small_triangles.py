@@ -1,6 +1,6 @@
 """The small triangles of a painted mesh, and what the arm can do at their corners.
 
-A small triangle (``cellcolor.mesh.small_triangles``) belongs to the segment of its first corner.
+A small triangle (``cellcolor.mesh.dividing``) belongs to the segment of its first corner.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from cellcolor.data.trajectory import LeftOut
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.mesh.small_triangles import small_areas, small_triangles, unit_everywhere
+from cellcolor.mesh.dividing import small_areas, small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import joint_space
 from cellcolor.union_find import UnionFind

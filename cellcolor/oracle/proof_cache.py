@@ -18,8 +18,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
-from cellcolor.files.documents import read_document
-from cellcolor.files.fingerprint import sha256_of
+from cellcolor.files.documents import read_document, sha256_of
 from cellcolor.oracle.ranges import Proof, ProvenRange
 from cellcolor.solvers.interface import STRANDS
 

@@ -11,8 +11,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index
 from cellcolor.checker.cutting_paths import WholeSubCell
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.darts import Strand
+from cellcolor.data.cells_and_edges import OUTSIDE, Strand
 from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface

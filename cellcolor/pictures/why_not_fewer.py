@@ -13,8 +13,8 @@ import numpy as np
 
 from cellcolor.arrays import Mask
 from cellcolor.checker.certificates import BoundVerdict
-from cellcolor.data.bounds.kind import Shown
-from cellcolor.data.bounds.kinds import certificate_of
+from cellcolor.data.bound_kinds import certificate_of
+from cellcolor.data.bounds import Shown
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface

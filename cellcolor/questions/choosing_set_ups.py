@@ -20,7 +20,6 @@ from ortools.sat.python import cp_model
 
 from cellcolor.arrays import Mask
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.restricted import without_vertices
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
@@ -178,7 +177,7 @@ def _solved(
             cells[inside], master.areas[inside], minlength=len(found.instance.cells)
         )
         point, least = few_that_cover(found.instance, share, options, weights.tolist())
-        surface = without_vertices(surface, np.isin(cells, point.left_out))
+        surface = surface.without_vertices(np.isin(cells, point.left_out))
         instance = decomposition_of(surface, deadline=options.deadline).instance
         solution = checked.solve(instance, options)
     if solution.segments is None:

@@ -25,7 +25,7 @@ class FrontPoint:
         at_most_share: no division with so many segments covers more.
         left_out: the cells that the solution does not cover, ascending.
         solution: a division of the other cells, which are numbered anew in their order
-            (:func:`~cellcolor.data.restricted.without_cells`); the checker has passed it.
+            (:meth:`~cellcolor.data.instance.Instance.without_cells`); the checker has passed it.
         holds_for_surface: whether ``at_most_share`` holds for any division of the surface, and not
             only for those in the search space ``paper``.
     """

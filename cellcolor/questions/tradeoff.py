@@ -15,7 +15,6 @@ from dataclasses import replace
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
-from cellcolor.data.restricted import without_cells
 from cellcolor.data.solution import Solution
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
@@ -117,7 +116,7 @@ def few_that_cover(
         covered = sum(whole[cell] for cell in cells) / total
         if covered < share or not left_out:
             continue
-        rest, _ = without_cells(instance, left_out)
+        rest, _ = instance.without_cells(left_out)
         part = checked.solve(rest, replace(options, deadline=options.deadline.share(0.5)))
         if part.segments is not None and part.segments < best.segments:
             best = FrontPoint(part.segments, covered, 1.0, left_out, part, False)
@@ -184,7 +183,7 @@ class _Asked:
         left_out = tuple(sorted(set(range(len(self._weights))) - set(cells)))
         if not left_out:  # the whole needs more
             return None
-        rest, _ = without_cells(self._instance, left_out)
+        rest, _ = self._instance.without_cells(left_out)
         deadline = self._options.deadline.share(0.5)
         solution = checked.solve(rest, replace(self._options, deadline=deadline))
         if solution.segments is None or solution.segments > segments:

@@ -11,9 +11,8 @@ from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
-from cellcolor.data.bound import Bound, greatest
-from cellcolor.data.bounds.cells import CertifiedCells
-from cellcolor.data.bounds.kinds import kind_of
+from cellcolor.data.bound_kinds import CertifiedCells, kind_of
+from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
 from cellcolor.deadline import Deadline

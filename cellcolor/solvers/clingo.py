@@ -13,12 +13,12 @@ from importlib.util import find_spec
 from math import comb
 from typing import TYPE_CHECKING
 
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import InputError, SolverMissing, TooLarge
-from cellcolor.files.shipped import shipped_folder
+from cellcolor.files.paths import shipped_folder
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains
 

@@ -8,7 +8,7 @@ from typing import Annotated, Protocol, cast, runtime_checkable
 
 from annotated_types import Ge, Le
 
-from cellcolor.data.bound import Bound, greatest
+from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, SearchSpace
 from cellcolor.deadline import NEVER, Deadline

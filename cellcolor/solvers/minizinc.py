@@ -18,12 +18,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import ClassVar
 
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, count_segments
 from cellcolor.deadline import OutOfTime
 from cellcolor.errors import CellcolorError, InputError, SolverMissing, TooLarge
-from cellcolor.files.shipped import shipped_folder
+from cellcolor.files.paths import shipped_folder
 from cellcolor.processes import Child
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains

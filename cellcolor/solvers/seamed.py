@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from cellcolor.data.cells_and_edges import Cell, Edge
-from cellcolor.data.darts import DartName, Strand
+from cellcolor.data.cells_and_edges import Cell, DartName, Edge, Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.errors import TooLarge

@@ -14,7 +14,7 @@ from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.mesh.small_triangles import small_areas
+from cellcolor.mesh.dividing import small_areas
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
 from cellcolor.tool_paths.region import Region, regions_of

@@ -18,7 +18,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.mesh.small_triangles import small_areas, small_triangles, unit_everywhere
+from cellcolor.mesh.dividing import small_areas, small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.triangles import Triangles
 

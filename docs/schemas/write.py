@@ -19,19 +19,17 @@ from typing import Any
 from pydantic.json_schema import GenerateJsonSchema
 
 from cellcolor.data import (
-    bound,
-    check_error,
+    bounds,
     coverage,
     instance,
     library_index,
     plan,
-    plan_verdict,
     solution,
-    solution_verdict,
     surface,
     tool_paths,
     trajectory,
     trajectory_verdict,
+    verdicts,
 )
 from cellcolor.data.value import adapter_of
 
@@ -39,19 +37,17 @@ FOLDER = Path(__file__).parent
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 MODULES = (
-    bound,
-    check_error,
+    bounds,
     coverage,
     instance,
     library_index,
     plan,
-    plan_verdict,
     solution,
-    solution_verdict,
     surface,
     tool_paths,
     trajectory,
     trajectory_verdict,
+    verdicts,
 )
 """Where the classes are that the schemas have definitions of."""
 
@@ -79,9 +75,9 @@ FORMATS = {
     "scheme-2": Format(None, solution._SchemeLine),
     "plan-1": Format(1, plan.Plan),
     "tool-paths-1": Format(1, tool_paths.ToolPaths, tool_paths._ToolPathsFile),
-    "solution-verdict-1": Format(1, solution_verdict.SolutionVerdict),
-    "plan-verdict-1": Format(1, plan_verdict.PlanVerdict),
-    "check-error-1": Format(1, check_error.CheckError),
+    "solution-verdict-1": Format(1, verdicts.SolutionVerdict),
+    "plan-verdict-1": Format(1, verdicts.PlanVerdict),
+    "check-error-1": Format(1, verdicts.CheckError),
     "library-1": Format(1, library_index.LibraryIndex),
     "trajectory-1": Format(1, trajectory.Trajectory),
     "trajectory-verdict-1": Format(

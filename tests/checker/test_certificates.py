@@ -19,7 +19,7 @@ import cellcolor
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells, regions_on_surface
 from cellcolor.checker.division import check_solution
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline

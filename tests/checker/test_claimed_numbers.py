@@ -17,10 +17,9 @@ from hypothesis import strategies as st
 from library import PAPER
 from meshes import surfaces
 
-from cellcolor.checker.claimed_numbers import claims
+from cellcolor.checker.claimed_numbers import claims, segments_of_whole_cells
 from cellcolor.checker.division import check_solution
-from cellcolor.checker.whole_cells import segments_of_whole_cells
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance

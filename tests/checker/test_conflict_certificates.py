@@ -19,7 +19,7 @@ import cellcolor
 from cellcolor.checker.certificates import BoundVerdict, verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.crossing_segments import TwoRegions
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface

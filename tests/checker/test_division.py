@@ -9,8 +9,7 @@ from divisions import BLUE, RED, SPLIT, divide, split_solution
 from library import PAPER
 
 from cellcolor.checker.division import check_division, check_solution
-from cellcolor.data.cells_and_edges import Cell, Edge
-from cellcolor.data.darts import DartName
+from cellcolor.data.cells_and_edges import Cell, DartName, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 

@@ -9,7 +9,7 @@ from forged_certificates import FORGERIES, Original, claims_truth, forge, large,
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 
 TIMES = 60
 BUDGET = 2_000

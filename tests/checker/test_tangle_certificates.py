@@ -27,7 +27,7 @@ from cellcolor.checker.certificates import BoundVerdict, verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.crossing_segments import TwoRegions
 from cellcolor.checker.tangles import Tangled, cannot_be_drawn, is_connected
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface

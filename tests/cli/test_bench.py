@@ -30,7 +30,7 @@ Capture = pytest.CaptureFixture[str]
 FAKES = """
 import os, time
 from dataclasses import replace
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.solvers.dfs import ReferenceSolver
 
 class Boaster(ReferenceSolver):

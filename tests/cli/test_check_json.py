@@ -20,11 +20,9 @@ from meshes import drawn, surfaces
 
 import cellcolor.door.oracle
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.data.check_error import CheckError
 from cellcolor.data.plan import Plan
-from cellcolor.data.plan_verdict import PlanVerdict
-from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.verdicts import CheckError, PlanVerdict, SolutionVerdict
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.oracle import Proof, ProvenRange

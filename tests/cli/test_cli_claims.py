@@ -12,7 +12,7 @@ from commands import json_lines, run
 from library import PAPER
 from pages import small_wok
 
-from cellcolor.checker.known_results import contradictions
+from cellcolor.checker.claimed_numbers import contradictions
 from cellcolor.data.instance import Instance, KnownResult, KnownResults
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options

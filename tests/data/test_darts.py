@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from cellcolor.data.darts import DartName, Strand, strand_of, twin
+from cellcolor.data.cells_and_edges import DartName, Strand, strand_of, twin
 
 
 @pytest.mark.parametrize(

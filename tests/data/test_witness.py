@@ -13,8 +13,8 @@ from meshes import drawn, surfaces
 
 import cellcolor
 from cellcolor import Instance, LabelledSurface
-from cellcolor.data.bound import Bound
-from cellcolor.data.proof_wording import witness_in_words
+from cellcolor.data.bounds import Bound
+from cellcolor.data.solution import witness_in_words
 from examples import examples
 
 

@@ -26,17 +26,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 
-from cellcolor.data.check_error import CheckError
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.plan import Plan
-from cellcolor.data.plan_verdict import PlanVerdict
 from cellcolor.data.solution import Solution, scheme_line
-from cellcolor.data.solution_verdict import SolutionVerdict
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.data.verdicts import CheckError, PlanVerdict, SolutionVerdict
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.solvers.checked import enumerate_schemes, solve

@@ -12,8 +12,8 @@ from meshes import drawn, surfaces
 
 import cellcolor
 from cellcolor.checker.vertex_plan import check_plan
+from cellcolor.data.joint_plan import VertexContacts
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.vertex_contacts import VertexContacts
 from cellcolor.door.joint_plans import coloring_of
 from cellcolor.oracle import ProvenRange
 from examples import examples

@@ -19,7 +19,7 @@ from meshes import drawn, surfaces
 
 import cellcolor
 from cellcolor.checker.vertex_plan import check_plan
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.coverage import Coverage
 from cellcolor.data.instance import Instance, KnownResult, KnownResults, SurfaceReference

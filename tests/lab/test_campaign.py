@@ -17,7 +17,7 @@ from library import PAPER
 from odd_jobs import HereWorkers
 
 from cellcolor.cli import main
-from cellcolor.data.bound import Bound, greatest
+from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.data.surface import LabelledSurface

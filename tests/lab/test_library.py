@@ -14,7 +14,7 @@ import pytest
 from library import INSTANCES
 
 from cellcolor.checker.division import check_solution
-from cellcolor.data.bound import Bound, Extent
+from cellcolor.data.bounds import Bound, Extent
 from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex, UpperBound
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface

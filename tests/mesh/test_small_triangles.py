@@ -8,7 +8,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from triangles import any_meshes, bumpy_ball
 
-from cellcolor.mesh.small_triangles import (
+from cellcolor.mesh.dividing import (
     everywhere,
     small_areas,
     small_triangle_at,

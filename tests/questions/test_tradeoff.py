@@ -13,7 +13,6 @@ from meshes import drawn
 
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE
-from cellcolor.data.restricted import without_cells
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.questions.front import Front
@@ -66,7 +65,7 @@ def test_no_coloring_of_vertices_covers_more_than_a_point_says(
 
 def test_cells_left_out_are_outside() -> None:
     row = cellcolor.decompose("half_pipe")
-    rest, kept = without_cells(row, [0, 3])
+    rest, kept = row.without_cells([0, 3])
     assert kept == [c for c in range(len(row.cells)) if c not in (0, 3)]
     for new, old in enumerate(kept):
         assert rest.cells[new].loops == row.cells[old].loops

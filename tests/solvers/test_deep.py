@@ -12,9 +12,8 @@ from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.division import check_solution
 from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.checker.scheme_rules import PaintedCell
-from cellcolor.checker.several_loops import PaintedLoops, unavoidable_join_on_loops
-from cellcolor.data.bound import Bound
+from cellcolor.checker.scheme_rules import PaintedCell, PaintedLoops, unavoidable_join_on_loops
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.lab.families.hubs import hub_minimum

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from library import PAPER
 
-from cellcolor.data.darts import DartName
+from cellcolor.data.cells_and_edges import DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, InstanceReference, Solution, SubCell
 

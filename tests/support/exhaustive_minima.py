@@ -24,7 +24,6 @@ from itertools import chain, combinations
 
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
-from cellcolor.data.restricted import without_cells
 from cellcolor.data.solution import SchemeKey
 from cellcolor.data.surface import LabelledSurface
 
@@ -424,7 +423,7 @@ def front_by_subsets(instance: Instance, weights: Sequence[float]) -> dict[int, 
     cells = range(len(instance.cells))
     best: dict[int, float] = defaultdict(float)
     for left_out in chain.from_iterable(combinations(cells, size) for size in cells):
-        rest, kept = without_cells(instance, left_out)
+        rest, kept = instance.without_cells(left_out)
         segments = minimum(rest)
         best[segments] = max(best[segments], sum(weights[cell] for cell in kept))
     return {k: max(best[fewer] for fewer in range(1, k + 1)) for k in range(1, max(best) + 1)}

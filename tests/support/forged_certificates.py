@@ -23,7 +23,7 @@ from meshes import drawn
 from rooms import ISLAND_BETWEEN, ROUND_A_PETAL
 
 import cellcolor
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface

@@ -18,7 +18,7 @@ import networkx as nx
 import numpy as np
 
 from cellcolor.checker.dart_lists import live_lists
-from cellcolor.data.darts import Strand
+from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import (
     CellDivision,

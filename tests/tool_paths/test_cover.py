@@ -17,7 +17,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.mesh.small_triangles import small_areas
+from cellcolor.mesh.dividing import small_areas
 from cellcolor.tool_paths.cover import Covered, check_spacing, cover
 from cellcolor.tool_paths.region import regions_of
 from cellcolor.tool_paths.registry import PATTERNS, pattern_names

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from painted import SHAPES, one_segment, painted_at_random, slit, square, whole
 
-from cellcolor.mesh.small_triangles import small_areas
+from cellcolor.mesh.dividing import small_areas
 from cellcolor.tool_paths.region import Region, regions_of
 from examples import examples
 

@@ -6,10 +6,9 @@ from collections import defaultdict
 
 import numpy as np
 
-from cellcolor.data.bound import Bound
-from cellcolor.data.bounds.kinds import kind_of
-from cellcolor.data.proof_wording import reason_of, witness_in_words
-from cellcolor.data.solution import Solution
+from cellcolor.data.bound_kinds import kind_of
+from cellcolor.data.bounds import Bound
+from cellcolor.data.solution import Solution, witness_in_words
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.wording import count, listed
 from cellcolor.pictures.report_page.answers import answer_card
@@ -146,7 +145,7 @@ def _proof(report: MotionReport) -> Card | None:
         text = "The tool never has to lift off, so there cannot be fewer."
         return Card("Why not fewer lift-offs", (text,), (), True)
     witness = witness_in_words(report.decomposition.instance, solution.witness)
-    because = witness or reason_of(solution)
+    because = witness or solution.reason
     paragraphs = [
         f"However the surface is divided, {count(segments, 'segment')} are needed"
         + (f": {because}." if because else "."),

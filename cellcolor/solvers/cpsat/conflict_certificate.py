@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from itertools import combinations, product
 
-from cellcolor.data.bounds.parts import (
+from cellcolor.data.bound_kinds import (
     CertifiedCrossing,
     CertifiedPart,
     CertifiedParts,

@@ -8,8 +8,8 @@ from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import version
 
-from cellcolor.data.bound import Bound
-from cellcolor.data.darts import Strand
+from cellcolor.data.bounds import Bound
+from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime

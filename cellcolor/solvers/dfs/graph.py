@@ -13,8 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import log2
 
-from cellcolor.data.cells_and_edges import Cell
-from cellcolor.data.darts import DartName, strand_of, twin
+from cellcolor.data.cells_and_edges import Cell, DartName, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 

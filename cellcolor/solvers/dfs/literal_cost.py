@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from cellcolor.data.darts import DartName, twin
+from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.errors import InputError

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, islice
 
-from cellcolor.data.darts import DartName, twin
+from cellcolor.data.cells_and_edges import DartName, twin
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, DartKnowledge, cell_schemes, zero_colors
 from cellcolor.solvers.dfs.graph import GraphCell

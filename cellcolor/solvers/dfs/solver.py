@@ -7,9 +7,8 @@ from functools import partial
 from itertools import islice
 from typing import TypeVar
 
-from cellcolor.data.bound import Bound
-from cellcolor.data.cells_and_edges import Cell
-from cellcolor.data.darts import DartName
+from cellcolor.data.bounds import Bound
+from cellcolor.data.cells_and_edges import Cell, DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam, number_segments
 from cellcolor.deadline import Deadline, OutOfTime

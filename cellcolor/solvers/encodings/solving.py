@@ -10,7 +10,7 @@ from typing import ClassVar
 
 from ortools.sat.python import cp_model
 
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.encodings.problem import Pair, Problem

@@ -20,7 +20,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import ClassVar
 
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import count_segments
 from cellcolor.deadline import OutOfTime

@@ -11,9 +11,8 @@ from meshes import drawn
 import cellcolor
 from cellcolor.checker.certificates import VERIFIERS
 from cellcolor.checker.proof import Proof, Refused
-from cellcolor.data.bound import Bound
-from cellcolor.data.bounds.kind import BoundKind, Certificate, Mark, Shown
-from cellcolor.data.bounds.kinds import KINDS, certificate_of
+from cellcolor.data.bound_kinds import KINDS, certificate_of
+from cellcolor.data.bounds import Bound, BoundKind, Certificate, Mark, Shown
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.pictures.picture import Picture3D

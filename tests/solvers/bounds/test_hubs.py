@@ -11,7 +11,7 @@ import cellcolor
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.hubs import Hubs
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.lab.families import hub, hub_grid, hub_with_loops, planar_graph

@@ -11,7 +11,7 @@ from library import PAPER
 from reference import SOLVER, SURFACE, segments
 from relabelled import turned_loop
 
-from cellcolor.data.bound import Bound
+from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import scheme_key

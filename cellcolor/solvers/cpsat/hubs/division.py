@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from cellcolor.data.darts import Strand, twin
+from cellcolor.data.cells_and_edges import Strand, twin
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.hubs import joinable_colors

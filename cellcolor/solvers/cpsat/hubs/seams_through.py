@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from cellcolor.data.darts import Strand
+from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.solution import Seam
 
 

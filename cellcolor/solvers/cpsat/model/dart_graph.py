@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
-from cellcolor.data.darts import Strand
+from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 from cellcolor.solvers.cpsat.parts import Loops, seam_places

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from cellcolor.data.darts import DartName, strand_of
+from cellcolor.data.cells_and_edges import DartName, strand_of
 from cellcolor.data.solution import Division, number_segments
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.union_find import UnionFind

@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 
 from ortools.sat.python import cp_model
 
-from cellcolor.data.cells_and_edges import Cell, Edge
-from cellcolor.data.darts import Strand
+from cellcolor.data.cells_and_edges import Cell, Edge, Strand
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import OutOfTime

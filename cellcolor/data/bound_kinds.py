@@ -1,26 +1,63 @@
-"""Bounds that add up over the parts of a surface: by conflicts and tangles, and by hubs."""
+"""The kinds of bounds by name, and what their certificates hold and show."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from pydantic import NonNegativeInt
 
-from cellcolor.data.bounds.cells import CertifiedCells, marks_of
-from cellcolor.data.bounds.kind import (
+from cellcolor.data.bounds import (
     EVERY_CELL,
+    Bound,
     BoundKind,
     Certificate,
     Connection,
     Mark,
     Shown,
+    marks_of,
 )
+from cellcolor.data.instance import Instance
 from cellcolor.data.wording import count, listed
 
-if TYPE_CHECKING:
-    from cellcolor.data.instance import Instance
+
+@dataclass(frozen=True, slots=True)
+class CertifiedCells(Certificate):
+    """Cells that fewer color regions than the bound says do not touch."""
+
+    cells: tuple[int, ...]
+
+    def shown(self, value: int, instance: Instance) -> Shown:
+        """The cells."""
+        cells = sorted(set(self.cells))
+        notes: tuple[str, ...] = (
+            f"No {count(value - 1, 'color region')} touch all of these cells.",
+        )
+        if len(cells) == value:
+            notes = (
+                "No two of these cells can share a segment:",
+                "no color leads from one to another.",
+            )
+        return Shown(marks_of(instance, cells), (), notes)
+
+    def witness(self, value: int) -> tuple[int, ...]:
+        """The cells if there are as many: then no color region touches two of them."""
+        return self.cells if len(self.cells) == value else ()
+
+
+STRANGERS = BoundKind(
+    "that many cells cannot share a segment, no two of them",
+    "It holds for the number of segments, also where only those cells have to be covered.",
+    CertifiedCells,
+)
+COVER = BoundKind(
+    "fewer color regions cannot touch every cell",
+    "It holds for the number of segments, also where only the cells of its certificate have to be "
+    "covered.",
+    CertifiedCells,
+)
+
 
 _Cells = tuple[int, ...]
 
@@ -160,3 +197,43 @@ HUBS = BoundKind(
     EVERY_CELL,
     CertifiedParts,
 )
+
+
+_STRANDS = (
+    "It holds for the number of segments, where every cell has to be covered, in divisions with "
+    "the solution's strands."
+)
+
+
+_UNKNOWN = BoundKind()
+
+
+KINDS = {
+    "strangers": STRANGERS,
+    "cover": COVER,
+    "conflicts": CONFLICTS,
+    "hubs": HUBS,
+    "crossings": BoundKind(
+        "the full model has nothing better, and more strands would be of no use", EVERY_CELL
+    ),
+    "model": BoundKind("", _STRANDS),
+    "search": BoundKind("", _STRANDS),
+}
+"""What cellcolor writes. A bound may be of another kind: it is kept, and taken on trust."""
+
+
+def kind_of(bound: Bound) -> BoundKind:
+    """The kind of a bound; of one that is not known nothing is said."""
+    return KINDS.get(bound.kind, _UNKNOWN)
+
+
+def certificate_of(bound: Bound) -> Certificate | None:
+    """What a bound can be verified by; None if there is nothing.
+
+    Raises:
+        InputError: it is no certificate of its kind.
+    """
+    form = kind_of(bound).certificate
+    if form is None or bound.certificate is None:
+        return None
+    return form.from_document(bound.certificate)

@@ -1,19 +1,76 @@
-"""What a kind of bound is: why it holds, for which objective, and what its certificate shows."""
+"""Lower bounds of the number of segments: each with its kind, and what its certificate holds.
+
+The solvers find bounds and the checker verifies them; neither is in here, so that they share the
+data and nothing else.
+
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, field
 from functools import cache
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Literal, Self
 
-from pydantic import ConfigDict, TypeAdapter
+from pydantic import ConfigDict, NonNegativeInt, TypeAdapter
 
+from cellcolor.data.instance import Instance
+from cellcolor.data.value import Value
+from cellcolor.data.wording import count, listed
 from cellcolor.files.documents import validate
+from cellcolor.files.validation import json_content, settle
 
-if TYPE_CHECKING:
-    from cellcolor.data.instance import Instance
+Extent = Literal["surface", "strands"]
+"""What a bound holds for: any division of the surface, or those with the solution's strands."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bound(Value):
+    """No division of some kind has fewer segments than this.
+
+    Attributes:
+        kind: how it was proved; docs/formats.md has the kinds that cellcolor writes.
+        value: the number of segments.
+        holds_for: ``surface`` for any division of the physical surface, ``strands`` for those
+            that the solution's strands allow (in the search space ``paper``: its divisions).
+        certificate: what a checker without a solver can verify, if there is one.
+    """
+
+    kind: str
+    value: NonNegativeInt
+    holds_for: Extent
+    certificate: dict[str, Any] | None = field(default=None, hash=False)
+
+    def __post_init__(self) -> None:
+        settle(self)
+        if self.certificate is not None:
+            content = json_content(self.certificate, "certificate")
+            object.__setattr__(self, "certificate", content)
+
+    def __str__(self) -> str:
+        extent = "any division of the surface" if self.holds_for == "surface" else "these strands"
+        return f"at least {count(self.value, 'segment')} for {extent}, by {self.kind}"
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        document: dict[str, Any] = {
+            "kind": self.kind,
+            "value": self.value,
+            "holds_for": self.holds_for,
+        }
+        if self.certificate is not None:
+            document["certificate"] = self.certificate
+        return document
+
+
+def greatest(bounds: Sequence[Bound], extent: Extent) -> int:
+    """The greatest bound for an extent, 0 if there is none.
+
+    What holds for any division of the surface holds for those with strands as well.
+    """
+    return max((b.value for b in bounds if b.holds_for in ("surface", extent)), default=0)
+
 
 EVERY_CELL = "It holds for the number of segments, where every cell has to be covered."
 """The objective of most kinds of bounds."""
@@ -119,3 +176,15 @@ class BoundKind:
     def __str__(self) -> str:
         because = f"{self.because[:1].upper()}{self.because[1:]}. " if self.because else ""
         return because + self.objective
+
+
+def marks_of(
+    instance: Instance, cells: Sequence[int], hubs: Sequence[int] = ()
+) -> tuple[Mark, ...]:
+    """Cells, each by itself, and hubs that are taken away, with their colors."""
+    named = [(cell, "cell", number) for number, cell in enumerate(cells)]
+    marks = []
+    for cell, what, group in [*named, *((hub, "hub", None) for hub in hubs)]:
+        colors = listed(instance.colors[color] for color in instance.cells[cell].colors)
+        marks.append(Mark(str(cell), f"{what} {cell}: {colors}", (cell,), group))
+    return tuple(marks)

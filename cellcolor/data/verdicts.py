@@ -1,10 +1,67 @@
-"""Verdicts on plans, as ``cellcolor check`` prints them for programs in any language."""
+"""What ``cellcolor check`` prints about solutions and plans, for programs in any language."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, Literal
 
 from cellcolor.data.value import AboutAFile, Count, Value
+
+
+@dataclass(frozen=True, slots=True)
+class CheckedBound(Value):
+    """The outcome of verifying a solution's bound.
+
+    Attributes:
+        kind: how the bound was proved.
+        value: there are no fewer segments.
+        holds_for: any division of the surface, or those with the solution's strands.
+        outcome: verified, refused, or taken on trust: budget exceeded, or no certificate.
+        reason: why it was refused, a sentence; empty otherwise.
+        tried: how many choices were tried.
+        budget: how many could have been tried.
+    """
+
+    kind: str
+    value: Count
+    holds_for: Literal["surface", "strands"]
+    outcome: Literal["verified", "refused", "budget exceeded", "no certificate"]
+    reason: str
+    tried: Count
+    budget: Count
+
+
+@dataclass(frozen=True, slots=True)
+class SolutionVerdict(AboutAFile):
+    """The verdict on a solution.
+
+    Attributes:
+        file: the solution as the command named it; ``-`` for standard input.
+        valid: nothing is wrong with its division, its numbers and its schemes.
+        problems: what is wrong, each naming its element; empty when it is valid.
+        segments: counted in its division; null when that is not legal.
+        lift_offs: max(0, segments - 1); null when the division is not legal.
+        status: the solution's own.
+        solver: what has found it.
+        bounds: what came of verifying each of its bounds by its certificate.
+        bounds_by_solver: how many of them rest on the solver.
+        claimed: the members that nothing has verified, with what they say.
+        schemes: how many follow the solution in its file; null for none.
+    """
+
+    FORMAT = "cellcolor/solution-verdict"
+
+    file: str
+    valid: bool
+    problems: tuple[str, ...]
+    segments: Count | None
+    lift_offs: Count | None
+    status: str
+    solver: str
+    bounds: tuple[CheckedBound, ...]
+    bounds_by_solver: Count
+    claimed: dict[str, Any]
+    schemes: Count | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,3 +163,26 @@ class PlanVerdict(AboutAFile):
     improvement: PlanImprovement | None
     why: str | None
     kept_lower_bound: Count | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class CheckError(AboutAFile):
+    """Why nothing can be said about a solution, a plan or a trajectory.
+
+    Attributes:
+        file: what was to be checked, as the command named it; ``-`` for standard input.
+        valid: null, as it is not known.
+        error: what is wrong, one line that names file and member.
+        at_file: the file at fault, null if no single one is.
+        at_field: the member at fault, such as ``vertex_colors[3]``, or null.
+        exit_code: the command's: 2 for bad input, 3 where the time limit came first.
+    """
+
+    FORMAT = "cellcolor/check-error"
+
+    file: str
+    valid: None
+    error: str
+    at_file: str | None
+    at_field: str | None
+    exit_code: Literal[2, 3]
