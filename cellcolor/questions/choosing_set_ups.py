@@ -3,16 +3,17 @@
 A set-up is the same surface as another placement, or another arm, labels it. The colors of several
 set-ups stand side by side on one labelled surface; no color of one leads on into a color of
 another, so the ordinary solver proves its minimum. Which set-ups these are is settled in turns
-(logic-based Benders decomposition). A master model chooses set-ups and color regions that cover
-enough. Every segment lies in one region of one set-up, so it cannot need fewer segments than the
-master has regions. The set-ups that it chose are solved, which says what they need in truth, and it
-chooses others, until none of those could be better.
+(logic-based Benders decomposition, docs/setups.md). A master model chooses set-ups and color
+regions that cover enough; every segment lies in one region of one set-up, so at least so many are
+needed. The surface with the colors of these regions alone is solved, which is quick. What it needs
+in truth the master learns, for these regions and all that lie within them, and chooses others,
+until none of those could be better.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -61,34 +62,47 @@ class Choice:
     proved: bool = False
 
 
-def side_by_side(surfaces: Sequence[LabelledSurface], numbers: Sequence[int]) -> LabelledSurface:
-    """One surface with the colors of some set-ups, the first number before a color is its set-up's.
+@dataclass(frozen=True, eq=False)
+class _Region:
+    """A color region of a set-up: one color, connected over mesh edges that are not cracks."""
+
+    set_up: int
+    color: int
+    vertices: frozenset[int]
+
+
+def side_by_side(
+    surfaces: Sequence[LabelledSurface], regions: Collection[_Region]
+) -> LabelledSurface:
+    """One surface with the colors of some regions; before a color's name is its set-up's number.
 
     Args:
         surfaces: of all set-ups, on one mesh.
-        numbers: of those that are used, from 0.
+        regions: those that may be painted.
     """
-    first = surfaces[numbers[0]]
+    first = surfaces[0]
     names: list[str] = []
-    colors: list[tuple[int, ...]] = [()] * len(first.vertices)
+    colors: list[list[int]] = [[] for _ in first.vertices]
     cracks: dict[tuple[int, int], list[int]] = {}
     given_up: set[int] = set()
-    for number in numbers:
-        own, offset = surfaces[number], len(names)
-        names += [f"{number + 1}: {name}" for name in own.colors]
-        colors = [
-            (*before, *(color + offset for color in more))
-            for before, more in zip(colors, own.vertex_colors, strict=True)
-        ]
+    inside: dict[tuple[int, int], set[int]] = {}
+    for region in regions:
+        inside.setdefault((region.set_up, region.color), set()).update(region.vertices)
+    for number, (set_up, color) in enumerate(sorted(inside)):
+        own, vertices = surfaces[set_up], inside[set_up, color]
+        names.append(f"{set_up + 1}: {own.colors[color]}")
+        for vertex in vertices:
+            colors[vertex].append(number)
         for crack in own.cracks:
-            cracks.setdefault((crack.i, crack.j), []).extend(c + offset for c in crack.colors)
+            if color in crack.colors and {crack.i, crack.j} <= vertices:
+                cracks.setdefault((crack.i, crack.j), []).append(number)
         given_up |= set(own.given_up)
     return LabelledSurface(
         first.name,
         tuple(names),
         first.vertices,
         first.faces,
-        tuple(colors),
+        tuple(map(tuple, colors)),
         tuple(Crack(i, j, tuple(own)) for (i, j), own in cracks.items()),
         given_up=tuple(vertex for vertex in sorted(given_up) if not colors[vertex]),
     )
@@ -116,118 +130,145 @@ def choose(
         OutOfTime: the deadline came before there was any choice.
     """
     report = progress or (lambda _: None)
-    master = _Master(surfaces, cover, options)
+    asked = _Asked(surfaces, cover, options)
     report("the fewest set-ups")
+    master = _Master(asked, 1.0 if change_over is None else change_over)
     fewest = master.fewest_set_ups()
-    price = 1.0 if change_over is None else change_over
-    number = fewest if change_over is None else None
-    best: tuple[float, Choice] | None = None
-    # Of what was tried, and of what was not, no choice costs less.
-    least_tried, least_untried = np.inf, 0.0
+    if change_over is None:
+        master.insist_on(fewest)
+    best: Choice | None = None
+    tried: set[frozenset[int]] = set()
     try:
-        while (found := master.next_choice(number, price)) is not None:
-            least_untried, chosen = found
-            if best is not None and least_untried >= best[0] - _SAME:
-                break
-            report(f"choice {len(master.tried) + 1}")
-            solved, least = _solved(surfaces, chosen, master, options)
-            master.tried.append(chosen)
-            least_tried = min(least_tried, least + (price - 1) * len(chosen))
-            if solved is None:
-                continue
-            cost = (solved.solution.segments or 0) + (price - 1) * len(solved.set_ups)
-            if best is None or cost < best[0]:
-                best = cost, solved
-        if found is None:
-            least_untried = np.inf
+        while best is None or master.least < master.cost(best) - _SAME:
+            chosen = master.next_choice()
+            report(f"choice {len(tried) + 1}, at least {master.least:g} segments")
+            if chosen in tried or not asked.everything:
+                # Its regions alone are not enough, or not what has to be covered: all of the same
+                # set-ups.
+                chosen = asked.regions_of({asked.regions[one].set_up for one in chosen})
+                if chosen in tried:  # no solver knows better
+                    break
+            tried.add(chosen)
+            solved, least = asked.solved(chosen)
+            master.learn(chosen, least)
+            if solved is not None and (best is None or master.cost(solved) < master.cost(best)):
+                best = solved
     except OutOfTime:
         if best is None:
             raise
     if best is None:
         raise OutOfTime
-    cost, choice = best
-    at_least = min(least_tried, least_untried)
-    least = int(np.ceil(at_least - (price - 1) * len(choice.set_ups) - _SAME))
-    proved = at_least >= cost - _SAME
-    if proved:
-        least = choice.solution.segments or 0
-    return replace(choice, fewest_set_ups=fewest, at_least_segments=max(1, least), proved=proved)
+    proved = master.least >= master.cost(best) - _SAME
+    return replace(
+        best,
+        fewest_set_ups=fewest,
+        at_least_segments=(best.solution.segments or 0) if proved else master.least_segments(best),
+        proved=proved,
+    )
 
 
-def _solved(
-    surfaces: Sequence[LabelledSurface],
-    chosen: tuple[int, ...],
-    master: _Master,
-    options: Options,
-) -> tuple[Choice | None, int]:
-    """Some set-ups solved: the best division that covers enough, and what any division needs."""
-    surface = side_by_side(surfaces, chosen)
-    colored = np.array([bool(own) for own in surface.vertex_colors])
-    reached = float(master.areas[colored].sum())
-    share = min(1.0, master.needed / reached)
-    found = decomposition_of(surface, deadline=options.deadline)
-    options = replace(options, deadline=options.deadline.share(0.5))
-    if share > 1 - 1e-9:
-        solution = checked.solve(found.instance, options)
-        least = solution.surface_lower_bound
-    else:
-        cells = np.array(found.vertex_cell)
-        inside = cells != OUTSIDE
-        weights = np.bincount(
-            cells[inside], master.areas[inside], minlength=len(found.instance.cells)
-        )
-        point, least = few_that_cover(found.instance, share, options, weights.tolist())
-        surface = surface.without_vertices(np.isin(cells, point.left_out))
-        instance = decomposition_of(surface, deadline=options.deadline).instance
-        solution = checked.solve(instance, options)
-    if solution.segments is None:
-        return None, least
-    covered = float(master.areas[[bool(own) for own in surface.vertex_colors]].sum())
-    used = _used(solution, surface, chosen)
-    return Choice(used, surface, solution, covered / master.whole), least
-
-
-def _used(solution: Solution, surface: LabelledSurface, chosen: tuple[int, ...]) -> tuple[int, ...]:
-    """The set-ups that a segment is in."""
-    colors = {sub.color for cell in solution.cells or () for sub in cell.subcells}
-    numbers = {int(surface.colors[color].partition(":")[0]) - 1 for color in colors}
-    return tuple(number for number in chosen if number in numbers)
-
-
-class _Master:
-    """The model that chooses set-ups and color regions."""
+class _Asked:
+    """The regions of all set-ups, and what some of them need."""
 
     def __init__(self, surfaces: Sequence[LabelledSurface], cover: float, options: Options) -> None:
-        self._deadline = deadline = options.deadline
-        self._workers, self._seed = options.workers or PORTFOLIO, options.seed
+        self.surfaces, self.options = surfaces, options
         self.areas = surfaces[0].vertex_areas
         reached: Mask = np.zeros(len(self.areas), dtype=bool)
-        self._regions: list[tuple[int, frozenset[int]]] = []
-        of_vertex: list[list[int]] = [[] for _ in self.areas]
+        self.regions: list[_Region] = []
         for number, surface in enumerate(surfaces):
-            deadline.check()
+            options.deadline.check()
             reached |= [bool(own) for own in surface.vertex_colors]
-            for vertices in _regions_of(surface, deadline):
-                for vertex in vertices:
-                    of_vertex[vertex].append(len(self._regions))
-                self._regions.append((number, vertices))
+            self.regions += _regions_of(number, surface, options.deadline)
         self.whole = float(self.areas[reached].sum())
         if not self.whole:
             raise InputError(None, None, "nothing is reached in any of the set-ups")
-        self.needed = cover * self.whole
+        self.cover, self.everything = cover, cover >= 1
+
+    def regions_of(self, set_ups: Collection[int]) -> frozenset[int]:
+        """The numbers of all regions of some set-ups."""
+        return frozenset(n for n, region in enumerate(self.regions) if region.set_up in set_ups)
+
+    def solved(self, chosen: Collection[int]) -> tuple[Choice | None, int]:
+        """The best division found of some regions that covers enough, and what any one needs."""
+        surface = side_by_side(self.surfaces, [self.regions[one] for one in chosen])
+        deadline = self.options.deadline
+        options = replace(self.options, deadline=deadline.share(0.5))
+        found = decomposition_of(surface, deadline=deadline)
+        if self.everything:
+            solution = checked.solve(found.instance, options)
+            least = solution.surface_lower_bound
+        else:
+            cells = np.array(found.vertex_cell)
+            inside = cells != OUTSIDE
+            weights = np.bincount(
+                cells[inside], self.areas[inside], minlength=len(found.instance.cells)
+            )
+            share = min(1.0, self.cover * self.whole / float(weights.sum()))
+            point, least = few_that_cover(found.instance, share, options, weights.tolist())
+            surface = surface.without_vertices(np.isin(cells, point.left_out))
+            instance = decomposition_of(surface, deadline=deadline).instance
+            solution = checked.solve(instance, options)
+        if solution.segments is None:
+            return None, least
+        covered = float(self.areas[[bool(own) for own in surface.vertex_colors]].sum())
+        colors = {sub.color for cell in solution.cells or () for sub in cell.subcells}
+        used = sorted({int(surface.colors[color].partition(":")[0]) - 1 for color in colors})
+        return Choice(tuple(used), surface, solution, covered / self.whole), least
+
+
+class _Master:
+    """The model that chooses set-ups and color regions that cover enough."""
+
+    def __init__(self, asked: _Asked, price: float) -> None:
+        """``price`` is that of a change-over, in lift-offs."""
+        self._asked, self._price = asked, price
+        self._model = model = cp_model.CpModel()
+        self._used = [model.new_bool_var("") for _ in asked.surfaces]
+        self._regions = [model.new_bool_var("") for _ in asked.regions]
+        self._segments = model.new_int_var(0, len(asked.regions) + len(asked.areas), "")
+        model.add(self._segments >= sum(self._regions))
+        own: list[list[cp_model.IntVar]] = [[] for _ in asked.surfaces]
+        of_vertex: list[list[int]] = [[] for _ in asked.areas]
+        for number, (literal, region) in enumerate(zip(self._regions, asked.regions, strict=True)):
+            model.add_implication(literal, self._used[region.set_up])
+            own[region.set_up].append(literal)
+            for vertex in region.vertices:
+                of_vertex[vertex].append(number)
+        for used, literals in zip(self._used, own, strict=True):
+            model.add_bool_or([~used, *literals])  # what is set up paints something
         # Vertices in the same regions are one place with one weight.
-        weights: Counter[tuple[int, ...]] = Counter()
-        for regions, area in zip(of_vertex, self.areas.tolist(), strict=True):
+        places: Counter[tuple[int, ...]] = Counter()
+        for regions, area in zip(of_vertex, asked.areas.tolist(), strict=True):
             if regions:
-                weights[tuple(regions)] += area
-        self._everything = cover >= 1
-        # Where everything is covered, so is a place that another place's regions all cover.
-        self._places = _hardest(weights) if self._everything else list(weights)
-        self._weights = [round(weights[place] / self.whole * _WHOLE) for place in self._places]
-        self._enough = round(cover * sum(self._weights))
-        self.tried: list[tuple[int, ...]] = []
-        self._count = len(surfaces)
-        self._least = 0  # what every choice that was not tried costs, in thousandths of a lift-off
+                places[tuple(regions)] += area
+        if asked.everything:
+            # A place is covered where another place is that has none but some of its regions.
+            hardest = _hardest(places)
+            for place in hardest:
+                model.add_bool_or([self._regions[region] for region in place])
+            # This follows, and prunes where there are many set-ups.
+            set_ups = (tuple({asked.regions[region].set_up for region in p}) for p in hardest)
+            for numbers in _hardest(set_ups):
+                model.add_bool_or([self._used[number] for number in numbers])
+        else:
+            covered, total = [], 0
+            for place, area in places.items():
+                weight, one = round(area / asked.whole * _WHOLE), model.new_bool_var("")
+                model.add_bool_or([~one, *(self._regions[region] for region in place)])
+                covered.append(weight * one)
+                total += weight
+            model.add(sum(covered) >= round(asked.cover * total))
+        self.least = 0.0
+        """No choice costs less, in segments and in prices of more than one for change-overs."""
+
+    def cost(self, choice: Choice) -> float:
+        """Segments, and what change-overs cost beyond one each."""
+        return (choice.solution.segments or 0) + (self._price - 1) * len(choice.set_ups)
+
+    def least_segments(self, choice: Choice) -> int:
+        """With as many set-ups no division has fewer."""
+        extra = (self._price - 1) * len(choice.set_ups)
+        return max(1, int(np.ceil(self.least - extra - _SAME)))
 
     def fewest_set_ups(self) -> int:
         """No fewer cover enough.
@@ -235,88 +276,75 @@ class _Master:
         Raises:
             OutOfTime: that was not proved in time.
         """
-        model, used, _ = self._model()
-        model.minimize(sum(used))
-        solver = self._run(model)
-        assert solver is not None  # all of them cover everything
+        self._model.minimize(sum(self._used))
+        solver = self._run()
         if solver.best_objective_bound < solver.objective_value - 0.5:
             raise OutOfTime
+        self._model.minimize(
+            _PRICE_UNIT * self._segments + round((self._price - 1) * _PRICE_UNIT) * sum(self._used)
+        )
         return round(solver.objective_value)
 
-    def next_choice(self, number: int | None, price: float) -> tuple[float, tuple[int, ...]] | None:
-        """What every choice that was not tried costs at least, and the one that looks cheapest.
+    def insist_on(self, number: int) -> None:
+        """Choose so many set-ups from now on."""
+        self._model.add(sum(self._used) == number)
 
-        Args:
-            number: of set-ups; None for any.
-            price: of a change-over, in lift-offs.
-
-        Returns:
-            None if all were tried.
+    def next_choice(self) -> frozenset[int]:
+        """The regions that look cheapest.
 
         Raises:
             OutOfTime: no choice was found in time.
         """
-        model, used, regions = self._model()
-        if number is not None:
-            model.add(sum(used) == number)
-        for chosen in self.tried:
-            others = [literal for at, literal in enumerate(used) if at not in chosen]
-            model.add_bool_or([*others, *(~used[at] for at in chosen)])
-        extra = round((price - 1) * _PRICE_UNIT)
-        cost = _PRICE_UNIT * sum(regions) + extra * sum(used)
-        model.add(cost >= self._least)  # what is tried leaves nothing cheaper
-        model.minimize(cost)
-        solver = self._run(model)
-        if solver is None:
-            return None
-        self._least = max(self._least, int(np.floor(solver.best_objective_bound + _SAME)))
-        chosen = tuple(at for at, literal in enumerate(used) if solver.value(literal))
-        return solver.best_objective_bound / _PRICE_UNIT, chosen
+        solver = self._run()
+        self.least = max(self.least, solver.best_objective_bound / _PRICE_UNIT)
+        return frozenset(
+            number for number, literal in enumerate(self._regions) if solver.value(literal)
+        )
 
-    def _model(
-        self,
-    ) -> tuple[cp_model.CpModel, list[cp_model.IntVar], list[cp_model.IntVar]]:
-        """Set-ups and regions that cover enough."""
-        model = cp_model.CpModel()
-        used = [model.new_bool_var("") for _ in range(self._count)]
-        regions = [model.new_bool_var("") for _ in self._regions]
-        for literal, (number, _) in zip(regions, self._regions, strict=True):
-            model.add_implication(literal, used[number])
-        for at, literal in enumerate(used):  # what is set up paints something
-            own = [r for r, (number, _) in zip(regions, self._regions, strict=True) if number == at]
-            model.add_bool_or([~literal, *own])
-        covered = []
-        for place, weight in zip(self._places, self._weights, strict=True):
-            literals = [regions[region] for region in place]
-            if self._everything:
-                model.add_bool_or(literals)
-                continue
-            one = model.new_bool_var("")
-            model.add_bool_or([~one, *literals])
-            covered.append(weight * one)
-        if covered:
-            model.add(sum(covered) >= self._enough)
-        if self._everything:  # follows from the above, and prunes where there are many set-ups
-            number_of = [number for number, _ in self._regions]
-            for numbers in _hardest(
-                tuple({number_of[region] for region in place}) for place in self._places
-            ):
-                model.add_bool_or([used[number] for number in numbers])
-        return model, used, regions
+    def learn(self, chosen: Collection[int], least: int) -> None:
+        """With these regions, and others that lie within them, there are so many segments.
 
-    def _run(self, model: cp_model.CpModel) -> cp_model.CpSolver | None:
-        """The solver with a solution; None if there is none."""
-        solver = make_cp_solver(self._deadline, self._workers, self._seed)
+        A region lies within another one if that has all of its vertices and all of its edges: a
+        segment of the one could be a segment of the other.
+        """
+        asked = self._asked
+        known = [asked.regions[one] for one in chosen]
+        others = [
+            literal
+            for literal, region in zip(self._regions, asked.regions, strict=True)
+            if not any(_within(asked.surfaces, region, other) for other in known)
+        ]
+        nothing_else = self._model.new_bool_var("")
+        self._model.add_bool_or([nothing_else, *others])
+        self._model.add(self._segments >= least).only_enforce_if(nothing_else)
+
+    def _run(self) -> cp_model.CpSolver:
+        """The solver with a choice."""
+        asked = self._asked
+        options = asked.options
+        solver = make_cp_solver(options.deadline, options.workers or PORTFOLIO, options.seed)
         # By measure, with 200 set-ups of which all have to be covered: 15 s instead of minutes.
-        solver.parameters.linearization_level = 0 if self._everything else 2
-        status, interrupt = solve_interruptibly(solver, model)
+        solver.parameters.linearization_level = 0 if asked.everything else 2
+        status, interrupt = solve_interruptibly(solver, self._model)
         if interrupt is not None:
             raise interrupt
-        if status == cp_model.INFEASIBLE:
-            return None
         if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
             raise OutOfTime
         return solver
+
+
+def _within(surfaces: Sequence[LabelledSurface], one: _Region, other: _Region) -> bool:
+    """Whether a region has all vertices and edges of another one."""
+    if one is other:
+        return True
+    if not one.vertices <= other.vertices:
+        return False
+    return not any(
+        other.color in crack.colors
+        and {crack.i, crack.j} <= one.vertices
+        and one.color not in surfaces[one.set_up].cracked(crack.i, crack.j)
+        for crack in surfaces[other.set_up].cracks
+    )
 
 
 def _hardest(places: Iterable[tuple[int, ...]]) -> list[tuple[int, ...]]:
@@ -329,13 +357,13 @@ def _hardest(places: Iterable[tuple[int, ...]]) -> list[tuple[int, ...]]:
     return [place for _, place in kept]
 
 
-def _regions_of(surface: LabelledSurface, deadline: Deadline) -> list[frozenset[int]]:
-    """The vertices of each color region."""
+def _regions_of(number: int, surface: LabelledSurface, deadline: Deadline) -> list[_Region]:
+    """The color regions of a set-up."""
     found = decomposition_of(surface, deadline=deadline)
     cells: dict[int, list[int]] = {}
     for vertex, cell in enumerate(found.vertex_cell):
         cells.setdefault(cell, []).append(vertex)
     return [
-        frozenset(vertex for cell in own for vertex in cells[cell])
-        for _, own in color_regions(found.instance)
+        _Region(number, color, frozenset(vertex for cell in own for vertex in cells[cell]))
+        for color, own in color_regions(found.instance)
     ]

@@ -11,7 +11,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import replace
+from itertools import combinations
+from math import comb
 
+import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
@@ -25,6 +28,8 @@ from cellcolor.solvers.cpsat.model.leaving_out import least_left_out
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
+_FEW_CHOICES = 2000
+"""Of color regions; up to so many are tried one by one."""
 _WHOLE = 2**40
 """What all cells weigh together as integers, for CP-SAT: a share is told to 1e-12."""
 
@@ -214,6 +219,18 @@ def _most_covered(
     Raises:
         OutOfTime: the deadline came before any choice was known.
     """
+    if comb(len(regions), segments) <= _FEW_CHOICES:  # a model takes longer to build than these
+        covers = np.zeros((len(regions), len(weights)), dtype=bool)
+        for number, (_, cells) in enumerate(regions):
+            covers[number, list(cells)] = True
+        choices = np.array(list(combinations(range(len(regions)), segments)))
+        covered = covers[choices].any(axis=1)
+        covered = covered[covered[:, list(required)].all(axis=1)]
+        if not len(covered):
+            return None
+        each = covered @ np.array(weights)
+        best = int(np.argmax(each))
+        return set(np.flatnonzero(covered[best]).tolist()), int(each[best])
     model = cp_model.CpModel()
     chosen = [model.new_bool_var("") for _ in regions]
     covering: list[list[cp_model.IntVar]] = [[] for _ in weights]
