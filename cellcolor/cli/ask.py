@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -21,6 +21,7 @@ from cellcolor.cli.options import (
     REQUIRED,
     SEED,
     TIME_LIMIT,
+    TOLERANCE,
     UNIT,
     WORKERS,
     cellcolor,
@@ -30,6 +31,9 @@ from cellcolor.cli.options import (
 from cellcolor.cli.progress import at_work, workers_for
 from cellcolor.cli.terminal import drawn_to, print_json, say, say_lines
 from cellcolor.errors import InputError
+
+if TYPE_CHECKING:
+    from cellcolor.questions.front import FrontChoice, FrontPoint
 
 _POINTS = click.option(
     "--points",
@@ -51,7 +55,6 @@ _VERTICES = click.option(
 
 def _print(file: Path, rows: Iterable[Any], text: object, as_json: bool, **common: Any) -> None:
     """An answer: its rows as JSON Lines, or its text."""
-
     if not as_json:
         say_lines(text)
         return
@@ -66,6 +69,13 @@ def _print(file: Path, rows: Iterable[Any], text: object, as_json: bool, **commo
     metavar="S",
     type=click.FloatRange(0, 1),
     help="Print only the fewest lift-offs that cover this share, 0 to 1.",
+)
+@click.option(
+    "--price",
+    "--lift-off-price",
+    metavar="CM2",
+    type=click.FloatRange(0, max_open=True),
+    help="Print only the least sum: a lift-off costs as much as CM2 square centimeters left out.",
 )
 @click.option(
     "--weights",
@@ -88,6 +98,7 @@ def _print(file: Path, rows: Iterable[Any], text: object, as_json: bool, **commo
 def tradeoff(
     source: Path,
     share: float | None,
+    price: float | None,
     weights: str | None,
     output: Path | None,
     as_json: bool,
@@ -102,15 +113,21 @@ def tradeoff(
     from cellcolor.door.asking import tradeoff as front_of
     from cellcolor.questions.places import read_weights
 
+    if share is not None and price is not None:
+        raise click.UsageError("--share and --price are two questions")
     with drawn_to(output, [source], as_json) as draw:
         given = None if weights is None else read_weights(weights)
         with at_work(source, "asking", "the time limit came before any division was found") as tell:
             subject = read_subject(source, search["time_limit"])
             front = front_of(subject, weights=given, progress=tell, **search)
-        points = front.points if share is None else (front.at_least(share),)
-        _print(source, points, "\n".join(map(str, points)), as_json)
+            rows: Sequence[FrontPoint | FrontChoice] = front.points
+            if share is not None:
+                rows = [front.fewest_for(share)]
+            elif price is not None:
+                rows = [front.least_cost(price)]
+        _print(source, rows, "\n".join(map(str, rows)), as_json)
         draw(lambda file: save_front(front, file))
-    return Exit.done_if(all(point.proved for point in points))
+    return Exit.done_if(all(row.proved for row in rows))
 
 
 @cellcolor.command()
@@ -169,6 +186,7 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     help="Make the sum of lift-offs and PRICE × uncovered share least.  [default: lift-offs first, "
     "then area]",
 )
+@TOLERANCE
 @click.option(
     "--base",
     is_flag=True,
@@ -211,6 +229,7 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
 @TIME_LIMIT
 def place(
     scene: Path,
+    tolerance: str | None,
     picture: Path | None,
     tiles: int,
     as_json: bool,
@@ -222,6 +241,7 @@ def place(
 
     Many placements are tried on a coarse mesh, the best ones built and proved on the scene's own.
     """
+    from cellcolor.cli.inputs import with_tolerance
     from cellcolor.door.placing import place as placements_of
     from cellcolor.door.placing import save_map
 
@@ -230,7 +250,7 @@ def place(
         workers = jobs if cluster is None else workers_for(jobs, cluster)
         with at_work(scene, "placing", late) as tell:
             found = placements_of(
-                scene,
+                scene if tolerance is None else with_tolerance(scene, tolerance),
                 tiles=None if picture is None else tiles,
                 jobs=workers,
                 progress=tell,

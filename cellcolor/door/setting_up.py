@@ -121,7 +121,9 @@ def setups(
 
     Raises:
         InputError: a scene cannot be used, a place or a share is none, another scene has another
-            part, or nothing is reached.
+            part, or nothing is reached; or the part stands in the ground, an obstacle or a link in
+            a place of ``at`` or in another scene. Of several scenes each is asked about each place,
+            and such a place of ``at`` is left out; so are those that ``place`` has refused.
         OutOfTime: the time limit came before there was a choice.
     """
     if not 0 <= cover <= 1:
@@ -138,7 +140,8 @@ def setups(
         from cellcolor.solvers.interface import Options
 
     scenes = [one if isinstance(one, SceneValue) else SceneValue.read(one) for one in given]
-    found = candidates_of(scenes, poses, deadline.share(_FOR_BUILDING), progress)
+    building, by_hand = deadline.share(_FOR_BUILDING), not isinstance(at, Placements)
+    found = candidates_of(scenes, poses, building, progress, by_hand=by_hand)
     options = Options(deadline=deadline, workers=workers, seed=seed)
     answer = plan_of(found, cover, change_over, options, progress)
     return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 from cellcolor.data.instance import Instance
@@ -13,6 +14,7 @@ from cellcolor.errors import InputError
 
 _ROUNDING = 1e-9
 """Of a share: weights are sums of floating-point areas."""
+_CM2 = 1e4  # in a square meter
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,6 +84,37 @@ class FrontPoint:
 
 
 @dataclass(frozen=True, eq=False)
+class FrontChoice:
+    """The point of a front that answers a question best.
+
+    Attributes:
+        point: the point.
+        proved: whether no division in the search space ``paper`` answers it better.
+        proved_for_surface: whether no division of the surface does.
+        cost_cm2: of lift-offs and of the area left out, where that was asked.
+    """
+
+    point: FrontPoint
+    proved: bool
+    proved_for_surface: bool
+    cost_cm2: float | None = None
+
+    def __str__(self) -> str:
+        text = f"{count(self.point.lift_offs, 'lift-off')}: {100 * self.point.covered_share:.1f} %"
+        if self.cost_cm2 is not None:
+            text += f", costs {self.cost_cm2:.4g} cm²"
+        if self.proved_for_surface:
+            return f"{text}, proved for any division of the surface"
+        return f"{text}, {'proved in the search space paper' if self.proved else 'not proved'}"
+
+    def to_document(self) -> dict[str, Any]:
+        """The JSON object."""
+        cost = {} if self.cost_cm2 is None else {"cost_cm2": self.cost_cm2}
+        proof = {"proved_for_surface": self.proved_for_surface}
+        return self.point.to_document() | proof | cost
+
+
+@dataclass(frozen=True, eq=False)
 class Front:
     """For each number of lift-offs the largest share that can be covered.
 
@@ -90,11 +123,14 @@ class Front:
         points: by the number of segments, ascending, each with a larger share than the one before;
             the last one covers everything if that is known to be possible.
         weight: of everything that can be covered, in m² unless weights were given.
+        at_most: for 1, 2, … segments the share that no division exceeds, and whether that holds for
+            any division of the surface; for more segments than these nothing is known.
     """
 
     instance: Instance
     points: tuple[FrontPoint, ...]
     weight: float
+    at_most: tuple[tuple[float, bool], ...] = ()
 
     def __iter__(self) -> Iterator[FrontPoint]:
         return iter(self.points)
@@ -142,6 +178,49 @@ class Front:
                 point.lift_offs * lift_off_price + (1 - point.covered_share) * uncovered_price
             ),
         )
+
+    def fewest_for(self, share: float) -> FrontChoice:
+        """The fewest lift-offs that cover a share, and whether it is proved that no fewer do.
+
+        Raises:
+            InputError: as of :meth:`at_least`.
+        """
+        return self._choice(
+            self.at_least(share),
+            lambda lift_offs, covered: lift_offs if covered >= share - _ROUNDING else inf,
+        )
+
+    def least_cost(self, lift_off_cm2: float) -> FrontChoice:
+        """The least sum of lift-offs and area, and whether it is proved that none is less.
+
+        Args:
+            lift_off_cm2: a lift-off costs as much as so many square centimeters left out.
+
+        Raises:
+            InputError: the price is negative or no number, or the graph has no areas.
+        """
+        if any(cell.area is None for cell in self.instance.cells):
+            raise InputError(None, "price", "is one of area, and the cells of this graph have none")
+        whole = _CM2 * self.weight
+        point = self.cheapest(lift_off_cm2, whole)
+
+        def cost(lift_offs: int, covered: float) -> float:
+            return lift_off_cm2 * lift_offs + whole * (1 - covered)
+
+        return self._choice(point, cost, cost(point.lift_offs, point.covered_share))
+
+    def _choice(
+        self, point: FrontPoint, cost: Callable[[int, float], float], cost_cm2: float | None = None
+    ) -> FrontChoice:
+        """A point, and whether no division costs less: of so many lift-offs that cover a share."""
+        own = cost(point.lift_offs, point.covered_share)
+
+        def proved(*, on_surface: bool) -> bool:
+            known = [share if sure or not on_surface else 1.0 for share, sure in self.at_most]
+            least = min(cost(lift_offs, share) for lift_offs, share in enumerate([*known, 1.0]))
+            return own <= least + _ROUNDING * max(1.0, abs(own))
+
+        return FrontChoice(point, proved(on_surface=False), proved(on_surface=True), cost_cm2)
 
     def __str__(self) -> str:
         return "\n".join([f"{self.instance.name}: what so many lift-offs cover", *map(str, self)])

@@ -45,6 +45,8 @@ def candidates_of(
     poses: Sequence[Pose],
     deadline: Deadline,
     progress: Callable[[str], None] | None = None,
+    *,
+    by_hand: bool = False,
 ) -> Candidates:
     """Each scene as it stands, and each with the part in the other places, built.
 
@@ -53,9 +55,12 @@ def candidates_of(
         poses: other places.
         deadline: when to be content with those built so far.
         progress: told what is being done.
+        by_hand: whether somebody has named each place. Then one in which the part stands in
+            something is a mistake, unless it is meant for another of several scenes.
 
     Raises:
-        InputError: a scene cannot be used wherever its part stands, or has another part.
+        InputError: a scene cannot be used wherever its part stands, or has another part; or a place
+            that was named by hand is one in which the part stands in something.
         OutOfTime: the deadline came before the first was built.
     """
     report = progress or (lambda _: None)
@@ -75,6 +80,12 @@ def candidates_of(
                     raise
                 return _together(found, refused)
             except InputError as error:
+                own_place = pose == pose_of(given.placement)
+                named = (given is not scenes[0]) if own_place else (by_hand and len(scenes) == 1)
+                if named and (error.field or "").startswith("placement"):
+                    file = None if given.file is None else str(given.file)
+                    message = f"{_in_words(pose)} is no set-up: {error.message}"
+                    raise InputError(file, "placement", message) from error
                 refused.append(f"{own.name} at {_in_words(pose)}: {error.message}")
                 continue
             part = part or surface

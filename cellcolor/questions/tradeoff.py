@@ -72,16 +72,18 @@ def front_of(
         raise OutOfTime
     asked = _Asked(instance, whole, frozenset(required), options, solution)
     points: list[FrontPoint] = []
+    bounds: list[tuple[float, bool]] = []
     for segments in range(1, solution.segments):
         report(f"the most of {segments} segments")
         try:
-            point = asked.most_of(segments, points[-1] if points else None)
+            point, at_most, holds_for_surface = asked.most_of(segments)
         except OutOfTime:
             break
+        bounds.append((at_most, holds_for_surface))
         if point is not None and (not points or point.covered_share > points[-1].covered_share):
             points.append(point)
     everything = FrontPoint(solution.segments, 1.0, 1.0, (), solution)
-    return Front(instance, (*points, everything), total)
+    return Front(instance, (*points, everything), total, tuple(bounds))
 
 
 def few_that_cover(
@@ -144,12 +146,12 @@ class _Asked:
         self._options, self._whole = options, whole
         self._regions = color_regions(instance)
 
-    def most_of(self, segments: int, fewer: FrontPoint | None) -> FrontPoint | None:
-        """What so many segments cover at most; None if they do not cover what is required.
+    def most_of(self, segments: int) -> tuple[FrontPoint | None, float, bool]:
+        """What so many segments cover at most.
 
-        Args:
-            segments: how many.
-            fewer: the best of fewer segments, as far as there is one.
+        Returns:
+            The best that was found; the share that no division exceeds, -1 where none covers what
+            is required; whether that holds for any division of the surface.
 
         Raises:
             OutOfTime: the deadline came before anything was known.
@@ -157,7 +159,7 @@ class _Asked:
         deadline = self._options.deadline
         best = _most_covered(self._regions, self._weights, segments, self._required, deadline)
         if best is None:
-            return None
+            return None, -1.0, True
         cells, at_most = best
         total = sum(self._weights)
         if self._whole.surface_lower_bound > segments:
@@ -174,12 +176,12 @@ class _Asked:
                 found = max(filter(None, (found, other)), key=lambda one: one[0], default=None)
                 if paper[1] < at_most:
                     at_most, holds_for_surface = paper[1], False
+        share = at_most / total
         if found is None:
-            return None if fewer is None else replace(fewer, segments=segments)
+            return None, share, holds_for_surface
         weight, left_out, solution = found
-        return FrontPoint(
-            segments, weight / total, at_most / total, left_out, solution, holds_for_surface
-        )
+        point = FrontPoint(segments, weight / total, share, left_out, solution, holds_for_surface)
+        return point, share, holds_for_surface
 
     def _covering(
         self, cells: Collection[int], segments: int

@@ -379,6 +379,16 @@ def test_a_limit_that_ends_before_the_scene_itself_is_solved() -> None:
         place(time_limit=1e-3)
 
 
+def test_the_command_takes_a_tolerance(monkeypatch: pytest.MonkeyPatch) -> None:
+    def asked(scene: Scene, **_: Any) -> Placements:
+        assert scene.tolerance is not None and scene.tolerance.position_m == 0.002
+        raise cellcolor.OutOfTime
+
+    monkeypatch.setattr("cellcolor.door.placing.place", asked)
+    assert run("place", "wok", "--x", "0.4,0.5", "--tolerance", "2mm") == 3
+    assert run("place", "wok", "--x", "0.4,0.5", "--tolerance", "2") == 2
+
+
 @pytest.mark.second
 def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "wok.toml"

@@ -184,6 +184,7 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
     for wrong, said in (
         (("--at", "1,2,3"), "'--at': a place is six numbers"),
         (("--at", "nan,0,0,0,0,0"), "at[0]: must be six numbers"),
+        (("--at", "0.465,-0.15,-0.3,0,0,0"), "no set-up: the part stands in the ground"),
         (("--with", "half_pipe"), "half_pipe.toml: object: has"),
         (("--places", lines), "places.jsonl: line 2"),
         (("--change-over", "0.5"), "not in the range"),

@@ -63,6 +63,36 @@ def test_no_coloring_of_vertices_covers_more_than_a_point_says(
             assert best[point.segments] <= point.at_most_share * per_cell.sum() + 1e-6
 
 
+@examples(10)
+@given(seed=st.integers(0, 500), price=st.floats(0, 3e5), share=st.floats(0, 1))
+def test_a_choice_is_the_best_of_all_sets_of_cells(seed: int, price: float, share: float) -> None:
+    instance = decomposition_of(blobs(seed, **WAVES)).instance
+    assume(1 < len(instance.cells) <= 8)
+    areas = [cell.area or 0.0 for cell in instance.cells]
+    best = front_by_subsets(instance, areas)
+    front = front_of(instance, Options())
+    cost = min((k - 1) * price + 1e4 * (sum(areas) - area) for k, area in best.items())
+    cheapest, fewest = front.least_cost(price), front.fewest_for(share)
+    assert cheapest.cost_cm2 == pytest.approx(cost, rel=1e-6, abs=1e-6) and cheapest.proved
+    enough = [k for k, area in best.items() if area >= share * sum(areas) * (1 - 1e-9)]
+    assert fewest.point.segments == min(enough) and fewest.proved
+
+
+def test_nothing_is_proved_by_what_is_not_known() -> None:
+    """By hand: the bound says which cheaper division there might be."""
+    front = cellcolor.tradeoff(STRIP)
+    one, two, three = front.points
+    assert front.fewest_for(two.covered_share).proved_for_surface
+    for unknown in ((), ((1.0, True),), ((one.at_most_share, False),)):
+        vague = Front(front.instance, front.points, front.weight, unknown)
+        assert not vague.fewest_for(two.covered_share).proved_for_surface
+        assert not vague.least_cost(1.0).proved_for_surface
+    assert front.least_cost(1.0).proved_for_surface
+    paper = Front(front.instance, front.points, front.weight, ((one.at_most_share, False),))
+    assert paper.fewest_for(two.covered_share).proved
+    assert front.least_cost(1e9).point is one and front.least_cost(1.0).point is three
+
+
 def test_cells_left_out_are_outside() -> None:
     row = cellcolor.decompose("half_pipe")
     rest, kept = row.without_cells([0, 3])
@@ -146,6 +176,11 @@ def test_the_command_prints_a_row_for_each_point(
     assert [row["covered_share"] for row in rows] == [p.covered_share for p in front]
     assert [row["lift_offs"] for row in rows] == [0, 1, 2]
     assert all(row["proved_for_surface"] is True for row in rows)
+    assert run("tradeoff", file, "--price", "1e6", "--json") == 0
+    (row,) = json_lines(capsys.readouterr().out)
+    left_out = 1e4 * STRIP.vertex_areas.sum() * (1 - front.points[0].covered_share)
+    assert (row["lift_offs"], row["proved_for_surface"]) == (0, True)
+    assert row["cost_cm2"] == pytest.approx(left_out)
     assert run("tradeoff", file, "--share", "0.5") == 0
     assert capsys.readouterr().out.startswith("0 lift-offs: 5")
     picture = tmp_path / "front.svg"
@@ -157,6 +192,9 @@ def test_the_command_prints_a_row_for_each_point(
     for wrong, said in (
         (("--required", mask), "of another mesh"),
         (("--left-alone", "1,2,3,0,0,0"), "the box is empty"),
+        (("--price", "nan"), "price"),
+        (("--price", "-1"), "price"),
+        (("--price", "1", "--share", "1"), "two questions"),
         (("-o", file), "must end in .png or .svg"),
         (("--weights", mask), "mask.json: weights: must be a list"),
         (("--required", tmp_path / "none.json"), "No such file"),
