@@ -12,10 +12,8 @@ from os import PathLike
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask
-from cellcolor.data.candidate_table import VALID
+from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.inverse import InverseKinematics
@@ -137,21 +135,6 @@ class PreparedScene:
             surface = self.surface.taken_along(self.scene.placement, placement)
             found.append(replace(there, surface=surface))
         return found
-
-    def test(
-        self,
-        points: Array,
-        directions: Array,
-        branches: NDArray[np.intp],
-        deadline: Deadline = NEVER,
-    ) -> tuple[Mask, Array]:
-        """Is a branch valid there; see :data:`~cellcolor.frontend.reach.between.Test`.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
-        verdicts = self.judge(self.arm.follow(points, directions, branches), deadline)
-        return np.asarray(verdicts.reasons == VALID), verdicts.tracked
 
 
 def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> PreparedScene:

@@ -16,8 +16,10 @@ from functools import partial
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
+from cellcolor.frontend.contact.clearance import Clearance
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
@@ -34,6 +36,8 @@ from cellcolor.frontend.sizes import check_turns
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.tables import in_file
 from cellcolor.memory import chunks
+
+_PAYS = 3  # points near a vertex; for so many it pays to know how far all is apart there
 
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""
@@ -339,7 +343,10 @@ def _valid_links(
         pieces = np.where(near_border[rows, branches], counts[rows], 1)
 
         def test(points: Array, directions: Array, at: Index) -> tuple[Mask, Array]:
-            return prepared.test(points, directions, branches[at], deadline)
+            found = prepared.arm.follow(points, directions, branches[at])
+            near = _clearances(prepared, candidates, points, edges[rows[at]], branches[at])
+            verdicts = prepared.judge(found, deadline, near)
+            return np.asarray(verdicts.reasons == VALID), verdicts.tracked
 
         linked[rows, branches] = remains_valid(
             surface, edges[rows], branches, pieces, at_vertices, longest, test
@@ -347,6 +354,20 @@ def _valid_links(
 
     _in_parts(test_part, chunks(len(all_rows), each), deadline)
     return Links(edges, linked)
+
+
+def _clearances(
+    prepared: PreparedScene, candidates: Candidates, points: Array, edges: Index, branches: Index
+) -> tuple[Clearance, Index] | None:
+    """Distances at the vertices beside points (k, 3) on mesh edges, if it pays to know them."""
+    ends = prepared.surface.vertices[edges]
+    nearer = np.argmin(np.linalg.norm(ends - points[:, None], axis=2), axis=1)
+    vertex = edges[np.arange(len(edges)), nearer]
+    nodes, row = np.unique(vertex * candidates.valid.shape[1] + branches, return_inverse=True)
+    if len(points) < _PAYS * len(nodes):
+        return None
+    known = candidates.configurations.reshape(-1, prepared.robot.joints)[nodes]
+    return prepared.judge.clearance(known), row
 
 
 def _in_both(edges: Index, others: Index) -> tuple[Index, Index]:

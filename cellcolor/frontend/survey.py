@@ -11,7 +11,8 @@ import fcl
 import numpy as np
 import trimesh
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Mask
+from cellcolor.frontend.contact.fcl_bodies import frames_along, mesh_model
 from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -70,15 +71,11 @@ def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
     """Of the points that are seen from anywhere, the share whose front is not seen."""
     vertices, faces = mesh.points, mesh.corners
     points, face = _spread(mesh)
-    model = fcl.BVHModel()
-    model.beginModel(len(faces), len(vertices))
-    model.addSubModel(vertices, faces)
-    model.endModel()
-    shape = fcl.CollisionObject(model, fcl.Transform())
+    shape = fcl.CollisionObject(mesh_model(vertices, faces), fcl.Transform())
     normals = mesh.area_vectors[face]
     seen, front = np.zeros((2, len(points)), dtype=bool)
     for eye in viewpoints:
-        visible = np.array([_visible(shape, eye, point) for point in points])
+        visible = _visible(shape, eye, points)
         seen |= visible
         front |= visible & (np.einsum("ij,ij->i", normals, eye - points) > 0)
     return float((seen & ~front).sum() / max(seen.sum(), 1))
@@ -95,18 +92,17 @@ def _spread(mesh: TriangleMesh) -> tuple[Array, Faces]:
     return np.einsum("ij,ijk->ik", weights, corners[face]), face
 
 
-def _visible(shape: fcl.CollisionObject, eye: Array, point: Array) -> bool:
-    """Whether nothing of the shape lies before a point of it."""
-    sight = (1 - _SHORT) * (point - eye)
-    length = float(np.linalg.norm(sight))
-    if length == 0:
-        return False
-    z = sight / length
-    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z))])
-    x /= np.linalg.norm(x)
-    turn = np.column_stack([x, np.cross(z, x), z])
-    line = fcl.CollisionObject(fcl.Capsule(_THIN, length), fcl.Transform(turn, eye + sight / 2))
-    return not fcl.collide(shape, line, fcl.CollisionRequest(), fcl.CollisionResult())
+def _visible(shape: fcl.CollisionObject, eye: Array, points: Array) -> Mask:
+    """Whether nothing of the shape lies before points (k, 3) of it, (k,)."""
+    sights = (1 - _SHORT) * (points - eye)
+    turns, middles = frames_along(eye, eye + sights)
+    visible = np.zeros(len(points), dtype=bool)
+    for row, length in enumerate(np.linalg.norm(sights, axis=1).tolist()):
+        if length:
+            capsule, place = fcl.Capsule(_THIN, length), fcl.Transform(turns[row], middles[row])
+            line, request = fcl.CollisionObject(capsule, place), fcl.CollisionRequest()
+            visible[row] = not fcl.collide(shape, line, request, fcl.CollisionResult())
+    return visible
 
 
 def _meters(length: float) -> str:

@@ -33,21 +33,25 @@ def body_ends(robot: Robot, poses: Poses) -> Array:
     return ends
 
 
-def hits_itself(robot: Robot, ends: Array, poses: Poses | None = None) -> Mask:
+def hits_itself(
+    robot: Robot, ends: Array, poses: Poses | None = None, asked: Mask | None = None
+) -> Mask:
     """Whether any tested pair of bodies overlaps, (n,).
 
     Args:
         ends: of the bodies, see :func:`body_ends`.
         poses: of the joints; robots without solids do not need them.
+        asked: (pairs, n) which pairs may overlap at all; None for all.
     """
     hit = np.zeros(ends.shape[2], dtype=bool)
     centers = ends.mean(axis=1)
-    for i, j in robot.tested_pairs:
+    for number, (i, j) in enumerate(robot.tested_pairs):
         first, second = robot.bodies[i], robot.bodies[j]
         radii = first.radius + second.radius
+        rows = np.flatnonzero(~hit if asked is None else asked[number] & ~hit)
         # Bounding spheres first.
-        apart = _norm(centers[i] - centers[j]) > radii + (first.length + second.length) / 2
-        rows = np.flatnonzero(~(apart | hit))
+        apart = _norm(centers[i, rows] - centers[j, rows])
+        rows = rows[apart <= radii + (first.length + second.length) / 2]
         if not len(rows):
             continue
         a, b = ends[i][:, rows], ends[j][:, rows]

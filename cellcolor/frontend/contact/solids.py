@@ -94,19 +94,24 @@ class Solid:
         there._thing = Thing(shape, placement.placed(self._parts))
         return there
 
-    def hits(self, robot: Robot, ends: Array, poses: Poses | None = None) -> Mask:
+    def hits(
+        self, robot: Robot, ends: Array, poses: Poses | None = None, asked: Mask | None = None
+    ) -> Mask:
         """Whether any moving body touches the solid, (n,).
 
         Args:
             ends: (bodies, 2, n, 3), see :func:`~cellcolor.frontend.contact.collision.body_ends`.
             poses: of the joints; robots without solids do not need them.
+            asked: (bodies, n) which bodies may touch it at all; None for all.
         """
         hit = np.zeros(ends.shape[2], dtype=bool)
         # From the tool to the base: what is near the object is asked first.
         for index, body in reversed(list(enumerate(robot.bodies))):
             if body.joint == 0:
                 continue
-            rows = np.flatnonzero(~hit)
+            rows = np.flatnonzero(~hit if asked is None else asked[index] & ~hit)
+            if not len(rows):
+                continue
             chosen = None if poses is None or body.solid is None else poses.take(rows)
             hit[rows] = self.touched_by(body, ends[index][:, rows], chosen)
         return hit

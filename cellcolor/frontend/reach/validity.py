@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import bytes_of_poses
+from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
+from cellcolor.frontend.contact.clearance import Clearance, body_gaps, pair_gaps, pair_levers
+from cellcolor.frontend.contact.collision import body_ends, tracked_points, tracked_steps
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
@@ -139,8 +140,17 @@ class Judge:
         least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
         self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)
 
-    def __call__(self, configurations: Array, deadline: Deadline = NEVER) -> Verdicts:
+    def __call__(
+        self,
+        configurations: Array,
+        deadline: Deadline = NEVER,
+        near: tuple[Clearance, Index] | None = None,
+    ) -> Verdicts:
         """Test configurations (k, joints) in rad, NaN where there is none.
+
+        Args:
+            near: known distances, and which of their configurations each of these is near to, (k,);
+                then what cannot touch is not tested. The verdicts are the same.
 
         Raises:
             OutOfTime: the deadline came first.
@@ -170,7 +180,8 @@ class Judge:
         def judge(number: int) -> None:
             deadline.check()
             rows = parts[number]
-            part = self._judged(configurations[rows])
+            known = None if near is None else (near[0], near[1][rows])
+            part = self._judged(configurations[rows], known)
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
             whole.determinants[rows], whole.tracked[:, rows] = part.determinants, part.tracked
             seconds[number] = [part.seconds[name] for name in timed]
@@ -190,11 +201,30 @@ class Judge:
             failed[test.name] = before | test.failed(postures)
         return failed
 
+    def clearance(self, configurations: Array) -> Clearance:
+        """How far everything is apart at least in configurations (k, joints), in rad."""
+        place, robot = self._workplace, self._workplace.robot
+        moved = turned_into_limits(robot, configurations)
+        poses = forward(robot, moved)
+        ends = body_ends(robot, poses)
+        # A cylinder that is longer and wider by a margin has corners so much farther out.
+        margins, farther = place.setup.margins, np.sqrt(2)
+        around = body_gaps(robot, ends, [place.target]) - farther * margins.to_object_m
+        others = body_gaps(robot, ends, place.obstacles) - farther * margins.to_obstacles_m
+        return Clearance(
+            robot,
+            pair_levers(robot),
+            moved,
+            tracked_points(robot, ends, poses),
+            pair_gaps(robot, ends) - farther * margins.between_links_m,
+            np.minimum(around, others),
+        )
+
     def bytes_kept(self, joints: int) -> int:
         """What the verdict on one configuration takes."""
         return 8 * joints + 9 + 24 * len(self.tracked_steps)
 
-    def _judged(self, configurations: Array) -> Verdicts:
+    def _judged(self, configurations: Array, near: tuple[Clearance, Index] | None) -> Verdicts:
         count = len(configurations)
         moved, reasons = configurations.copy(), np.full(count, NO_SOLUTION, dtype=np.uint8)
         solved = np.flatnonzero(~np.isnan(configurations[:, 0]))
@@ -207,7 +237,11 @@ class Judge:
         )
         determinants[solved] = postures.determinant
         robot = self._workplace.robot
-        places[:, solved] = tracked_points(robot, postures.ends, postures.poses)
+        tracked = places[:, solved] = tracked_points(robot, postures.ends, postures.poses)
+        if near is not None:
+            known, rows = near
+            may_touch = known.may_touch(rows[solved], moved[solved], tracked)
+            postures = postures.where_near(*may_touch)
         seconds = {"forward kinematics": time.perf_counter() - started}
         reasons[solved] = self._first_failures(postures, seconds)
         return Verdicts(moved, reasons, determinants, places, seconds)

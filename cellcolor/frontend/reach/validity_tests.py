@@ -8,7 +8,7 @@ Cheap tests come first; each looks only at what is left.
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar, Literal
 
@@ -73,6 +73,7 @@ class _Arm:
     linear: Array
     determinant: Array
     ends: Array
+    near: tuple[Mask, Mask] | None
 
 
 class Postures:
@@ -94,11 +95,20 @@ class Postures:
         task = workplace.robot.task
         determinant = task_determinant(linear, angular, poses.tool_axis, task)
         ends = body_ends(workplace.robot, poses)
-        arm = _Arm(configurations, poses, linear, determinant, ends)
+        arm = _Arm(configurations, poses, linear, determinant, ends, None)
         return cls(workplace, arm, np.arange(len(configurations)))
+
+    def where_near(self, pairs: Mask, bodies: Mask) -> Postures:
+        """The same, of which only these pairs of links (pairs, k) and bodies (bodies, k) may touch.
+
+        See :meth:`~cellcolor.frontend.contact.clearance.Clearance.may_touch`.
+        """
+        return Postures(self.workplace, replace(self._arm, near=(pairs, bodies)), self._rows)
 
     def without(self, failed: Mask) -> Postures:
         """Those that have not failed, (k,)."""
+        if not failed.any():
+            return self  # with what is computed of them already
         return Postures(self.workplace, self._arm, self._rows[~failed])
 
     def __len__(self) -> int:
@@ -112,7 +122,7 @@ class Postures:
     @cached_property
     def poses(self) -> Poses:
         """Of all joint frames, in the world."""
-        return self._arm.poses.take(self._rows)
+        return self._arm.poses if self._whole else self._arm.poses.take(self._rows)
 
     @property
     def tip(self) -> Array:
@@ -134,6 +144,16 @@ class Postures:
         """(k,) the task determinant, m^3."""
         return self._arm.determinant[self._rows]
 
+    @property
+    def near_links(self) -> Mask | None:
+        """(pairs, k) the pairs of links that may touch each other; None for all."""
+        return None if self._arm.near is None else self._arm.near[0][:, self._rows]
+
+    @property
+    def near_things(self) -> Mask | None:
+        """(bodies, k) the bodies that may touch object or obstacles; None for all."""
+        return None if self._arm.near is None else self._arm.near[1][:, self._rows]
+
     def ends_of(self, robot: Robot) -> Array:
         """The ends of the axes of all bodies of the same robot, or of a wider one."""
         if robot is self.workplace.robot:
@@ -143,7 +163,12 @@ class Postures:
     @property
     def ends(self) -> Array:
         """(bodies, 2, k, 3) the ends of the axes of all bodies, in the world, m."""
-        return self._arm.ends[:, :, self._rows]
+        return self._arm.ends if self._whole else self._arm.ends[:, :, self._rows]
+
+    @property
+    def _whole(self) -> bool:
+        """Whether these are all of a batch, so that nothing has to be copied."""
+        return len(self._rows) == len(self._arm.configurations)
 
 
 class ValidityTest(Table):
@@ -284,7 +309,7 @@ class SelfCollision(StandardTest):
     def failed(self, postures: Postures) -> Mask:
         """Those in which two links overlap."""
         robot = postures.workplace.arm.near_itself
-        return hits_itself(robot, postures.ends_of(robot), postures.poses)
+        return hits_itself(robot, postures.ends_of(robot), postures.poses, postures.near_links)
 
 
 class ObstacleCollision(StandardTest):
@@ -300,7 +325,7 @@ class ObstacleCollision(StandardTest):
         ends = postures.ends_of(robot)
         for obstacle in postures.workplace.obstacles:
             left = postures.without(hit)
-            hit[~hit] = obstacle.hits(robot, ends[:, :, ~hit], left.poses)
+            hit[~hit] = obstacle.hits(robot, ends[:, :, ~hit], left.poses, left.near_things)
         return hit
 
 
@@ -314,7 +339,8 @@ class ObjectCollision(StandardTest):
     def failed(self, postures: Postures) -> Mask:
         """Those in which the object is hit."""
         robot = postures.workplace.arm.near_object
-        return postures.workplace.target.hits(robot, postures.ends_of(robot), postures.poses)
+        ends, near = postures.ends_of(robot), postures.near_things
+        return postures.workplace.target.hits(robot, ends, postures.poses, near)
 
 
 STANDARD_TESTS: tuple[StandardTest, ...] = (
