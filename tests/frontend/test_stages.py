@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from shipped import shipped
 
 from cellcolor.arrays import Array, Index, Mask
-from cellcolor.deadline import NEVER, Deadline
+from cellcolor.deadline import NEVER
 from cellcolor.frontend.displaced import judged, run_stages
 from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.surface import Surface, bisected
@@ -82,9 +82,9 @@ def test_only_what_is_new_is_asked_about(monkeypatch: pytest.MonkeyPatch) -> Non
     asked: list[int] = []
     judge = Judge.__call__
 
-    def counted(self: Judge, configurations: Array, deadline: Deadline) -> Verdicts:
+    def counted(self: Judge, configurations: Array, *rest: Any) -> Verdicts:
         asked.append(len(configurations))
-        return judge(self, configurations, deadline)
+        return judge(self, configurations, *rest)
 
     monkeypatch.setattr(Judge, "__call__", counted)
     again = judged(prepared, clock, before)
