@@ -31,11 +31,10 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import Scene
 from cellcolor.frontend.build import result_of
-from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, run_stages
+from cellcolor.frontend.stages import Stages, run_stages, with_finer_borders
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 

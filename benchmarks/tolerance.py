@@ -22,8 +22,7 @@ import cellcolor
 from cellcolor.data.candidate_table import VALID
 from cellcolor.door.planning import PlannedScene
 from cellcolor.door.shipped import find_file
-from cellcolor.frontend.parts.placement import rotation_from_rpy
-from cellcolor.frontend.parts.tolerance import Tolerance
+from cellcolor.frontend.parts.placement import Tolerance, rotation_from_rpy
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 

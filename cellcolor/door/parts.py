@@ -16,7 +16,7 @@ from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
 
 if TYPE_CHECKING:
-    from cellcolor.frontend.parts.inspected import Inspection
+    from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.parts.repaired import RepairedPart
 
 Telling = Callable[[str], None]
@@ -45,7 +45,7 @@ def inspect(
     deadline, tell = Deadline.of(time_limit), progress or _nobody
     name, file = _name(part)
     with extras_for(name):
-        from cellcolor.frontend.parts.inspected import inspect_mesh
+        from cellcolor.frontend.parts.inspection import inspect_mesh
 
         vertices, faces = _mesh(part, deadline, tell)
         try:
@@ -120,7 +120,7 @@ def _name(part: Any) -> tuple[str, str | None]:
 
 def _mesh(part: Any, deadline: Deadline, tell: Telling) -> tuple[Any, Any]:
     """Vertices and faces of a file or a value."""
-    from cellcolor.frontend.parts.arrays import ArraysObject
+    from cellcolor.frontend.parts.mesh import ArraysObject
     from cellcolor.frontend.parts.mesh_file import read_mesh
 
     if isinstance(part, str | PathLike):

@@ -27,7 +27,7 @@ from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or
 
 if TYPE_CHECKING:
     from cellcolor.frontend.arm.robot import Robot
-    from cellcolor.frontend.parts.inspected import Inspection
+    from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.setup import Setup
 

@@ -17,17 +17,15 @@ from cellcolor.data.value import same_members
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.stand_in_report import report_on
-from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.rounding import longest_beside_sharp
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring, find_cracks
-from cellcolor.frontend.report import BuildReport, make_report
+from cellcolor.frontend.report import BuildReport, make_report, survey
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages
-from cellcolor.frontend.survey import survey
+from cellcolor.frontend.stages import Stages, with_finer_borders
 from cellcolor.frontend.tables import in_file
 from cellcolor.version import __version__
 

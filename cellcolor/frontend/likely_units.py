@@ -13,7 +13,7 @@ import numpy as np
 
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.errors import InputError
-from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
+from cellcolor.frontend.contact.obstacle import HalfSpaceObstacle
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Motion, Setup

@@ -23,19 +23,17 @@ from pydantic import (
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.frontend.contact.collision import HalfSpace
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
-from cellcolor.frontend.contact.plane import HalfSpace
-from cellcolor.frontend.parts.arrays import ArraysObject
 from cellcolor.frontend.parts.cover import Cover
+from cellcolor.frontend.parts.mesh import ArraysObject
 from cellcolor.frontend.parts.part import PARTS, Part
-from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.placement import Placement, Tolerance, rotation_from_rpy
 from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.parts.tolerance import Tolerance
 from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
-from cellcolor.frontend.registry import of_kind
 from cellcolor.frontend.setup import Setup
-from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, in_file
+from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, in_file, of_kind
 
 _UPRIGHT = (0.0, 0.0, 1.0)
 _LEAST_RISE = 0.01  # of a normal of length 1; a steeper ground is a wall

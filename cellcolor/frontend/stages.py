@@ -2,6 +2,15 @@
 
 Each function takes the prepared scene and what the stages before it have made.
 
+A scene may say how far its part may be off
+(:class:`~cellcolor.frontend.parts.placement.Tolerance`). Then a candidate is valid only if its
+branch is valid at every displacement of a sample, and a branch leads along a mesh edge only if it
+does at each. Whoever follows the colors of what is left has a motion in the same branches wherever
+the sample puts the part.
+
+On request the mesh edges that cross borders of colors are bisected: a vertex in the middle is
+tested like any other, and tells in which half the color ends. Proofs are about the finer surface.
+
 A verdict on a configuration depends only on the place and normal of its vertex, and whether a
 branch is continuous along a mesh edge on nothing but the edge's ends. So where a surface is judged
 and then one with all its vertices and some more, what is known is taken over.
@@ -9,7 +18,7 @@ and then one with all its vertices and some more, what is known is taken over.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -19,9 +28,10 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
+from cellcolor.errors import InputError
 from cellcolor.frontend.contact.clearance import Clearance
 from cellcolor.frontend.forked import share_out, shared
-from cellcolor.frontend.parts.surface import Surface
+from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.between import (
     at_domain_border,
@@ -106,7 +116,7 @@ class Judged:
         stages: what they have made.
         verdicts: on all solutions of all vertices, (n * solutions,).
         in_place: with the part where it should stand, if ``stages`` are those that hold at every
-            displacement (:mod:`cellcolor.frontend.displaced`).
+            displacement (:mod:`cellcolor.frontend.stages`).
         elsewhere: at each displacement.
     """
 
@@ -413,3 +423,120 @@ def _in_parts(work: Callable[[slice], None], slices: Iterable[slice], deadline: 
         work(parts[number])
 
     share_out(work_on, len(parts))
+
+
+OFF = "tolerance"
+"""The reason of a candidate that is valid where the part should stand and not wherever it may."""
+
+
+def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
+    """All stages, one after the other.
+
+    Raises:
+        InputError: a color has two configurations on one vertex; there are too many vertices for
+            the turns of the tool; a displaced part stands in a link that cannot move.
+        OutOfTime: the deadline came first.
+    """
+    return judged(prepared, clock).stages
+
+
+def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = None) -> Judged:
+    """All stages, where something may be known already; raises like :func:`run_stages`.
+
+    Args:
+        prepared: the scene.
+        clock: of the build.
+        before: of the same scene on a surface whose vertices are the first ones of this one, with
+            the same normals. Only new vertices and new mesh edges are asked about, to the same
+            result.
+    """
+    own = None if before is None else before.in_place or before
+    found = judged_in_place(prepared, clock, own)
+    if prepared.scene.tolerance is None:
+        return found
+    if not prepared.arm.named:
+        message = (
+            "the solutions of this arm have no names, and are told apart on the part where it "
+            "stands: a scene with a tolerance needs an arm whose solutions have names"
+        )
+        raise InputError(None, "robot.kinematics", message)
+    elsewhere = []
+    for number, there in enumerate(prepared.displaced()):
+        known = None if before is None else before.elsewhere[number]
+        elsewhere.append(judged_in_place(there, clock, known))
+    stages = _held(prepared, found.stages, [one.stages for one in elsewhere], clock)
+    return replace(found, stages=stages, in_place=found, elsewhere=tuple(elsewhere))
+
+
+def _held(
+    prepared: PreparedScene, stages: Stages, elsewhere: Sequence[Stages], clock: StageClock
+) -> Stages:
+    """What of the stages holds at every displacement."""
+    candidates = stages.candidates
+    held: Mask = np.all([one.candidates.valid for one in elsewhere], axis=0)
+    names, reasons = (*candidates.reason_names, OFF), candidates.reasons.copy()
+    reasons[candidates.valid & ~held] = len(names) - 1
+    candidates = replace(candidates, reasons=reasons, reason_names=names)
+    edges = stages.links.edges
+    continuous, linked = (
+        Links(edges, own.linked & np.all([one.linked for one in others], axis=0))
+        for own, others in (
+            (stages.continuous, [one.continuous for one in elsewhere]),
+            (stages.links, [one.links for one in elsewhere]),
+        )
+    )
+    return colored_stages(prepared, stages.branches, candidates, continuous, linked, clock)
+
+
+_WITH_SLIVERS = 4  # times as long are mesh edges at borders that the sliver policy takes away
+
+
+def with_finer_borders(
+    prepared: PreparedScene, clock: StageClock, found: Judged | None = None
+) -> tuple[PreparedScene, Stages]:
+    """The stages of a build, on a surface refined at borders as the setup says.
+
+    Args:
+        prepared: the scene.
+        clock: of the build.
+        found: its stages on this surface, where they are known.
+
+    Returns:
+        The scene with the last surface, and the results of the stages on it.
+
+    Raises:
+        InputError: there would be too many vertices, or as the stages do.
+        OutOfTime: the deadline came first.
+    """
+    longest = prepared.setup.continuity.border_length_m
+    found = found or judged(prepared, clock)
+    while longest is not None:
+        marked = _too_long(found.stages, longest)
+        if not marked.any():
+            break
+        clock.begin("bisecting borders")
+        finer = bisected(prepared.surface, marked, "continuity.border_length_m")
+        prepared = replace(prepared, surface=finer)
+        found = judged(prepared, clock, found)
+    return prepared, found.stages
+
+
+def _too_long(stages: Stages, longest: float) -> Mask:
+    """The mesh edges (k,) at borders that are longer than they may be, in m.
+
+    Which cells a sliver policy removes depends on areas and neighbors, so on borders that are gone
+    afterwards. These have to be known as well, but only so well as areas ask for.
+    """
+    lengths, cleaned = stages.surface.lengths(stages.links.edges), stages.cleaned
+    left = (lengths > longest) & _at_borders(cleaned.links, cleaned.coloring)
+    taken = (lengths > _WITH_SLIVERS * longest) & _at_borders(stages.links, stages.coloring)
+    return np.asarray(left | taken)
+
+
+def _at_borders(links: Links, coloring: Coloring) -> Mask:
+    """The mesh edges (k,) whose ends have different colors, or that have a crack."""
+    first, second = (coloring.node_color[end] for end in links.edges.T)
+    # A branch has at most one color at a vertex, and a color one branch.
+    different = (first != second).any(axis=1)
+    torn = ((first == second) & (first >= 0) & ~links.linked).any(axis=1)
+    return np.asarray(different | torn)

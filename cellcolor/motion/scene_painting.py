@@ -18,11 +18,10 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition, decomposition_of
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.build import BuildResult, result_of
-from cellcolor.frontend.displaced import run_stages
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages
+from cellcolor.frontend.stages import Stages, run_stages
 from cellcolor.painting.moving import move_borders
 from cellcolor.painting.paint import Painted, paint
 from cellcolor.solvers.checked import solve

@@ -14,9 +14,8 @@ from cellcolor.frontend import BuildResult
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import segment_distance
+from cellcolor.frontend.contact.collision import HalfSpace, segment_distance
 from cellcolor.frontend.contact.obstacle import Obstacle
-from cellcolor.frontend.contact.plane import HalfSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.pictures.palette import FAINT, LINES, WARNING
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines

@@ -7,7 +7,7 @@ import textwrap
 import numpy as np
 
 from cellcolor.arrays import Array, Index
-from cellcolor.frontend.parts.inspected import Inspection
+from cellcolor.frontend.parts.inspection import Inspection
 from cellcolor.pictures.palette import FAINT
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 

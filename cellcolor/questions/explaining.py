@@ -20,12 +20,10 @@ from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
-from cellcolor.frontend.displaced import judged
-from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.relaxing import Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Judged, Stages, judged_again
+from cellcolor.frontend.stages import Judged, Stages, judged, judged_again, with_finer_borders
 from cellcolor.questions.explanation import BranchHere, Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options

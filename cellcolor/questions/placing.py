@@ -19,12 +19,12 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
-from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.remeshing import length_for, remeshed
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.stages import with_finer_borders
 from cellcolor.questions.placements import VARIABLES, PlacedMinimum, Pose
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options

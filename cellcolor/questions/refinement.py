@@ -22,11 +22,11 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.decomposition.isomorphic import isomorphic, without_short_edges
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.frontend.build import BuildResult, result_of
-from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.sizes import MOST_VERTICES
 from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.stages import with_finer_borders
 from cellcolor.memory import check_memory
 
 _ALIKE = 2

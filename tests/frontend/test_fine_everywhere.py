@@ -10,11 +10,10 @@ from shipped import shipped
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend.build import result_of
-from cellcolor.frontend.displaced import run_stages
-from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.surface import bisected
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.stages import run_stages, with_finer_borders
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 

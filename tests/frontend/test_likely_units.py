@@ -14,7 +14,7 @@ from shipped import ROBOTS, SCENES
 
 from cellcolor.cli import main
 from cellcolor.errors import InputError
-from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.contact.obstacle import BoxObstacle
 from cellcolor.frontend.likely_units import check_part, notes_on_units
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene

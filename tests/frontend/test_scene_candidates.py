@@ -34,7 +34,7 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
-from cellcolor.frontend.contact.primitives import CylinderObstacle
+from cellcolor.frontend.contact.obstacle import CylinderObstacle
 from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.prepared import PreparedScene, prepare
 

@@ -17,8 +17,8 @@ from shipped import ROBOTS, WOK, edited
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import Scene, Setup, build_surface
-from cellcolor.frontend.contact.primitives import BoxObstacle, SphereObstacle
-from cellcolor.frontend.parts.arrays import ArraysObject
+from cellcolor.frontend.contact.obstacle import BoxObstacle, SphereObstacle
+from cellcolor.frontend.parts.mesh import ArraysObject
 from cellcolor.frontend.parts.shapes import CapObject, disc_mesh, spherical_cap
 from examples import examples
 

@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from cellcolor.cli import main
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface, sizes
-from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.contact.obstacle import BoxObstacle
 from cellcolor.frontend.parts.mesh_file import load_mesh
 from cellcolor.frontend.parts.surface import refine
 from cellcolor.frontend.scene import Scene

@@ -12,14 +12,12 @@ from shipped import shipped
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER
-from cellcolor.frontend.displaced import judged, run_stages
-from cellcolor.frontend.finer_borders import with_finer_borders
 from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.frontend.reach.validity import Judge, Verdicts
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages
+from cellcolor.frontend.stages import Stages, judged, run_stages, with_finer_borders
 
 
 def scene(name: str, **continuity: float) -> PreparedScene:

@@ -18,7 +18,7 @@ from cellcolor.frontend.parts.placement import Placement
 from cellcolor.frontend.parts.shapes import disc_mesh, grid_mesh, rectangle, spherical_cap
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.survey import survey
+from cellcolor.frontend.report import survey
 from examples import examples
 
 

@@ -17,11 +17,10 @@ import cellcolor
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import Scene
-from cellcolor.frontend.displaced import OFF, run_stages
-from cellcolor.frontend.parts.placement import Placement
-from cellcolor.frontend.parts.tolerance import Tolerance
+from cellcolor.frontend.parts.placement import Placement, Tolerance
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.stages import OFF, run_stages
 from examples import examples
 
 NUMBERS = st.floats(-1, 1)

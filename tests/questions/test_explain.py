@@ -19,7 +19,6 @@ from shipped import SCENES, shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
-from cellcolor.frontend.displaced import judged
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import (
@@ -37,7 +36,7 @@ from cellcolor.frontend.relaxing import (
     without,
 )
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged_again
+from cellcolor.frontend.stages import Stages, judged, judged_again
 from cellcolor.questions.explanation import Explanation
 from examples import examples
 

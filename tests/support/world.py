@@ -13,10 +13,13 @@ import pinocchio as pin
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.box_grid import BoxGridObstacle
-from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
-from cellcolor.frontend.contact.obstacle import Obstacle
-from cellcolor.frontend.contact.primitives import CapsuleObstacle, ConeObstacle
+from cellcolor.frontend.contact.obstacle import (
+    BoxGridObstacle,
+    CapsuleObstacle,
+    ConeObstacle,
+    HalfSpaceObstacle,
+    Obstacle,
+)
 from cellcolor.frontend.parts.placement import rotation_from_rpy
 
 

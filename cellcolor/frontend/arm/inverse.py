@@ -12,8 +12,8 @@ from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.kinematics import Poses, forward
 from cellcolor.frontend.arm.robot import FREE_TURN, GIVEN_TURN, Robot, TaskSpace
-from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.setup import RobotFiles
+from cellcolor.frontend.tables import Registry
 
 
 class InverseKinematics(ABC):

@@ -1,4 +1,4 @@
-"""Collisions of many configurations at once: of the arm with itself and with the ground.
+"""Collisions of many configurations at once: of the arm with itself and with a half space.
 
 Shapes are capsules, flat-ended cylinders and solids with flat faces
 (:class:`~cellcolor.frontend.arm.body.Body`), given in the world by the ends of their axes.
@@ -9,18 +9,43 @@ meets another body and :func:`gap_between` finds no plane between that body and 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses, turned
+from cellcolor.frontend.arm.polyhedron import Polyhedron
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.fcl_bodies import bodies_touch, body_poses, lowest_points
-from cellcolor.frontend.contact.plane import HalfSpace
+from cellcolor.frontend.contact.fcl_bodies import Placed, bodies_touch, body_poses
 
 _ROUNDING = 1e-6  # m; of boxes around solids
 _DEPTH = 0.00065  # m; a tool of 20 mm radius may move by 10 mm, the upper arm by 17
+
+
+@dataclass(frozen=True)
+class HalfSpace:
+    """All points p of the world with ``normal @ p`` below an offset.
+
+    Attributes:
+        normal: (3,) a unit vector, out of the half space.
+        offset_m: of the plane along the normal, from the world's origin, m.
+    """
+
+    normal: tuple[float, float, float]
+    offset_m: float
+
+    @classmethod
+    def through(cls, point: Array, normal: Array) -> HalfSpace:
+        """The half space whose plane passes through a point (3,), with a normal of any length."""
+        x, y, z = (normal / np.linalg.norm(normal)).tolist()
+        return cls((x, y, z), float(np.array([x, y, z]) @ point))
+
+    def along(self, vectors: Array) -> Array:
+        """How far points or vectors (..., 3) go along the normal, (...), m."""
+        return np.asarray(vectors @ np.array(self.normal))
 
 
 def body_ends(robot: Robot, poses: Poses) -> Array:
@@ -114,6 +139,14 @@ def hits_ground(
                 low[rows] = lowest_points(body.solid, at, ground) - body.skin < ground.offset_m
             hit |= low
     return hit
+
+
+def lowest_points(solid: Polyhedron, placed: Placed, plane: HalfSpace) -> Array:
+    """How far the lowest point of a solid is along the normal of a half space, (n,), m."""
+    turns, origins = placed
+    up = np.asarray(plane.normal) @ turns
+    lowest = (up @ solid.outline.T).min(axis=1, initial=np.inf)
+    return np.asarray(lowest + plane.along(origins))
 
 
 def segment_distance(p0: Array, p1: Array, q0: Array, q1: Array) -> Array:

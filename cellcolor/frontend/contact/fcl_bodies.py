@@ -12,7 +12,6 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses
 from cellcolor.frontend.arm.polyhedron import Polyhedron
-from cellcolor.frontend.contact.plane import HalfSpace
 
 _MODELS: WeakKeyDictionary[Polyhedron, fcl.BVHModel] = WeakKeyDictionary()
 
@@ -92,14 +91,6 @@ def touch_thing(body: Body, placed: Placed, thing: Thing) -> Mask:
         points = np.broadcast_to(thing.points, (len(hit), *thing.points.shape))
         hit |= _any_inside(body.solid, placed, points, ~hit)
     return hit
-
-
-def lowest_points(solid: Polyhedron, placed: Placed, plane: HalfSpace) -> Array:
-    """How far the lowest point of a solid is along the normal of a half space, (n,), m."""
-    turns, origins = placed
-    up = np.asarray(plane.normal) @ turns
-    lowest = (up @ solid.outline.T).min(axis=1, initial=np.inf)
-    return np.asarray(lowest + plane.along(origins))
 
 
 def bodies_touch(first: Body, at: Placed, second: Body, second_at: Placed) -> Mask:

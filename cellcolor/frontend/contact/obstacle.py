@@ -6,14 +6,26 @@ from abc import abstractmethod
 from pathlib import Path
 from typing import Literal
 
-from cellcolor.arrays import Array
+import fcl
+import numpy as np
+import trimesh
+from scipy.spatial import cKDTree
+
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.contact.solids import Solid, mesh_solid
+from cellcolor.errors import InputError
+from cellcolor.files.documents import read_text
+from cellcolor.frontend.arm.body import Body
+from cellcolor.frontend.arm.kinematics import Poses
+from cellcolor.frontend.arm.polyhedron import one_of_each_part
+from cellcolor.frontend.contact.collision import HalfSpace, lowest_points
+from cellcolor.frontend.contact.fcl_bodies import body_poses, mesh_model
+from cellcolor.frontend.contact.solids import Distances, Solid, mesh_solid
 from cellcolor.frontend.parts.mesh_file import load_mesh
-from cellcolor.frontend.parts.placement import Placement
+from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
+from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.frontend.parts.surface import Faces
-from cellcolor.frontend.registry import Registry
-from cellcolor.frontend.tables import Positive
+from cellcolor.frontend.tables import Length, Positive, Registry
 
 
 class Obstacle(Placement):
@@ -44,22 +56,6 @@ class Obstacle(Placement):
         return mesh_solid(vertices, faces, deadline).placed(self)
 
 
-OBSTACLES: Registry[Obstacle] = Registry(
-    "cellcolor.obstacles",
-    Obstacle,  # type: ignore[type-abstract]
-    {
-        "box": "cellcolor.frontend.contact.primitives:BoxObstacle",
-        "cylinder": "cellcolor.frontend.contact.primitives:CylinderObstacle",
-        "sphere": "cellcolor.frontend.contact.primitives:SphereObstacle",
-        "cone": "cellcolor.frontend.contact.primitives:ConeObstacle",
-        "capsule": "cellcolor.frontend.contact.primitives:CapsuleObstacle",
-        "half-space": "cellcolor.frontend.contact.half_space:HalfSpaceObstacle",
-        "box-grid": "cellcolor.frontend.contact.box_grid:BoxGridObstacle",
-        "mesh": "cellcolor.frontend.contact.obstacle:MeshObstacle",
-    },
-)
-
-
 class MeshObstacle(Obstacle):
     """A mesh file as a shell, its origin on the position."""
 
@@ -71,3 +67,338 @@ class MeshObstacle(Obstacle):
         """The file's mesh."""
         mesh = load_mesh(folder / self.file, self.meters_per_unit, deadline=deadline)
         return mesh.vertices, mesh.faces
+
+
+class Primitive(Obstacle):
+    """A filled shape that is centered on its position."""
+
+    @abstractmethod
+    def _shape(self) -> fcl.CollisionGeometry:
+        """The shape for fcl."""
+
+    @abstractmethod
+    def _extents(self) -> tuple[float, float, float]:
+        """Sizes along its own x, y and z, m."""
+
+    @abstractmethod
+    def _outside(self, local: Array) -> Array:
+        """How far points (k, 3) lie outside in each of j perpendicular directions, (k, j), m."""
+
+    @abstractmethod
+    def _mesh(self) -> trimesh.Trimesh:
+        """The shape for pictures."""
+
+    def shell(
+        self,
+        folder: Path = Path(),  # noqa: ARG002
+        deadline: Deadline = NEVER,  # noqa: ARG002
+    ) -> tuple[Array, Faces]:
+        """The shape with its curved faces as many flat ones."""
+        mesh = self._mesh()
+        return np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)
+
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:  # noqa: ARG002
+        """The filled shape."""
+
+        def distances(points: Array) -> tuple[Array, Array]:
+            distance = np.linalg.norm(np.maximum(self._outside(points), 0.0), axis=1)
+            return distance, distance
+
+        return Solid(self._shape(), sorted(self._extents())[1], distances).placed(self)
+
+
+class BoxObstacle(Primitive):
+    """A solid box, centered on its position."""
+
+    kind: Literal["box"] = "box"
+    size_m: tuple[Length, Length, Length]
+
+    def _shape(self) -> fcl.CollisionGeometry:
+        return fcl.Box(*self.size_m)
+
+    def _extents(self) -> tuple[float, float, float]:
+        return self.size_m
+
+    def _outside(self, local: Array) -> Array:
+        return np.asarray(np.abs(local) - np.array(self.size_m) / 2)
+
+    def _mesh(self) -> trimesh.Trimesh:
+        return trimesh.creation.box(self.size_m)
+
+
+class CylinderObstacle(Primitive):
+    """A solid cylinder about its own z axis, centered on its position."""
+
+    kind: Literal["cylinder"] = "cylinder"
+    radius_m: Length
+    height_m: Length
+
+    def _shape(self) -> fcl.CollisionGeometry:
+        return fcl.Cylinder(self.radius_m, self.height_m)
+
+    def _extents(self) -> tuple[float, float, float]:
+        return (2 * self.radius_m, 2 * self.radius_m, self.height_m)
+
+    def _outside(self, local: Array) -> Array:
+        across = np.hypot(local[:, 0], local[:, 1]) - self.radius_m
+        return np.column_stack([across, np.abs(local[:, 2]) - self.height_m / 2])
+
+    def _mesh(self) -> trimesh.Trimesh:
+        whole = trimesh.creation.cylinder(self.radius_m, self.height_m, sections=20)
+        # Pictures sort triangles by depth, which goes wrong with long ones.
+        return whole.subdivide_to_size(max(self.height_m / 4, self.radius_m))
+
+
+class SphereObstacle(Primitive):
+    """A solid sphere, centered on its position."""
+
+    kind: Literal["sphere"] = "sphere"
+    radius_m: Length
+
+    def _shape(self) -> fcl.CollisionGeometry:
+        return fcl.Sphere(self.radius_m)
+
+    def _extents(self) -> tuple[float, float, float]:
+        return (2 * self.radius_m,) * 3
+
+    def _outside(self, local: Array) -> Array:
+        return np.asarray(np.linalg.norm(local, axis=1)[:, None] - self.radius_m)
+
+    def _mesh(self) -> trimesh.Trimesh:
+        return trimesh.creation.icosphere(subdivisions=2, radius=self.radius_m)
+
+
+class CapsuleObstacle(Primitive):
+    """All points within a radius of a piece of its own z axis, centered on the position."""
+
+    kind: Literal["capsule"] = "capsule"
+    radius_m: Length
+    axis_m: Length
+
+    def _shape(self) -> fcl.CollisionGeometry:
+        return fcl.Capsule(self.radius_m, self.axis_m)
+
+    def _extents(self) -> tuple[float, float, float]:
+        return (2 * self.radius_m, 2 * self.radius_m, self.axis_m + 2 * self.radius_m)
+
+    def _outside(self, local: Array) -> Array:
+        off = local.copy()
+        off[:, 2] -= np.clip(local[:, 2], -self.axis_m / 2, self.axis_m / 2)
+        return np.asarray(np.linalg.norm(off, axis=1)[:, None] - self.radius_m)
+
+    def _mesh(self) -> trimesh.Trimesh:
+        whole = trimesh.creation.capsule(self.axis_m, self.radius_m, count=[20, 20])
+        whole.apply_translation(-whole.bounds.mean(axis=0))
+        # Pictures sort triangles by depth, which goes wrong with long ones.
+        return whole.subdivide_to_size(max(self.axis_m / 4, self.radius_m))
+
+
+class ConeObstacle(Primitive):
+    """A solid cone about its own z axis, its point up; the middle of its height on the position."""
+
+    kind: Literal["cone"] = "cone"
+    radius_m: Length
+    height_m: Length
+
+    def _shape(self) -> fcl.CollisionGeometry:
+        return fcl.Cone(self.radius_m, self.height_m)
+
+    def _extents(self) -> tuple[float, float, float]:
+        return (2 * self.radius_m, 2 * self.radius_m, self.height_m)
+
+    def _outside(self, local: Array) -> Array:
+        """Distances (k, 1) from the triangle that turns about the axis, 0 inside."""
+        place = np.column_stack([np.hypot(local[:, 0], local[:, 1]), local[:, 2]])
+        rim = np.array([self.radius_m, -self.height_m / 2])
+        top = np.array([0.0, self.height_m / 2])
+        slope = np.array([self.height_m, self.radius_m])  # out of the flank, not of length 1
+        inside = (place[:, 1] >= rim[1]) & ((place - top) @ slope <= 0)
+        to_base = place - np.column_stack(
+            [np.minimum(place[:, 0], rim[0]), np.full(len(place), rim[1])]
+        )
+        way = np.clip((place - rim) @ (top - rim) / ((top - rim) @ (top - rim)), 0.0, 1.0)
+        to_flank = place - (rim + way[:, None] * (top - rim))
+        nearest = np.minimum(np.linalg.norm(to_base, axis=1), np.linalg.norm(to_flank, axis=1))
+        return np.where(inside, 0.0, nearest)[:, None]
+
+    def _mesh(self) -> trimesh.Trimesh:
+        whole = trimesh.creation.cone(self.radius_m, self.height_m, sections=20)
+        whole.apply_translation([0.0, 0.0, -self.height_m / 2])  # trimesh's stands on the origin
+        # Pictures sort triangles by depth, which goes wrong with long ones.
+        return whole.subdivide_to_size(max(self.height_m / 4, self.radius_m))
+
+
+_DRAWN, _VERTICES = 2.0, 441  # side of the square that is drawn, m, in squares of 0.1 m
+
+
+class HalfSpaceObstacle(Obstacle):
+    """Everything below its own plane z = 0, without end."""
+
+    kind: Literal["half-space"] = "half-space"
+
+    def shell(
+        self,
+        folder: Path = Path(),  # noqa: ARG002
+        deadline: Deadline = NEVER,  # noqa: ARG002
+    ) -> tuple[Array, Faces]:
+        """What pictures show: a square of the plane, 2 m wide, about the position."""
+        flat, faces = grid_mesh(_DRAWN, _DRAWN, _VERTICES, 0.0, 0)
+        return np.column_stack([flat - _DRAWN / 2, np.zeros(len(flat))]), faces
+
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:  # noqa: ARG002
+        """The whole half space."""
+        up = rotation_from_rpy(*self.rpy_rad)[:, 2]
+        below = HalfSpace.through(np.array(self.position_m), up)
+
+        def distances(points: Array) -> tuple[Array, Array]:
+            distance = np.maximum(below.along(points) - below.offset_m, 0.0)
+            return distance, distance
+
+        shape = fcl.Halfspace(np.array(below.normal), below.offset_m)
+        return _Below(shape, np.inf, distances, below)
+
+
+class _Below(Solid):
+    """A half space for bodies of all kinds; fcl crashes when asked for triangles near one."""
+
+    def __init__(
+        self, shape: fcl.CollisionGeometry, width: float, distances: Distances, below: HalfSpace
+    ) -> None:
+        super().__init__(shape, width, distances)
+        self._below = below
+
+    def meets(self, mesh: Solid) -> bool:  # noqa: ARG002
+        """Not known of faces; who asks has vertices as well."""
+        return False
+
+    def _touches(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
+        if body.solid is None:
+            return super()._touches(body, ends, poses)
+        lowest = lowest_points(body.solid, body_poses(body, ends, poses), self._below)
+        return np.asarray(lowest <= self._below.offset_m + body.skin)
+
+
+_FARTHEST = 1_000_000  # a cell's number may be at most so far from 0
+_MOST_SIDES = 375_000  # with two triangles each; as many as a mesh of 250,000 vertices has at most
+_NEIGHBORS = 8  # nearest cells that are looked at for each point
+_SIDES = np.array([[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]])
+
+
+class BoxGridObstacle(Obstacle):
+    """Solid cubes of one size in a grid; the corner of the cell 0,0,0 is on the position.
+
+    Attributes:
+        file: a text with the three numbers of an occupied cell on each line, ``i,j,k``; that cell
+            reaches from (i, j, k) to (i + 1, j + 1, k + 1) times the size of a cell.
+        cell_m: the size of a cell, m.
+    """
+
+    kind: Literal["box-grid"] = "box-grid"
+    file: str
+    cell_m: Length
+
+    def cells(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Index:
+        """The occupied cells (k, 3), each once, in lexicographic order.
+
+        Raises:
+            InputError: the file cannot be read, a line has not three whole numbers, a number is
+                too far from 0, or there is none; names the line.
+            OutOfTime: the deadline came first.
+        """
+        path = folder / self.file
+        rows = []
+        for number, line in deadline.watch(enumerate(read_text(path).splitlines(), start=1)):
+            if not line.strip():
+                continue
+            try:
+                i, j, k = (int(word) for word in line.split(","))
+            except ValueError as error:
+                message = "needs the three whole numbers of a cell, i,j,k"
+                raise InputError(str(path), f"line {number}", message) from error
+            if max(map(abs, (i, j, k))) > _FARTHEST:
+                message = f"a cell's numbers are within {_FARTHEST:,} of 0"
+                raise InputError(str(path), f"line {number}", message)
+            rows.append((i, j, k))
+        if not rows:
+            raise InputError(str(path), None, "has no cell")
+        return np.unique(np.array(rows, dtype=np.int64), axis=0)
+
+    def shell(self, folder: Path = Path(), deadline: Deadline = NEVER) -> tuple[Array, Faces]:
+        """The sides of cells that have no cell beyond them, each as two triangles."""
+        cells = self.cells(folder, deadline)
+        outer = _outer_sides(cells)
+        if outer.sum() > _MOST_SIDES:
+            message = (
+                f"the cells have {outer.sum():,} sides to the outside, at most {_MOST_SIDES:,} fit:"
+                " take larger cells"
+            )
+            raise InputError(str(folder / self.file), None, message)
+        corners = np.concatenate(
+            [_side(cells[outer[:, side]], normal) for side, normal in enumerate(_SIDES)]
+        )
+        places, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
+        a, b, c, d = number.reshape(-1, 4).T
+        faces = np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+        return places * self.cell_m, faces.astype(np.int64)
+
+    def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:
+        """The filled cells."""
+        vertices, faces = self.shell(folder, deadline)
+        middles = (self.cells(folder, deadline) + 0.5) * self.cell_m
+        tree, half = cKDTree(middles), self.cell_m / 2
+        nearest = min(_NEIGHBORS, len(middles))
+
+        def distances(points: Array) -> tuple[Array, Array]:
+            """A cube lies between the balls about its middle through sides and corners."""
+            to_middle, _ = tree.query(points)
+            return np.maximum(to_middle - np.sqrt(3) * half, 0.0), np.maximum(to_middle - half, 0.0)
+
+        def near(points: Array, reach: float) -> tuple[Array, Array]:  # noqa: ARG001
+            """A cell that is not among the nearest has a middle at least as far as theirs."""
+            to_middle, cell = tree.query(points, k=[*range(1, nearest + 1)])
+            beyond = np.maximum(np.abs(points[:, None] - middles[cell]) - half, 0.0)
+            to_cell = np.linalg.norm(beyond, axis=2).min(axis=1)
+            if nearest == len(middles):
+                return to_cell, to_cell
+            others = np.maximum(to_middle[:, -1] - np.sqrt(3) * half, 0.0)
+            return np.minimum(to_cell, others), to_cell
+
+        extent = sorted(np.ptp(vertices, axis=0).tolist())
+        parts = one_of_each_part(vertices, faces)
+        solid = Solid(mesh_model(vertices, faces), extent[1], distances, near, parts)
+        return solid.placed(self)
+
+
+def _outer_sides(cells: Index) -> Mask:
+    """Which of the six sides of cells (k, 3) have no cell beyond them, (k, 6)."""
+    low = cells.min(axis=0) - 1
+    size = cells.max(axis=0) - low + 2
+    key = np.array([size[1] * size[2], size[2], 1])
+    own = (cells - low) @ key
+    beyond = own[:, None] + _SIDES @ key
+    return np.asarray(np.isin(beyond, own, invert=True))
+
+
+def _side(cells: Index, normal: Index) -> Index:
+    """Corners (k, 4, 3) of one side of cells (k, 3), counter-clockwise as seen from outside."""
+    axis = int(np.argmax(np.abs(normal)))
+    u, v = np.eye(3, dtype=np.int64)[[(axis + 1) % 3, (axis + 2) % 3]]
+    first = np.eye(3, dtype=np.int64)[axis] * (normal[axis] > 0)
+    corners = np.array([first, first + u, first + u + v, first + v])
+    return np.asarray(cells[:, None] + (corners if normal[axis] > 0 else corners[::-1]))
+
+
+OBSTACLES: Registry[Obstacle] = Registry(
+    "cellcolor.obstacles",
+    Obstacle,  # type: ignore[type-abstract]
+    {
+        "box": "cellcolor.frontend.contact.obstacle:BoxObstacle",
+        "cylinder": "cellcolor.frontend.contact.obstacle:CylinderObstacle",
+        "sphere": "cellcolor.frontend.contact.obstacle:SphereObstacle",
+        "cone": "cellcolor.frontend.contact.obstacle:ConeObstacle",
+        "capsule": "cellcolor.frontend.contact.obstacle:CapsuleObstacle",
+        "half-space": "cellcolor.frontend.contact.obstacle:HalfSpaceObstacle",
+        "box-grid": "cellcolor.frontend.contact.obstacle:BoxGridObstacle",
+        "mesh": "cellcolor.frontend.contact.obstacle:MeshObstacle",
+    },
+)

@@ -14,8 +14,7 @@ import numpy as np
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import longest_steps
-from cellcolor.frontend.contact.plane import HalfSpace
+from cellcolor.frontend.contact.collision import HalfSpace, longest_steps
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.parts.surface import Faces, Surface, along_edges
 from cellcolor.memory import batches

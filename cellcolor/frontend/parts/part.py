@@ -7,8 +7,7 @@ from pathlib import Path
 
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.surface import Surface
-from cellcolor.frontend.registry import Registry
-from cellcolor.frontend.tables import Table
+from cellcolor.frontend.tables import Registry, Table
 
 
 class Part(Table):

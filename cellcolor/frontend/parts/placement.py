@@ -1,10 +1,11 @@
-"""The place of a thing in the world."""
+"""The place of a thing in the world, and how far it may be off."""
 
 from __future__ import annotations
 
-from typing import Self
+from typing import Annotated, Self
 
 import numpy as np
+from pydantic import Field, FiniteFloat, model_validator
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.tables import Angles, Position, Table
@@ -50,3 +51,88 @@ def rpy_from_rotation(rotation: Array) -> tuple[float, float, float]:
     else:  # only one of the two is determined
         roll, yaw = 0.0, np.arctan2(-rotation[0, 1], rotation[1, 1])
     return float(roll), float(pitch), float(yaw)
+
+
+_SEED = 0
+
+
+class Tolerance(Table):
+    """How far a part may be off.
+
+    Attributes:
+        position_m: its center may be off so far, in any direction, m.
+        rotation_rad: it may be turned so far, about any axis through its center, rad.
+        samples: so many displacements are asked about.
+    """
+
+    position_m: Annotated[FiniteFloat, Field(ge=0, le=1)] = 0.0
+    rotation_rad: Annotated[FiniteFloat, Field(ge=0, le=np.pi)] = 0.0
+    samples: Annotated[int, Field(ge=1, le=1000)] = 16
+
+    @model_validator(mode="after")
+    def _something(self) -> Tolerance:
+        if not self.position_m and not self.rotation_rad:
+            raise ValueError("needs position_m or rotation_rad above 0")
+        return self
+
+    def displaced(self, placement: Placement, center: Array) -> list[Placement]:
+        """A sample of placements, always the same: all as far off and turned as far as may be.
+
+        Directions and axes are opposite in pairs, so that no side is favored.
+
+        Args:
+            placement: where the part should stand.
+            center: (3,) of the part, in the world, m.
+        """
+        return self.drawn(placement, center, np.random.default_rng(_SEED), at_most=False)
+
+    def drawn(
+        self,
+        placement: Placement,
+        center: Array,
+        rng: np.random.Generator,
+        *,
+        count: int | None = None,
+        at_most: bool = True,
+    ) -> list[Placement]:
+        """Placements drawn at random.
+
+        Args:
+            placement: where the part should stand.
+            center: (3,) of the part, in the world, m.
+            rng: what draws.
+            count: how many; None for ``samples``.
+            at_most: whether they may be off less than the tolerance allows, evenly within it.
+        """
+        count = self.samples if count is None else count
+        found = []
+        own = rotation_from_rpy(*placement.rpy_rad)
+        for number in range(count):
+            if number % 2 == 0 or at_most:
+                shift, turn = _direction(rng), _direction(rng)
+            else:
+                shift, turn = -shift, -turn
+            near, less = (rng.random() ** (1 / 3), rng.random()) if at_most else (1.0, 1.0)
+            rotation = _about(turn, less * self.rotation_rad)
+            position = rotation @ (np.array(placement.position_m) - center) + center
+            position += near * self.position_m * shift
+            found.append(
+                Placement(
+                    position_m=tuple(position.tolist()), rpy_rad=rpy_from_rotation(rotation @ own)
+                )
+            )
+        return found
+
+
+def _direction(rng: np.random.Generator) -> Array:
+    vector = rng.standard_normal(3)
+    unit: Array = vector / np.linalg.norm(vector)
+    return unit
+
+
+def _about(axis: Array, angle: float) -> Array:
+    """The rotation (3, 3) about a unit axis (Rodrigues)."""
+    x, y, z = axis
+    cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turned: Array = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return turned

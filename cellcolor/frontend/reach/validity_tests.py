@@ -25,14 +25,12 @@ from cellcolor.frontend.arm.kinematics import (
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
-from cellcolor.frontend.contact.plane import HalfSpace
+from cellcolor.frontend.contact.collision import HalfSpace, body_ends, hits_ground, hits_itself
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
-from cellcolor.frontend.registry import Registry
 from cellcolor.frontend.setup import Setup
-from cellcolor.frontend.tables import Table
+from cellcolor.frontend.tables import Registry, Table
 
 
 @dataclass(frozen=True, eq=False)

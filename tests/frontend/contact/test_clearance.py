@@ -11,7 +11,7 @@ from world import World
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.contact.clearance import pair_levers
 from cellcolor.frontend.contact.collision import body_ends, segment_distance
-from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.contact.obstacle import BoxObstacle
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 

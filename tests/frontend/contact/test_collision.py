@@ -19,19 +19,19 @@ from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import (
+    HalfSpace,
     body_ends,
     hits_ground,
     hits_itself,
     segment_distance,
 )
-from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
-from cellcolor.frontend.contact.obstacle import Obstacle
-from cellcolor.frontend.contact.plane import HalfSpace
-from cellcolor.frontend.contact.primitives import (
+from cellcolor.frontend.contact.obstacle import (
     BoxObstacle,
     CapsuleObstacle,
     ConeObstacle,
     CylinderObstacle,
+    HalfSpaceObstacle,
+    Obstacle,
     SphereObstacle,
 )
 from cellcolor.frontend.contact.solids import mesh_solid

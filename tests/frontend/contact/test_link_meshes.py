@@ -19,9 +19,8 @@ from cellcolor.frontend.arm.body import Shapes
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot, wider
-from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
-from cellcolor.frontend.contact.plane import HalfSpace
-from cellcolor.frontend.contact.primitives import BoxObstacle, CylinderObstacle, SphereObstacle
+from cellcolor.frontend.contact.collision import HalfSpace, body_ends, hits_ground, hits_itself
+from cellcolor.frontend.contact.obstacle import BoxObstacle, CylinderObstacle, SphereObstacle
 from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 

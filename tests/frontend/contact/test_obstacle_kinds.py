@@ -16,10 +16,14 @@ from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.box_grid import BoxGridObstacle
-from cellcolor.frontend.contact.half_space import HalfSpaceObstacle
-from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
-from cellcolor.frontend.contact.primitives import CapsuleObstacle, ConeObstacle
+from cellcolor.frontend.contact.obstacle import (
+    OBSTACLES,
+    BoxGridObstacle,
+    CapsuleObstacle,
+    ConeObstacle,
+    HalfSpaceObstacle,
+    Obstacle,
+)
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.shapes import RectangleObject

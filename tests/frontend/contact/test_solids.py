@@ -18,7 +18,7 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.fcl_bodies import body_poses, body_shape
-from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.contact.obstacle import BoxObstacle
 from cellcolor.frontend.contact.solids import Solid, mesh_solid, sample_mesh
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import Surface

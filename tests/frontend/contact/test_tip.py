@@ -17,8 +17,7 @@ from shipped import ROBOTS
 from cellcolor.arrays import Array
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.obstacle import MeshObstacle
-from cellcolor.frontend.contact.primitives import BoxObstacle, SphereObstacle
+from cellcolor.frontend.contact.obstacle import BoxObstacle, MeshObstacle, SphereObstacle
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh

@@ -10,7 +10,7 @@ import trimesh
 from dirty import DIRTY, parts_with
 
 from cellcolor.errors import InputError
-from cellcolor.frontend.parts.inspected import inspect_mesh
+from cellcolor.frontend.parts.inspection import inspect_mesh
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.mesh_file import read_mesh
 from cellcolor.frontend.parts.repaired import repair_mesh

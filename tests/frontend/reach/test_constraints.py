@@ -13,8 +13,7 @@ from reasons import Reason
 
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
-from cellcolor.frontend.contact.obstacle import MeshObstacle
-from cellcolor.frontend.contact.primitives import BoxObstacle
+from cellcolor.frontend.contact.obstacle import BoxObstacle, MeshObstacle
 from cellcolor.frontend.parts.mesh_file import load_mesh
 from cellcolor.frontend.parts.shapes import RectangleObject, disc_mesh, spherical_cap
 from cellcolor.frontend.parts.surface import refine

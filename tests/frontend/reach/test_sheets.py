@@ -27,7 +27,6 @@ from cellcolor.errors import InputError
 from cellcolor.frontend import Scene, build_surface
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward, signed_task_determinant, tip_jacobian
-from cellcolor.frontend.displaced import run_stages
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, named, prepare
@@ -36,7 +35,7 @@ from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
 from cellcolor.frontend.setup import Continuity
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages
+from cellcolor.frontend.stages import Stages, run_stages
 from cellcolor.memory import MEMORY
 
 

@@ -20,7 +20,7 @@ from world import PAIRS, World
 from cellcolor.arrays import Array
 from cellcolor.frontend import BuildResult, build_surface
 from cellcolor.frontend.arm.kinematics import forward
-from cellcolor.frontend.contact.primitives import SphereObstacle
+from cellcolor.frontend.contact.obstacle import SphereObstacle
 from cellcolor.frontend.parts.surface import along_edges
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import stays_in_limits
