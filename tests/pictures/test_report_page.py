@@ -175,6 +175,49 @@ def test_slider_and_play_move_the_arm(page_file: Path, size: tuple[int, int]) ->
 
 
 @pytest.mark.second
+def test_faults_are_found_by_a_click_and_the_space_bar_plays(tmp_path: Path) -> None:
+    """From the list, from the mark on the part, and from the bar of time."""
+    made = stand_in()
+    times = made.trajectory.times
+    number = int(np.flatnonzero(made.trajectory.contact)[len(times) // 3])
+    moment, place = float(times[number]), tuple(made.trajectory.points[number].tolist())
+    found = (
+        Fault("invalid", "here", sample=number, time=moment, place=place),
+        Fault("jump", "at the end", sample=len(times) - 1, time=float(times[-1])),
+        Fault("uncovered", "nowhere", place=place),
+    )
+    verdict = replace(made.verdict, faults=found, fault_counts={"invalid": 1, "jump": 2})
+    file = tmp_path / "faults.html"
+    file.write_bytes(render_page(report(verdict=verdict)))
+
+    def at(page: Any) -> float:
+        return float(page.input_value("#time")) + float(times[0])
+
+    with opened(file, DESKTOP) as (page, faults):
+        rows = page.locator("tr[data-time]")
+        assert rows.count() == 2  # the third has no time
+        rows.nth(1).click()
+        assert at(page) == pytest.approx(times[-1], abs=1e-3)
+        rows.nth(0).click()
+        assert at(page) == pytest.approx(moment, abs=1e-3)
+        page.keyboard.press(" ")
+        wait_for_time(page, moment - float(times[0]) + 0.01)
+        page.keyboard.press(" ")
+        assert page.get_attribute("#play", "aria-label") == "Play"
+        bar = page.locator("#phases").bounding_box()
+        share = (moment - times[0]) / (times[-1] - times[0])
+        page.mouse.click(bar["x"] + share * bar["width"] + 3, bar["y"] + bar["height"] / 2)
+        assert at(page) == pytest.approx(moment, abs=1e-3)
+        page.mouse.click(bar["x"] + 0.1 * bar["width"], bar["y"] + bar["height"] / 2)
+        assert at(page) < moment
+        mark = page.locator("#overlay .fault")
+        assert mark.count() == 1
+        mark.dispatch_event("click")
+        assert at(page) == pytest.approx(moment, abs=1e-3)
+        assert faults == []
+
+
+@pytest.mark.second
 def test_the_arm_is_drawn_and_moves(page_file: Path) -> None:
     """Pictures of two moments differ, and one without the arm differs from both."""
     with opened(page_file, DESKTOP) as (page, faults):

@@ -81,13 +81,17 @@ def _verdict(report: MotionReport) -> Card:
         return Card(title, (text, how, *verdict.notes), (), True)
     kinds = ", ".join(f"{number} × {kind}" for kind, number in verdict.fault_counts.items())
     rows = [("at", "kind", "what")]
-    for fault in verdict.faults[:_SHOWN]:
+    shown = verdict.faults[:_SHOWN]
+    for fault in shown:
         at = "–" if fault.time is None else f"{fault.time:.2f} s"
         rows.append((at, fault.kind, fault.text))
     texts = [f"Not valid, {samples}: {kinds}.", how, *verdict.notes]
     if len(verdict.faults) > _SHOWN:
         texts.append(f"The first {_SHOWN}; the rest are in verdict.json.")
-    return Card(title, tuple(texts), tuple(rows), False)
+    times = tuple(fault.time for fault in shown)
+    if any(time is not None for time in times):
+        texts.append("A click on a row, on its mark on the part or in the bar of time leads there.")
+    return Card(title, tuple(texts), tuple(rows), False, times=times)
 
 
 def _coverage(report: MotionReport) -> Card | None:

@@ -4,6 +4,12 @@
 const CONTACT = "#00508F", MOVE = "#E69F00", BAD = "#CC3311", SOFT = "#5A6472";
 const degrees = (angle) => `${((180 / Math.PI) * angle).toFixed(1)}°`;
 
+// What is drawn of a joint: limits that are far away would flatten the curve.
+function within(least, most, low, high) {
+  const near = Math.max(most - least, 0.2);
+  return { low: Math.max(low ?? -Infinity, least - near), high: Math.min(high ?? Infinity, most + near) };
+}
+
 class Charts {
   constructor(canvas, data, motion, chosen) {
     Object.assign(this, { canvas, data, motion });
@@ -14,8 +20,7 @@ class Charts {
       return {
         name: name.replace(/_joint$/, "").replaceAll("_", " "),
         values,
-        low: low ?? Math.min(...values),
-        high: high ?? Math.max(...values),
+        ...within(Math.min(...values), Math.max(...values), low, high),
         marks: [low, high].filter((limit) => limit !== null),
         written: degrees,
         stepped: false,

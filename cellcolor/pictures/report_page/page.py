@@ -112,7 +112,7 @@ def _card(card: Card) -> str:
         lines = []
         if any(head):
             lines.append(f"<tr>{''.join(f'<th>{html.escape(cell)}</th>' for cell in head)}</tr>")
-        shown = map(_shows, card.modes or [""] * len(rows))
+        shown = map(_shows, card.modes or [""] * len(rows), card.times or [None] * len(rows))
         lines += [
             f"<tr{mode}>{''.join(map(_cell, row))}</tr>"
             for row, mode in zip(rows, shown, strict=True)
@@ -127,8 +127,10 @@ def _cell(text: str) -> str:
     return f"<td{short}>{html.escape(text)}</td>"
 
 
-def _shows(mode: str) -> str:
-    """The attribute by which the scripts know what a click shows on the part."""
+def _shows(mode: str, time: float | None = None) -> str:
+    """The attributes by which the scripts know what a click shows."""
+    if time is not None:
+        return f' data-time="{time}" class="link" tabindex="0"'
     return f' data-mode="{html.escape(mode)}" tabindex="0"' if mode else ""
 
 

@@ -1,6 +1,8 @@
 // Time: the slider, the play button and everything that follows them.
 "use strict";
 
+const INK_ON_PHASES = "#000"; // faults
+
 class Motion {
   // The frames of the trajectory; between two of them every joint moves in proportion to time.
   constructor(data) {
@@ -67,7 +69,9 @@ class Player {
     }
     this.charts = new Charts(find("charts"), data, this.motion, (moment) => this.go(moment));
     this.controls();
+    this.shortcuts();
     new ResizeObserver(() => this.drawPhases()).observe(find("phases"));
+    find("phases").addEventListener("click", (event) => this.nearestFault(event));
     this.drawPhases();
     this.go(0);
     requestAnimationFrame((clock) => this.tick(clock));
@@ -115,6 +119,25 @@ class Player {
       link.addEventListener("keydown", (event) => event.key === "Enter" && show());
     }
     this.mode(0);
+  }
+
+  // Rows of tables and marks on the part that have a time lead to it; the space bar plays.
+  shortcuts() {
+    const time = (event) => event.target.closest?.("[data-time]")?.dataset.time;
+    const show = (event) => {
+      if (time(event) === undefined) return;
+      this.play(false);
+      this.go(Math.min(this.motion.end, Math.max(0, Number(time(event)) - this.motion.start)));
+      this.find("view").scrollIntoView({ block: "nearest" });
+    };
+    document.addEventListener("click", show);
+    document.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") show(event);
+      // Buttons, boxes and lists have a use for the space bar of their own.
+      if (event.key !== " " || event.target.closest("button, select, input:not([type=range])")) return;
+      event.preventDefault();
+      this.play(!this.playing);
+    });
   }
 
   mode(number) {
@@ -177,6 +200,16 @@ class Player {
     this.charts.draw(now);
   }
 
+  // On the bar of phases a click leads to that moment, or to a fault beside it.
+  nearestFault(event) {
+    const { left, width } = this.find("phases").getBoundingClientRect(), { motion } = this;
+    const moment = (motion.end * (event.clientX - left)) / width;
+    const near = this.data.faults.map((fault) => fault - motion.start)
+      .filter((fault) => Math.abs(fault - moment) < (6 * motion.end) / width)
+      .sort((a, b) => Math.abs(a - moment) - Math.abs(b - moment));
+    this.go(near[0] ?? moment);
+  }
+
   drawPhases() {
     const canvas = this.find("phases"), { motion } = this;
     const ratio = Math.min(2, window.devicePixelRatio || 1);
@@ -186,6 +219,11 @@ class Player {
       pen.fillStyle = state === 1 ? fills[segment]?.rgb || CONTACT : state === 2 ? BAD : MOVE;
       const [left, right] = [from, to].map((moment) => (canvas.width * moment) / (motion.end || 1));
       pen.fillRect(left, 0, Math.max(ratio, right - left), canvas.height);
+    }
+    pen.fillStyle = INK_ON_PHASES;
+    for (const moment of this.data.faults) {
+      const x = (canvas.width * (moment - motion.start)) / (motion.end || 1);
+      pen.fillRect(Math.min(canvas.width - 3 * ratio, Math.max(0, x - ratio)), 0, 3 * ratio, canvas.height);
     }
   }
 }

@@ -130,10 +130,9 @@ class Space {
     for (let k = 0; k < this.vertices.length; k += 3)
       points.push(Array.from(this.vertices.subarray(k, k + 3)));
     const joints = unpack(this.data.frames.joints), count = this.data.arm.axis.length;
-    const contact = unpack(this.data.frames.contact); // moves between swing far out of the picture
-    const all = [...points];
-    for (let frame = 0; frame < contact.length; frame++) {
-      if ((contact.length > 1 && !contact[frame]) || frame % 20) continue;
+    const all = [...points], trace = unpack(this.data.trace.points);
+    for (let k = 0; k < trace.length; k += 3) all.push(Array.from(trace.subarray(k, k + 3)));
+    for (let frame = 0; frame * count < joints.length; frame += 10) {
       for (const pose of armPoses(this.data.arm, joints.subarray(frame * count, frame * count + count)))
         for (const axis of [3, 7, 11])
           for (const thick of [-0.09, 0.09]) {
@@ -155,15 +154,17 @@ class Space {
     this.borderLines = this.modes[number].borders;
     this.overlay.replaceChildren();
     this.labels = [];
-    const label = (kind, text, place, outward) => {
+    const label = (kind, text, place, outward, time) => {
       const span = document.createElement("span");
       span.className = kind;
       span.textContent = text;
+      if (time !== undefined) span.dataset.time = time;
       this.overlay.append(span);
       this.labels.push({ span, place, outward });
     };
     for (const { text, at, outward } of this.data.modes[number].texts) label("number", text, at, outward);
-    for (const { kind, text, place, outward } of this.data.places) label(kind, text, place, outward);
+    for (const { kind, text, place, outward, time } of this.data.places)
+      label(kind, text, place, outward, time);
     this.dirty = true;
   }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -14,6 +15,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.trajectory_verdict import Fault
 from cellcolor.frontend.arm.kinematics import (
     forward,
     manipulability,
@@ -65,6 +67,7 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
         modes = [replace(mode, labels=mode.labels[given]) for mode in modes]
         modes.insert(0, segment_mode(painted))
     frames = frames_of(trajectory, MOST_FRAMES)
+    faults = () if report.verdict is None else report.verdict.faults
     vertices, faces = surface.vertices, surface.faces
     first_edges = np.linalg.norm(vertices[faces[:, 0]] - vertices[faces[:, 1]], axis=1)
     lift, ground = 0.05 * float(first_edges.mean()), prepared.workplace.ground
@@ -82,7 +85,8 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
         "frames": _frames(prepared, trajectory, frames),
         "limits": _limits(prepared),
         "joint_names": list(trajectory.joint_names),
-        "places": _places(trajectory, vertices, surface.vertex_normals),
+        "places": _places(trajectory, faults, vertices, surface.vertex_normals),
+        "faults": [fault.time for fault in faults if fault.time is not None],
         "eye": _eye(surface).tolist(),
     }
 
@@ -251,8 +255,10 @@ def _limits(prepared: PreparedScene) -> dict[str, Any]:
     }
 
 
-def _places(trajectory: Trajectory, vertices: Array, normals: Array) -> list[dict[str, Any]]:
-    """What is marked on the part: extra lift-offs and what is left out.
+def _places(
+    trajectory: Trajectory, faults: Sequence[Fault], vertices: Array, normals: Array
+) -> list[dict[str, Any]]:
+    """What is marked on the part: extra lift-offs, faults, and what is left out.
 
     Marks that look away are hidden; a mark looks where the nearest vertex does.
     """
@@ -266,6 +272,11 @@ def _places(trajectory: Trajectory, vertices: Array, normals: Array) -> list[dic
     ]
     largest = sorted(trajectory.left_out, key=lambda part: -part.area_m2)[:_MOST_DOTS]
     marks += [{"place": part.place, "kind": "dot", "text": ""} for part in largest]
+    marks += [
+        {"place": fault.place, "kind": "mark fault", "text": fault.kind, "time": fault.time}
+        for fault in faults[:_MOST_DOTS]
+        if fault.place is not None and fault.time is not None
+    ]
     for mark in marks:
         nearest = np.argmin(np.linalg.norm(vertices - mark["place"], axis=1))
         mark["outward"] = normals[nearest].tolist()
