@@ -24,6 +24,7 @@ from cellcolor.frontend.arm.polyhedron import Polyhedron
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.between import remains_valid
 from cellcolor.frontend.reach.continuity import link
+from cellcolor.frontend.reach.tracking import Tracker
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.trajectory_checker.dense import poses_of
 from cellcolor.trajectory_checker.fine_mesh import refined
@@ -75,7 +76,7 @@ def of_arm(arm: str) -> Iterator[tuple[str, Step]]:
     )
     yield "missing", lambda: missing(scene.robot, found)
     yield "judge", lambda: scene.judge(some)
-    yield "described", lambda: scene.arm.tracker().described(found)
+    yield "described", lambda: Tracker(scene.robot, scene.arm.measure).described(found)
     yield "poses", lambda: poses_of(scene.robot, some, NEVER)
 
 

@@ -7,6 +7,7 @@ about z, then comes the way d along z, a along the new x, and the twist alpha ab
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from cellcolor.arrays import Array
 from cellcolor.frontend.arm.loading import load_robot
@@ -80,7 +81,38 @@ ARMS: dict[str, Constants] = {
         (0, -90, 0.150, 0),
         (0, 0, 0.160, 0),
     ),
+    # UFACTORY xArm6, the maker's manual: axes 5 and 6 pass each other at 76 mm.
+    "xarm6": (
+        (0, -90, 0.267, 0),
+        (0.28948866, 0, 0, -79.34995),
+        (0.0775, -90, 0, 79.34995),
+        (0, 90, 0.3425, 0),
+        (0.076, -90, 0, 0),
+        (0, 0, 0.097, 0),
+    ),
+    # Yaskawa HC10 (motoman_hc10_support of ROS-Industrial): axes 4 and 6 pass at 162 mm.
+    "hc10": (
+        (0, -90, 0.275, 0),
+        (0.700, 0, 0, -90),
+        (0, -90, 0, 0),
+        (0, 90, 0.500, 0),
+        (0, -90, 0.162, 0),
+        (0, 0, 0.130, 0),
+    ),
 }
+
+# Kinova Gen3 with six joints (kortex_description): origins of its joints and of its flange as the
+# maker writes them, so that axes are parallel and meet within some micrometers only.
+_GEN3 = (
+    ((0, 0, 0.15643), (3.1416, 0, 0)),
+    ((0, 0.005375, -0.12838), (1.5708, 0, 0)),
+    ((0, -0.41, 0), (3.1416, 0, 0)),
+    ((0, 0.20843, -0.006375), (1.5708, 0, 0)),
+    ((0, -0.00017505, -0.10593), (-1.5708, 0, 0)),
+    ((0, 0.10593, -0.00017505), (1.5708, 0, 0)),
+    ((0, 0, -0.061525), (np.pi, 0, 0)),
+)
+OFFSET_WRISTS = ("crx10ia", "xarm6", "hc10", "gen3")
 
 _LINK = (
     '<link name="l{0}"><inertial><mass value="1"/><inertia ixx=".01" ixy="0" ixz="0" iyy=".01"'
@@ -135,8 +167,14 @@ def tool_of(length: float = 0.1) -> str:
 
 
 def urdf(name: str) -> str:
-    """URDF of one of ``ARMS``."""
-    return urdf_of([np.eye(4), *steps_of(ARMS[name])])
+    """URDF of one of ``ARMS``, or of ``gen3``."""
+    if name != "gen3":
+        return urdf_of([np.eye(4), *steps_of(ARMS[name])])
+    placements = np.tile(np.eye(4), (len(_GEN3), 1, 1))
+    for placement, (xyz, rpy) in zip(placements, _GEN3, strict=True):
+        placement[:3, :3] = Rotation.from_euler("xyz", rpy).as_matrix()
+        placement[:3, 3] = xyz
+    return urdf_of(list(placements))
 
 
 def robot(text: str, joints: int = 6) -> Robot:

@@ -150,12 +150,20 @@ def remark_on_calibration(robot: Robot, off: tuple[float, float], solutions: Arr
         off: the largest angle in rad and the largest distance in m of an axis from the ideal one.
         solutions: (n, s, joints) of all vertices, NaN for none.
     """
-    lost = missing(robot, solutions)
     angle, distance = math.degrees(off[0]), 1000 * off[1]
     return (
         f"calibrated arm, axes up to {angle:.2g} degrees and {distance:.2g} mm off the ideal one: "
-        "solved by Newton's method from the ideal one's solutions; missing, by the signs of the "
-        f"task determinants: {lost.sum()} at {np.count_nonzero(lost)} of {len(lost)} vertices"
+        "solved by Newton's method from the ideal one's solutions; "
+        f"{remark_on_missing(robot, solutions)}"
+    )
+
+
+def remark_on_missing(robot: Robot, solutions: Array) -> str:
+    """How many solutions (n, s, joints) of all vertices are missing at least, in words."""
+    lost = missing(robot, solutions)
+    return (
+        f"missing, by the signs of the task determinants: {lost.sum()} at "
+        f"{np.count_nonzero(lost)} of {len(lost)} vertices"
     )
 
 

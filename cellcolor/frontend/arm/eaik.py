@@ -152,7 +152,8 @@ class EaikKinematics(InverseKinematics):
 
 _UNKNOWN = (
     "EAIK knows no closed form for this arm: its axes neither meet in a wrist nor are three of "
-    "them parallel; an own solver can be named (docs/how-to/add-a-family-of-arms.md)"
+    "them parallel; 'offset-wrist' solves arms whose axes 2 and 3 are parallel and 4 and 5 meet, "
+    "and an own solver can be named (docs/how-to/add-a-family-of-arms.md)"
 )
 
 

@@ -100,6 +100,7 @@ KINEMATICS: Registry[InverseKinematics] = Registry(
     {
         "ur": "cellcolor.frontend.arm.ur:UrKinematics",
         "eaik": "cellcolor.frontend.arm.eaik:EaikKinematics",
+        "offset-wrist": "cellcolor.frontend.arm.offset_wrist:OffsetWrist",
         "planar-2r": "cellcolor.frontend.arm.planar:PlanarTwo",
         "planar-3r": "cellcolor.frontend.arm.planar:PlanarThree",
         "scara": "cellcolor.frontend.arm.planar:Scara",

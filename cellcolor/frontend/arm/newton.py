@@ -18,7 +18,7 @@ from cellcolor.frontend.arm.kinematics import (
     forward,
     task_jacobian,
 )
-from cellcolor.frontend.arm.robot import Robot
+from cellcolor.frontend.arm.robot import Robot, TaskSpace
 from cellcolor.frontend.arm.signs import BRANCHES, Signs
 from cellcolor.memory import cached
 
@@ -74,23 +74,26 @@ def _polished(
     rows, most = np.arange(len(start)), farthest
     for step in range(_STEPS + 1):
         poses = forward(robot, q[rows])
-        missed[rows] = misses(poses, points[rows], directions[rows])
+        wanted = directions[rows] if robot.task.direction else poses.tool_axis
+        missed[rows] = misses(poses, points[rows], wanted)
         going = np.flatnonzero((missed[rows] > _GOOD) & (missed[rows] <= most))
         if step == _STEPS or not len(going):
             break
         rows, poses, most = rows[going], poses.take(going), np.inf
-        q[rows, :TASK_JOINTS] += _step(poses, points[rows], directions[rows])
-    q[missed > REACHED] = np.nan
+        q[rows, :TASK_JOINTS] += _step(poses, points[rows], wanted[going], robot.task)
+    q[~(missed <= REACHED)] = np.nan
     return q
 
 
-def _step(poses: Poses, points: Array, directions: Array) -> Array:
+def _step(poses: Poses, points: Array, directions: Array, task: TaskSpace) -> Array:
     rows, across = task_jacobian(poses)
     turn = np.cross(poses.tool_axis, directions)
     error = np.concatenate([points - poses.tip, np.einsum("nij,nj->ni", across, turn)], axis=1)
+    if not task.direction:
+        rows, error = rows[:, :3], error[:, :3]
     # A half turn has no unique axis, and its cross product is zero: that is no solution.
     damping = np.minimum(np.einsum("ni,ni->n", error, error), 1e-3)
-    gram = rows @ rows.transpose(0, 2, 1) + (damping + 1e-14)[:, None, None] * np.eye(5)
+    gram = rows @ rows.transpose(0, 2, 1) + (damping + 1e-14)[:, None, None] * np.eye(rows.shape[1])
     step = (rows.transpose(0, 2, 1) @ np.linalg.solve(gram, error[:, :, None]))[:, :, 0]
     longest = np.abs(step).max(axis=1, keepdims=True)
     return np.asarray(step * np.minimum(1.0, _LARGEST / np.maximum(longest, _LARGEST)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +25,6 @@ from cellcolor.frontend.arm.robot import Robot, TaskSpace, wider
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.reach.tracking import Tracker
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.tables import in_file
 from cellcolor.memory import chunks
@@ -121,12 +120,6 @@ class PreparedArm:
         if not slides.any():
             return Measure(policy, near_singular, own.lever)
         return Measure(policy, near_singular, own.lever, slides, own.reach)
-
-    def tracker(self, deadline: Deadline = NEVER) -> Tracker:
-        """Follows solutions that have no names, until a deadline (OutOfTime)."""
-        limits = self.conditioning if self.setup.constraints.conditioning else None
-        solve = partial(self.inverse, deadline=deadline)
-        return Tracker(self.robot, solve, self.measure, limits, self.slots)
 
     def without_turn(self, points: Array, directions: Array) -> Mask:
         """Where the setup gives the tool's turn by a rule that says nothing there, (n,)."""

@@ -47,7 +47,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.prepared_arm import PreparedArm
 from cellcolor.frontend.reach.smooth import bytes_of_following, joint_step, shorter_way
-from cellcolor.frontend.reach.tracking import NewtonTracker, Solutions, Tracker, clearly_nearest
+from cellcolor.frontend.reach.tracking import Solutions, Tracker, clearly_nearest
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.memory import at_once, chunks
 from cellcolor.mesh.triangle_mesh import grouped
@@ -68,13 +68,21 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
         InputError: linked solutions are two of one vertex, or there are too many sheets.
         OutOfTime: the deadline came first.
     """
-    bare, robot, tracker = arm.bare, arm.robot, arm.bare.tracker(deadline)
+    bare = arm.bare
     found = bare.inverse(surface.vertices, -surface.normals, deadline)
-    verdicts = judge(found.reshape(-1, robot.joints), deadline)
-    solutions = tracker.described(verdicts.configurations.reshape(found.shape))
+    verdicts = judge(found.reshape(-1, bare.robot.joints), deadline)
     nodes = (verdicts.reasons == VALID).reshape(found.shape[:2])
-    limits = (robot.lower, robot.upper) if arm.setup.constraints.collision else None
-    linking = Linking(surface, nodes, solutions, tracker, limits)
+    turned, own, robot, directions = bare.kinematics, bare.kinematics, bare.robot, -surface.normals
+    if isinstance(turned, TurnedKinematics):
+        robot, own = turned.straight, turned.own
+        tips, directions = turned.straightened(surface.vertices, directions)
+        surface = Surface(tips, surface.faces, -directions)
+    measure = replace(bare.measure, lever=own.lever)
+    limits = bare.conditioning if bare.setup.constraints.conditioning else None
+    tracker = Tracker(robot, measure, limits)
+    solutions = tracker.described(verdicts.configurations.reshape(found.shape))
+    ends = (bare.robot.lower, bare.robot.upper) if bare.setup.constraints.collision else None
+    linking = Linking(surface, nodes, solutions, tracker, ends)
     edges = surface.edges()
     links = [np.empty((0, 3), dtype=np.int64)]
     together = edges_at_once(nodes.shape[1], robot.joints)
@@ -85,17 +93,12 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
     vertex = np.arange(len(slot))[:, None]
     joints = np.where((slot >= 0)[:, :, None], solutions.joints[vertex, slot], np.nan)
     valid = nodes[vertex, slot] & (slot >= 0)
-    own, kinematics = bare.kinematics, bare.kinematics
-    if isinstance(kinematics, TurnedKinematics):
-        robot, own = kinematics.straight, kinematics.own
-        poses = kinematics.straightened(surface.vertices, -surface.normals)
-    else:
-        poses = surface.vertices, -surface.normals
-    measure = replace(arm.measure, lever=own.lever)
-    sheets = SheetKinematics(own, NewtonTracker(robot, measure), poses, joints, valid)
-    if isinstance(kinematics, TurnedKinematics):
-        return replace(arm, kinematics=kinematics.with_own(sheets), nameless=bare)
-    return replace(arm, kinematics=sheets, nameless=bare)
+    sheets = SheetKinematics(
+        own, Tracker(robot, measure), (surface.vertices, directions), joints, valid
+    )
+    if isinstance(turned, TurnedKinematics):
+        return replace(bare, kinematics=turned.with_own(sheets), nameless=bare)
+    return replace(bare, kinematics=sheets, nameless=bare)
 
 
 class SheetKinematics(InverseKinematics):
@@ -109,7 +112,7 @@ class SheetKinematics(InverseKinematics):
     def __init__(
         self,
         own: InverseKinematics,
-        tracker: NewtonTracker,
+        tracker: Tracker,
         poses: tuple[Array, Array],
         joints: Array,
         valid: Mask,

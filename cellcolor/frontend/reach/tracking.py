@@ -1,14 +1,11 @@
-"""Solutions without names, followed along mesh edges (``docs/frontend.md``, "Continuity").
+"""Solutions followed along mesh edges by Newton's method (``docs/frontend/continuity.md``).
 
-A step leads from a configuration to the solution at its end that is nearest and has the same sign
-of the task determinant, which no motion without singularity changes. It counts only if it is less
-than half as long as the way to any other solution of that sign, at either end. Then the solution is
-the nearest one seen from both ends, with room to spare; longer steps are halved.
+This finds out which solution at another pose is meant. Whether a motion there is continuous is
+tested as of named branches (:mod:`cellcolor.frontend.reach.smooth`), in much shorter steps.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -59,32 +56,26 @@ def clearly_nearest(step: Array, first: Array, second: Array) -> Mask:
     return np.asarray(2 * step < np.minimum(first, second))
 
 
+_NEAR = 0.25  # rad; no joint moves farther on a step
+_CHANGE = 4.0  # by this factor at most the determinant changes on it
+_SHORTER = 2  # than the spacing of probes: no step is shorter
+
+
 class Tracker:
-    """Follows solutions of one arm along mesh edges.
+    """Follows solutions of one arm.
 
     Attributes:
-        measure: what is a jump.
+        measure: what is a jump between two solutions that are known.
     """
 
-    def __init__(
-        self,
-        robot: Robot,
-        solve: Callable[[Array, Array], Array],
-        measure: Measure,
-        limits: Conditioning | None,
-        slots: int,
-    ) -> None:
-        """An arm and what is asked of its motions.
+    def __init__(self, robot: Robot, measure: Measure, limits: Conditioning | None = None) -> None:
+        """An arm whose tool is on the last axis, and what is asked of its motions.
 
         Args:
-            solve: points (n, 3) and directions (n, 3) to all solutions (n, s, joints).
             measure: what is a jump.
             limits: what counts as well conditioned; everything, without.
-            slots: how many solutions a pose may have.
         """
-        self._robot, self._solve, self.measure, self._limits = robot, solve, measure, limits
-        self._pose = slots * bytes_of_poses(robot.joints)  # bytes
-        self._shortest = measure.shortest
+        self._robot, self.measure, self._limits = robot, measure, limits
 
     def described(self, joints: Array) -> Solutions:
         """Solutions (n, s, joints) of n poses, with what is needed to tell them apart."""
@@ -130,6 +121,7 @@ class Tracker:
             that is ill-conditioned; and the motions.
         """
         measure, count = self.measure, len(edges)
+        shortest = measure.policy.probe_spacing_m / _SHORTER
         lengths, turns = surface.lengths(edges), surface.turns(edges)
         at, ahead = np.zeros(count), until.copy()
         now = Solutions(*(getattr(start, each.name).copy() for each in fields(start)))
@@ -137,14 +129,18 @@ class Tracker:
         smooth = np.ones(count, dtype=bool)
         rows = np.flatnonzero(until > 0)
         while len(rows):
-            there = self._nearest(surface, edges[rows], ahead[rows], now.take(rows))
             here = now.take(rows)
+            goal = along_edges(surface, edges[rows], ahead[rows])
+            joints = polished(self._robot, here.joints[:, None], *goal, np.inf)
+            there = self.described(joints).take(slice(None), 0)
             way = shorter_way(here.joints, there.joints)
-            step = np.abs(way).max(axis=1)
+            with np.errstate(divide="ignore", invalid="ignore"):
+                ratio = there.determinants / here.determinants
+            # Small steps on which the determinant changes little, and so keeps its sign.
+            sure = (np.abs(way).max(axis=1) <= _NEAR) & (ratio >= 1 / _CHANGE) & (ratio <= _CHANGE)
             change = measure.changes(lengths[rows], turns[rows], at[rows], ahead[rows])
-            sure = self._sure(step, change, here, there)
             # What is lost for good: a jump, or surely a point that no motion may pass.
-            smooth[rows[~sure & (change <= self._shortest)]] = False
+            smooth[rows[~sure & (change <= shortest)]] = False
             smooth[rows[sure & ~there.good]] = False
             gone, landed = rows[sure], np.flatnonzero(sure)
             for each in fields(now):
@@ -159,69 +155,3 @@ class Tracker:
             rows = rows[smooth[rows] & (at[rows] < until[rows])]
         now.joints[~smooth] = np.nan
         return now.joints, Motions(smooth, lowest, highest)
-
-    def _sure(self, step: Array, change: Array, here: Solutions, there: Solutions) -> Mask:
-        """Which steps (k,) lead to the same solution without a jump."""
-        nearest = np.fmin(np.abs(here.determinants), np.abs(there.determinants))
-        clear = clearly_nearest(step, here.apart, there.apart)
-        return clear & self.measure.settled(step, change, nearest)
-
-    def _nearest(self, surface: Surface, edges: Index, way: Array, now: Solutions) -> Solutions:
-        """The solutions (k,) at points of edges that are nearest to others of the same sign."""
-        parts = []
-        for rows in chunks(len(edges), self._pose):
-            here = now.take(rows)
-            found = self.described(self._solve(*along_edges(surface, edges[rows], way[rows])))
-            step = joint_step(found.joints, here.joints[:, None])
-            same = np.sign(found.determinants) == np.sign(here.determinants)[:, None]
-            step = np.where(same, step, np.inf)
-            if step.shape[1] == 0:  # no pose has any
-                parts.append(_none(here))
-                continue
-            best = np.argmin(step, axis=1)
-            chosen = found.take(np.arange(len(best)), best)
-            chosen.joints[np.isinf(step.min(axis=1))] = np.nan
-            parts.append(chosen)
-        return Solutions(
-            *(np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(now))
-        )
-
-
-_NEAR = 0.25  # rad; no joint moves farther on a step of Newton's method
-_CHANGE = 4.0  # by this factor at most the determinant changes on it
-_SHORTER = 8  # than the spacing of probes: no step is shorter
-
-
-class NewtonTracker(Tracker):
-    """Follows one solution by Newton's method, without knowing the others of a pose.
-
-    It finds out which solution is meant at a pose. Whether a motion there is continuous is tested
-    as of named branches (:mod:`cellcolor.frontend.reach.smooth`), in much shorter steps.
-    """
-
-    def __init__(self, robot: Robot, measure: Measure) -> None:
-        """An arm whose tool is on the last axis, and what is a jump."""
-        super().__init__(robot, lambda points, _: np.empty((len(points), 0, 0)), measure, None, 1)
-        self._shortest = measure.policy.probe_spacing_m / _SHORTER
-
-    def _sure(self, step: Array, change: Array, here: Solutions, there: Solutions) -> Mask:  # noqa: ARG002
-        """Small steps on which the determinant changes little, and so keeps its sign."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.asarray(there.determinants / here.determinants)
-        return np.asarray((step <= _NEAR) & (ratio >= 1 / _CHANGE) & (ratio <= _CHANGE))
-
-    def _nearest(self, surface: Surface, edges: Index, way: Array, now: Solutions) -> Solutions:
-        points, directions = along_edges(surface, edges, way)
-        joints = polished(self._robot, now.joints[:, None], points, directions, np.inf)
-        return self.described(joints).take(slice(None), 0)
-
-
-def _none(like: Solutions) -> Solutions:
-    """As many poses without any solution."""
-    count = len(like.joints)
-    return Solutions(
-        np.full_like(like.joints, np.nan),
-        np.full(count, np.nan),
-        np.full(count, np.inf),
-        np.zeros(count, dtype=bool),
-    )

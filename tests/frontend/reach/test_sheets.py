@@ -140,9 +140,10 @@ def linked_nodes(prepared: PreparedScene) -> tuple[Array, Array, Array]:
     found = arm.inverse(surface.vertices, -surface.normals)
     verdicts = prepared.judge(found.reshape(-1, 6))
     nodes = (verdicts.reasons == 0).reshape(found.shape[:2])
-    solutions = arm.tracker().described(verdicts.configurations.reshape(found.shape))
+    tracker = Tracker(arm.robot, arm.measure, arm.conditioning)
+    solutions = tracker.described(verdicts.configurations.reshape(found.shape))
     limits = prepared.robot.lower, prepared.robot.upper
-    pairs = Linking(surface, nodes, solutions, arm.tracker(), limits).links(surface.edges())
+    pairs = Linking(surface, nodes, solutions, tracker, limits).links(surface.edges())
     return solutions.joints, nodes, pairs
 
 
