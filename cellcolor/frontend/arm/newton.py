@@ -38,7 +38,12 @@ def misses(poses: Poses, points: Array, directions: Array) -> Array:
 
 
 def polished(
-    robot: Robot, starts: Array, points: Array, directions: Array, farthest: float
+    robot: Robot,
+    starts: Array,
+    points: Array,
+    directions: Array,
+    farthest: float,
+    steps: int = _STEPS,
 ) -> Array:
     """The solutions that starts lead to, in (-pi, pi].
 
@@ -51,6 +56,7 @@ def polished(
         points: (n, 3) where the tip has to be, m.
         directions: (n, 3) unit vectors of the tool.
         farthest: what misses by more at the start is not tried; see :func:`misses`.
+        steps: how many are made at most.
 
     Returns:
         (n, s, joints) in rad, NaN where the tip or the direction misses by more than ``REACHED``.
@@ -60,7 +66,7 @@ def polished(
     for part in cached(len(there[0]), bytes_of_poses(robot.joints)):
         pose, number = (index[part] for index in there)
         start = starts[pose, number]
-        end = _polished(robot, start, points[pose], directions[pose], farthest)
+        end = _polished(robot, start, points[pose], directions[pose], farthest, steps)
         turned = np.pi - np.mod(np.pi - end, 2 * np.pi)
         turned[:, -1] = np.where(np.isnan(end[:, 0]), np.nan, start[:, -1])
         found[pose, number] = turned
@@ -68,16 +74,16 @@ def polished(
 
 
 def _polished(
-    robot: Robot, start: Array, points: Array, directions: Array, farthest: float
+    robot: Robot, start: Array, points: Array, directions: Array, farthest: float, steps: int
 ) -> Array:
     q, missed = start.copy(), np.empty(len(start))
     rows, most = np.arange(len(start)), farthest
-    for step in range(_STEPS + 1):
+    for step in range(steps + 1):
         poses = forward(robot, q[rows])
         wanted = directions[rows] if robot.task.direction else poses.tool_axis
         missed[rows] = misses(poses, points[rows], wanted)
         going = np.flatnonzero((missed[rows] > _GOOD) & (missed[rows] <= most))
-        if step == _STEPS or not len(going):
+        if step == steps or not len(going):
             break
         rows, poses, most = rows[going], poses.take(going), np.inf
         q[rows, :TASK_JOINTS] += _step(poses, points[rows], wanted[going], robot.task)

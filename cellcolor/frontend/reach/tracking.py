@@ -56,6 +56,7 @@ def clearly_nearest(step: Array, first: Array, second: Array) -> Mask:
     return np.asarray(2 * step < np.minimum(first, second))
 
 
+_STEPS = 8  # of Newton's method; more are needed only where the step is too long
 _NEAR = 0.25  # rad; no joint moves farther on a step
 _CHANGE = 4.0  # by this factor at most the determinant changes on it
 _SHORTER = 2  # than the spacing of probes: no step is shorter
@@ -131,7 +132,7 @@ class Tracker:
         while len(rows):
             here = now.take(rows)
             goal = along_edges(surface, edges[rows], ahead[rows])
-            joints = polished(self._robot, here.joints[:, None], *goal, np.inf)
+            joints = polished(self._robot, here.joints[:, None], *goal, np.inf, _STEPS)
             there = self.described(joints).take(slice(None), 0)
             way = shorter_way(here.joints, there.joints)
             with np.errstate(divide="ignore", invalid="ignore"):
