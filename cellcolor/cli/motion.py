@@ -252,9 +252,18 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     help="What report.html is to tell besides: tradeoff, explain, place or setups. May be given "
     "several times.",
 )
+@click.option(
+    "--export-step",
+    type=click.FloatRange(0.001, 0.5),
+    metavar="SECONDS",
+    help="The fixed time step of the files for controllers, from 0.001 to 0.5 s. By default they "
+    "have the samples of the trajectory or via points, and a UR arm's program has 0.008 s.",
+)
 @TIME_LIMIT
 @motion_options
-def plan(scene: Path, output: Path, tolerance: str | None, **wanted: Any) -> Exit:
+def plan(
+    scene: Path, output: Path, tolerance: str | None, export_step: float | None, **wanted: Any
+) -> Exit:
     """Plan a motion over a scene's object with the fewest lift-offs, and have it judged.
 
     FOLDER gets the proof, the painted surface, tool paths, the trajectory, the verdict on it, files
@@ -281,7 +290,7 @@ def plan(scene: Path, output: Path, tolerance: str | None, **wanted: Any) -> Exi
             )
             report("files and page")
             begun = time.perf_counter()
-            planned.save(output)
+            planned.save(output, export_step)
             stages = {**planned.seconds, "files and page": time.perf_counter() - begun}
     except NothingCovered as error:
         say_lines(error.report)

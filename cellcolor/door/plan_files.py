@@ -84,7 +84,12 @@ def save(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
     """
     for name in KINDS.keys() - files.keys():
         if (folder / name).exists():
-            message = "belongs to a plan that got further; files of two plans are not mixed"
+            whose = (
+                "for another arm"
+                if name in EXPORTS and "verdict.json" in files
+                else "that got further"
+            )
+            message = f"belongs to a plan {whose}; files of two plans are not mixed"
             raise InputError(str(folder / name), None, message)
     with make_folder(folder):
         write([Output(folder / name, KINDS[name], [files[name]]) for name in files])

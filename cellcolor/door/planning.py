@@ -24,7 +24,7 @@ from cellcolor.door.result import Result
 from cellcolor.door.solving import solve
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.errors import InputError
-from cellcolor.exports.registry import EXPORTS
+from cellcolor.exports.registry import exported
 from cellcolor.files.paths import path_of
 from cellcolor.painting.paint import Painted
 from cellcolor.questions.places import Place
@@ -117,7 +117,7 @@ class UnfinishedPlan:
 
         return render_page(self._report())
 
-    def _files(self) -> dict[str, bytes]:
+    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
         """All files but the page, by name, as far as the plan came."""
         surface, decomposition = self.subject.surface, self.subject.decomposition
         reference = SurfaceReference(SURFACE, tuple(decomposition.vertex_cell), surface.sha256)
@@ -136,8 +136,15 @@ class UnfinishedPlan:
             content["paths.json"] = self.paths.to_json().encode()
         return content
 
-    def save(self, folder: str | PathLike[str]) -> tuple[str, ...]:
+    def save(
+        self, folder: str | PathLike[str], export_step_s: float | None = None
+    ) -> tuple[str, ...]:
         """Write all files that are ready to a folder (docs/plan.md), all of them or none.
+
+        Args:
+            folder: where; it is made if it is not there.
+            export_step_s: the fixed time step of the files for controllers, s; None keeps the
+                samples of the trajectory (docs/formats/controllers.md).
 
         Returns:
             Their names.
@@ -146,7 +153,7 @@ class UnfinishedPlan:
             InputError: a plan that got further is there, or something else that is not
                 overwritten; or it cannot be written.
         """
-        return save(path_of(folder), self._files() | {"report.html": self.page()})
+        return save(path_of(folder), self._files(export_step_s) | {"report.html": self.page()})
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self.missing}>"
@@ -191,18 +198,29 @@ class PlannedScene(UnfinishedPlan):
             answered=self.answered,
         )
 
-    def _files(self) -> dict[str, bytes]:
-        from cellcolor.exports.interface import PlannedMotion
+    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:
+        from cellcolor.exports.interface import ArmAxes, PlannedMotion
         from cellcolor.pictures.report_page.surface_modes import segment_fills
 
         painted, trajectory = self.painted, self.trajectory
         fills = segment_fills(painted)
-        motion = PlannedMotion(painted.surface, painted.segment_of, fills, self.paths, trajectory)
+        arm = self.built.robot
+        axes = ArmAxes.of(arm.joint_names, arm.placement, arm.axis, bool(arm.slides.any()))
+        motion = PlannedMotion(
+            painted.surface,
+            painted.segment_of,
+            fills,
+            self.paths,
+            trajectory,
+            axes,
+            export_step_s,
+            self.built.prepared.setup.task.normal_force_n,
+        )
         return {
             **super()._files(),
             "trajectory.json": trajectory.to_json().encode(),
             "verdict.json": self.verdict.to_json().encode(),
-            **{name: export.content(motion) for name, export in EXPORTS.items()},
+            **exported(motion),
         }
 
     def __str__(self) -> str:

@@ -43,7 +43,7 @@ def tool_paths_yaml(planned: PlannedMotion) -> bytes:
 def _orientations(path: ToolPath) -> Array:
     """(k, 4) unit quaternions x, y, z, w of the poses along a path."""
     z = path.normals / np.linalg.norm(path.normals, axis=1, keepdims=True)
-    return _quaternions(_travel(path.points, z), z)
+    return quaternions(_travel(path.points, z), z)
 
 
 def _travel(points: Array, z: Array) -> Array:
@@ -70,8 +70,12 @@ def _across(vectors: Array, z: Array) -> Array:
     return unit
 
 
-def _quaternions(x: Array, z: Array) -> Array:
-    """Of the rotations (k) whose columns are x, z cross x, and z (k, 3); w is not negative."""
+def quaternions(x: Array, z: Array) -> Array:
+    """Of the rotations (k) whose columns are x, z cross x, and z (k, 3): (k, 4) x, y, z, w.
+
+    Of the two that are one rotation, each is the one nearer to the one before; the first has no
+    negative w.
+    """
     matrix = np.stack([x, np.cross(z, x), z], axis=2)
     # Each row of this symmetric matrix is the quaternion times four of its own members (Shepperd,
     # 1978); the row of the largest member is the one to divide by.
@@ -88,5 +92,7 @@ def _quaternions(x: Array, z: Array) -> Array:
     largest = np.argmax(np.diagonal(products, axis1=1, axis2=2), axis=1)
     rows = products[np.arange(len(x)), largest]
     unit = rows / np.linalg.norm(rows, axis=1, keepdims=True)
-    quaternions: Array = np.where(unit[:, 3:] < 0, -unit, unit)
-    return quaternions
+    nearer = np.sum(unit[1:] * unit[:-1], axis=1)
+    first = np.where(unit[:1, 3] < 0, -1.0, 1.0)
+    signs = np.cumprod(np.concatenate([first, np.where(nearer < 0, -1.0, 1.0)]))
+    return np.asarray(unit * signs[:, None])
