@@ -171,7 +171,7 @@ TOLERANCE = click.option(
 )
 UNIT = click.option(
     "--unit",
-    type=click.Choice(["m", "mm"]),
+    type=click.Choice(["m", "mm", "cm", "in"]),
     help="Unit of the coordinates.  [default: guessed from the size]",
 )
 JOBS: dict[str, Any] = {

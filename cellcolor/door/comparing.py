@@ -172,7 +172,7 @@ def compare(
         cover: the share of the whole surface that each arm has to cover, 0 to 1; None for as much
             as the arm that covers most where the part is put at first.
         points, vertices: see ``cellcolor.place``.
-        unit: ``m`` or ``mm``, of the mesh; without it the likely one.
+        unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; without it the likely one.
         jobs: processes at a time.
         time_limit: seconds for all of it, None for as long as it takes.
         seed: of everything random.

@@ -34,7 +34,7 @@ def inspect(
     Args:
         part: a mesh file (STL, OBJ, PLY), a ``trimesh.Trimesh``, or vertices (n, 3) and faces
             (m, 3).
-        unit: ``m`` or ``mm``; without it the likely unit is taken and reported.
+        unit: ``m``, ``mm``, ``cm`` or ``in``; without it the likely unit is taken and reported.
         time_limit: seconds, None for no limit.
         progress: told what is being done.
 
@@ -68,7 +68,7 @@ def repair(
 
     Args:
         part: as of :func:`inspect`.
-        unit: ``m`` or ``mm``; without it the likely one.
+        unit: ``m``, ``mm``, ``cm`` or ``in``; without it the likely one.
         fill_holes_m: holes with a border up to that length are filled.
         least_component: components with less than this share of the largest one's area are
             dropped; a hundredth if it is not given.

@@ -82,7 +82,7 @@ def new(
         folder: for the files; it is created if it does not exist.
         tool: a URDF of the tool; None for a polisher of 100 mm, whose URDF is written as well.
         tip_link: of the tool.
-        unit: ``m`` or ``mm``, of the mesh; without it the likely one.
+        unit: ``m``, ``mm``, ``cm`` or ``in``, of the mesh; without it the likely one.
         time_limit: seconds, None for no limit.
         progress: told what is being done.
 
@@ -222,12 +222,14 @@ def part_keys_of(mesh: Path, folder: Path, looked: Inspection) -> dict[str, str]
     Raises:
         InputError: the mesh cannot be used, not even repaired.
     """
+    from cellcolor.frontend.parts.mesh_file import UNITS
+
     if looked.refusal is not None:
         raise InputError(str(mesh), None, looked.refusal)
     return {
         "name": json.dumps(mesh.stem),
         "part": json.dumps(_relative(mesh, folder)),
-        "meters_per_unit": "0.001" if looked.unit == "mm" else "1.0",
+        "meters_per_unit": str(UNITS[looked.unit]),
         "repair": "true" if looked.repairs else "false",
     }
 

@@ -85,7 +85,7 @@ setup = "setup.toml"
 [object]
 kind = "mesh"
 file = $part
-meters_per_unit = $meters_per_unit  # 0.001 for a file in millimeters
+meters_per_unit = $meters_per_unit              # 0.001 for a file in millimeters
 max_edge_m = 0.01                   # longer edges are halved: the tool's contact region
 repair = $repair
 

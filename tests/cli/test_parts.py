@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from dirty import DIRTY, obj
 
 import cellcolor
 from cellcolor.cli import main
+from cellcolor.door.starting import part_keys_of
 from cellcolor.frontend.parts.mesh_file import load_mesh
 
 
@@ -47,6 +49,11 @@ def test_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert b"sharp edges" in (tmp_path / "x.html").read_bytes()
     assert main(["inspect", str(file), "--unit", "m", "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["high_m"] == pytest.approx([100, 50, 30])
+    assert main(["inspect", str(file), "--unit", "in", "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["high_m"] == pytest.approx([2.54, 1.27, 0.762])
+    for unit, meters in (("cm", "0.01"), ("in", "0.0254"), ("mm", "0.001"), ("m", "1.0")):
+        looked = replace(cellcolor.inspect(file, unit=unit), refusal=None)
+        assert part_keys_of(file, tmp_path, looked)["meters_per_unit"] == meters
 
 
 def test_a_repaired_mesh_is_one_that_scenes_take(
@@ -117,5 +124,5 @@ def test_values_in_python() -> None:
     with pytest.raises(cellcolor.InputError, match="could be meters as well") as caught:
         cellcolor.repair((vertices * 40, faces))
     assert caught.value.field == "unit"
-    with pytest.raises(cellcolor.InputError, match="must be one of m, mm, is 'inch'"):
+    with pytest.raises(cellcolor.InputError, match="must be one of m, mm, cm, in, is 'inch'"):
         cellcolor.inspect((vertices, faces), unit="inch")

@@ -379,7 +379,7 @@ class Inspection:
 
     Attributes:
         name: of its file, or what it is.
-        unit: of its coordinates, ``m`` or ``mm``.
+        unit: of its coordinates: ``m``, ``mm``, ``cm`` or ``in``.
         unit_reason: why; for a given unit, that it was given.
         facts: what it has and what is wrong with it.
         repairs: what a repair would change, without filling holes or remeshing.
@@ -510,7 +510,7 @@ def inspect_mesh(
         name: of the file, or what it is.
         vertices: (n, 3) in its unit.
         faces: (m, 3).
-        unit: ``m`` or ``mm``; None takes the likely one, meters where that is open.
+        unit: ``m``, ``mm``, ``cm`` or ``in``; None takes the likely one, meters where that is open.
         deadline: when to give up.
         tell: told what is being looked at.
 

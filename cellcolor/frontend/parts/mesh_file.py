@@ -198,7 +198,8 @@ def _index(word: str, known: int) -> int:
     return index
 
 
-UNITS = {"m": 1.0, "mm": 0.001}
+UNITS = {"m": 1.0, "mm": 0.001, "cm": 0.01, "in": 0.0254}
+"""In meters."""
 _METERS, _MILLIMETERS = 3.0, 10.0  # greatest extent; up to it meters, from it on millimeters
 
 
