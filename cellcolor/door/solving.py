@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
 from cellcolor.door.leaving_out import Wanted, rest_of
@@ -32,7 +33,7 @@ if TYPE_CHECKING:
     from cellcolor.frontend import BuildResult, Scene
     from cellcolor.questions.refinement import Refinement
 
-_RAW_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
+_BESIDE_SECONDS = 10.0  # there are many small cells, and the proof may take for ever
 
 
 def build(
@@ -155,7 +156,7 @@ def solve(
         left_out = (*left_out, refinement.verdict)
     else:
         solution = checked.solve(instance, options, solver, progress)
-    solution = _with_raw_minimum(solution, subject, options)
+    solution = _with_minimum_modulo(_with_raw_minimum(solution, subject, options), subject, options)
     notes = (*_tolerance_in_words(subject), *left_out)
     solution = replace(solution, notes=(*notes, *solution.notes))
     return Result(solution, subject, share, refinement)
@@ -230,14 +231,37 @@ def _with_raw_minimum(solution: Solution, subject: Subject, options: Options) ->
         return solution
     areas = raw.vertex_areas
     slivers = areas[built.slivers].sum() / areas.sum()
-    deadline = Deadline(min(options.deadline.moment, Deadline.after(_RAW_SECONDS).moment))
-    asked = replace(options, deadline=deadline, start=None, fewest_cuts=False)
-    try:
-        graph = decomposition_of(raw, deadline=deadline).instance
-        found = str(checked.solve(graph, asked, DEFAULT))
-    except OutOfTime:
-        found = "no division was found in time"
-    except InputError as error:
-        found = f"it cannot be solved, {error}"
+    found = _solved_beside(raw, options)
     note = f"{slivers:.1%} of the area was given up as slivers; with nothing given up: {found}"
     return replace(solution, notes=(*solution.notes, note))
+
+
+def _with_minimum_modulo(solution: Solution, subject: Subject, options: Options) -> Solution:
+    """The solution with a note on the minimum without joint limits, where a color winds around.
+
+    Such a color is cut in a few places; wherever it is cut, that minimum is a lower bound.
+    """
+    modulo = None if subject.built is None else subject.built.modulo_surface
+    if modulo is None:
+        return solution
+    found = _solved_beside(modulo, options)
+    least = found.surface_lower_bound if isinstance(found, Solution) else 0
+    note = "Colors that wind around are cut where the joint limits are; "
+    if least == solution.segments:
+        note += "wherever they are cut, as many segments are needed."
+    else:
+        note += f"wherever they are cut, at least {least} are needed."
+    return replace(solution, notes=(*solution.notes, note))
+
+
+def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str:
+    """The minimum of another surface, in at most ten seconds; or why there is none."""
+    deadline = Deadline(min(options.deadline.moment, Deadline.after(_BESIDE_SECONDS).moment))
+    asked = replace(options, deadline=deadline, start=None, fewest_cuts=False)
+    try:
+        graph = decomposition_of(surface, deadline=deadline).instance
+        return checked.solve(graph, asked, DEFAULT)
+    except OutOfTime:
+        return "no division was found in time"
+    except InputError as error:
+        return f"it cannot be solved, {error}"

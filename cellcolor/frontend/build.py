@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import CandidateTable
-from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.data.value import same_members
+from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.stand_in_report import report_on
@@ -21,11 +22,12 @@ from cellcolor.frontend.parts.rounding import longest_beside_sharp
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring, find_cracks
+from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
 from cellcolor.frontend.report import BuildReport, make_report, survey
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Stages, with_finer_borders
+from cellcolor.frontend.stages import Links, Stages, with_finer_borders
 from cellcolor.frontend.tables import in_file
 from cellcolor.version import __version__
 
@@ -47,6 +49,7 @@ class BuildResult:
         report: a summary in numbers for people.
         stages: the result of each stage of the build.
         prepared: the scene in place, with the surface that was labelled.
+        limits: the colors of the surface, each of which keeps the joint limits by itself.
         left_alone: (n,) the vertices that are not to be covered on purpose, see :meth:`without`;
             None for none.
     """
@@ -55,6 +58,7 @@ class BuildResult:
     report: BuildReport
     stages: Stages
     prepared: PreparedScene
+    limits: LimitColors
     left_alone: Mask | None = None
 
     @property
@@ -91,12 +95,24 @@ class BuildResult:
         return self.stages.candidates.reason_names
 
     @property
+    def color_branch(self) -> tuple[int, ...]:
+        """The branch of each color of the surface."""
+        branch = self.stages.cleaned.coloring.branch
+        return tuple(branch[color] for color in self.limits.color)
+
+    @property
     def node_color(self) -> NDArray[np.int64]:
         """(n, branches) the color of each valid candidate, -1 for the others.
 
-        Candidates that a sliver policy removed also have -1.
+        Candidates that a sliver policy removed also have -1. Where a branch has several colors,
+        with other full circles, it is the first of them.
         """
-        return self.stages.cleaned.coloring.node_color
+        modulo = self.stages.cleaned.coloring.node_color
+        node_color = np.full(modulo.shape, -1, dtype=np.int64)
+        for color, branch in reversed(list(enumerate(self.color_branch))):
+            here = self.limits.members[color] & (modulo[:, branch] == self.limits.color[color])
+            node_color[here, branch] = color
+        return node_color
 
     @property
     def candidates(self) -> CandidateTable:
@@ -122,15 +138,34 @@ class BuildResult:
         """The surface with its slivers, where the sliver policy has given some up; else None."""
         if not self.slivers.any():
             return None
-        stages = self.stages
+        stages, links, coloring = self.stages, self.stages.links, self.stages.coloring
+        cracks = find_cracks(links.edges, links.linked, coloring)
+        limits = _limit_colors(self.robot, stages, coloring, cracks, links)
         raw = replace(
             self.surface,
-            colors=stages.coloring.names,
-            vertex_colors=_vertex_colors(stages.coloring),
-            cracks=find_cracks(stages.links.edges, stages.links.linked, stages.coloring),
+            colors=limits.names,
+            vertex_colors=_vertex_colors(limits),
+            cracks=limits.cracks,
             given_up=(),
         )
         return raw if self.left_alone is None else raw.without_vertices(self.left_alone)
+
+    @property
+    def modulo_surface(self) -> LabelledSurface | None:
+        """The surface with colors modulo full circles, where a color winds around; else None.
+
+        Whatever covers the surface covers this one: its minimum is a bound wherever the colors that
+        wind are cut.
+        """
+        if not self.limits.winding:
+            return None
+        coloring, cracks = self.stages.cleaned.coloring, self.stages.cleaned.cracks
+        colors = [np.flatnonzero(row >= 0) for row in coloring.node_color]
+        rows = zip(coloring.node_color, colors, strict=True)
+        vertex_colors = tuple(tuple(sorted(row[own].tolist())) for row, own in rows)
+        return replace(
+            self.surface, colors=coloring.names, vertex_colors=vertex_colors, cracks=cracks
+        )
 
     def without(self, mask: Mask) -> BuildResult:
         """The same scene with some vertices (n,) that are not to be covered, on purpose."""
@@ -140,7 +175,8 @@ class BuildResult:
         node_color = np.where(mask[:, None], -1, cleaned.coloring.node_color)
         surface = self.surface.without_vertices(mask)
         coloring = replace(cleaned.coloring, node_color=node_color)
-        cleaned = replace(cleaned, coloring=coloring, cracks=surface.cracks)
+        cracks = [each for each in cleaned.cracks if not (mask[each.i] or mask[each.j])]
+        cleaned = replace(cleaned, coloring=coloring, cracks=tuple(cracks))
         stages = replace(self.stages, cleaned=cleaned)
         return replace(self, surface=surface, stages=stages, left_alone=mask)
 
@@ -209,31 +245,50 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
         OutOfTime: the deadline came first.
     """
     clock.begin("report")
-    surface = labelled(prepared, stages, clock.seconds)
+    surface, limits = labelled(prepared, stages, clock.seconds)
     clock.deadline.check()
-    report = _report(prepared, stages, clock.seconds)
+    report = _report(prepared, stages, limits, clock.seconds)
     clock.deadline.check()
-    return BuildResult(surface, report, stages, prepared)
+    return BuildResult(surface, report, stages, prepared, limits)
 
 
-def labelled(prepared: PreparedScene, stages: Stages, seconds: dict[str, float]) -> LabelledSurface:
-    """The labelled surface of a scene, with the seconds that each stage took."""
-    coloring = stages.cleaned.coloring
-    return LabelledSurface(
+def labelled(
+    prepared: PreparedScene, stages: Stages, seconds: dict[str, float]
+) -> tuple[LabelledSurface, LimitColors]:
+    """The labelled surface of a scene, with the seconds that each stage took, and its colors."""
+    cleaned = stages.cleaned
+    limits = _limit_colors(prepared.robot, stages, cleaned.coloring, cleaned.cracks, cleaned.links)
+    surface = LabelledSurface(
         name=prepared.scene.name,
-        colors=coloring.names,
+        colors=limits.names,
         vertices=prepared.surface.vertices,
         faces=prepared.surface.faces,
-        vertex_colors=_vertex_colors(coloring),
-        cracks=stages.cleaned.cracks,
+        vertex_colors=_vertex_colors(limits),
+        cracks=limits.cracks,
         meta=_meta(prepared.scene, stages, seconds),
-        given_up=_given_up(stages.candidates.valid, coloring),
+        given_up=_given_up(stages.candidates.valid, cleaned.coloring),
     )
+    return surface, limits
 
 
-def _report(prepared: PreparedScene, stages: Stages, seconds: dict[str, float]) -> BuildReport:
+def _limit_colors(
+    robot: Robot, stages: Stages, coloring: Coloring, cracks: tuple[Crack, ...], links: Links
+) -> LimitColors:
+    configurations = stages.candidates.configurations
+    return limit_colors(robot, coloring, cracks, configurations, links.edges, links.linked)
+
+
+def _report(
+    prepared: PreparedScene, stages: Stages, limits: LimitColors, seconds: dict[str, float]
+) -> BuildReport:
     surface = prepared.surface
     remarks = prepared.kinematics.remarks(surface.vertices, -surface.normals)
+    if limits.positions:
+        divided = {limits.color[color] for color in limits.positions}
+        text = f"{count(len(divided), 'color')} divided so that the joints keep their limits"
+        if limits.winding:
+            text += f"; of them {len(limits.winding)} cut where they wind around"
+        remarks += (text,)
     return make_report(
         survey(prepared.surface, prepared.kinematics.viewpoints),
         prepared.surface,
@@ -264,11 +319,9 @@ def _rounding_in_words(surface: Surface, task: Task) -> str:
     )
 
 
-def _vertex_colors(coloring: Coloring) -> tuple[tuple[int, ...], ...]:
-    ascending = np.sort(coloring.node_color, axis=1)
-    first = (ascending < 0).sum(axis=1).tolist()
-    rows = zip(ascending.tolist(), first, strict=True)
-    return tuple([tuple(row[start:]) for row, start in rows])
+def _vertex_colors(limits: LimitColors) -> tuple[tuple[int, ...], ...]:
+    members = np.array(limits.members, dtype=bool).T
+    return tuple(tuple(np.flatnonzero(own).tolist()) for own in members)
 
 
 def _given_up(valid: Mask, coloring: Coloring) -> tuple[int, ...]:

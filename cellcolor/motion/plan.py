@@ -94,7 +94,7 @@ def plan_motion(
     surface, segment_of = painted.surface, painted.segment_of
     color_of = _colors(painted)
     check_spacing(surface, segment_of, motion.spacing_m)
-    branch_of = built.stages.cleaned.coloring.branch
+    branch_of = built.color_branch
     with clock.timed("corners of small triangles"):
         small = SmallTriangles.of(surface.mesh, normals, segment_of)
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)

@@ -96,7 +96,7 @@ def paint_scene(
             finer = Surface(drawn.surface.vertices, drawn.surface.faces, normals)
             stages = run_stages(replace(prepared, surface=finer), clock)
         clock.begin("moving borders")
-        branch = np.array(built.stages.cleaned.coloring.branch)
+        branch = np.array(built.color_branch)
         cost = color_costs(prepared.robot, stages.candidates)[:, branch]
         painted = move_borders(drawn, tool_radius_m, cost, deadline)
         refused = () if whole else _refused(painted, stages, branch)

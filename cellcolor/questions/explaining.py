@@ -137,7 +137,7 @@ class _Asked:
         note: str = "",
     ) -> RelaxedMinimum:
         names, keys = _in_words(what)
-        surface = labelled(prepared, stages, {})
+        surface, _ = labelled(prepared, stages, {})
         deadline = self._options.deadline
         instance = decomposition_of(surface, deadline=deadline).instance
         areas = surface.vertex_areas

@@ -233,7 +233,7 @@ def stands_in(prepared: PreparedScene) -> str | None:
 
 def _minimum(prepared: PreparedScene, pose: Pose, options: Options) -> PlacedMinimum:
     clock = StageClock(options.deadline, None)
-    surface = labelled(*with_finer_borders(prepared, clock), {})
+    surface, _ = labelled(*with_finer_borders(prepared, clock), {})
     instance = decomposition_of(surface, deadline=options.deadline).instance
     areas = surface.vertex_areas
     share = float(areas[[bool(own) for own in surface.vertex_colors]].sum() / areas.sum())

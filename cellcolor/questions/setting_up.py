@@ -113,7 +113,7 @@ def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledS
     within = stands_in(there)
     if within is not None:
         raise InputError(None, "placement", f"the part stands in {within}")
-    surface = labelled(there, run_stages(there, StageClock(deadline, None)), {})
+    surface, _ = labelled(there, run_stages(there, StageClock(deadline, None)), {})
     if not any(surface.vertex_colors):
         raise InputError(None, None, "nothing is reached")
     decomposition_of(surface, deadline=deadline)  # refuses cells that are not planar

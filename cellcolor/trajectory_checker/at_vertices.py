@@ -141,6 +141,11 @@ def at_vertices(
     turned = _turned(built, vertex, branch, joints, axes, deadline)
     reached = (off <= OFF_SURFACE) & (tilt <= TILT) & (apart <= AT_VERTEX) & (turned <= TURN)
     color = np.where(reached, built.node_color[vertex, branch], -1)
+    for divided, positions in built.limits.positions.items():
+        # Of the colors of one branch it is the one whose joints are turned as those asked about.
+        way = np.abs(joints - positions[vertex])[:, compared].max(axis=1)
+        same = (color >= 0) & (branch == built.color_branch[divided]) & (way <= np.pi)
+        color[same] = divided
     return AtVertices(built, vertex, color, off, tilt, turned, branch, apart)
 
 

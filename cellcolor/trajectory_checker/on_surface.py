@@ -198,10 +198,11 @@ def judge_cracks(
 
 def _torn(built: BuildResult) -> Index:
     """The cracks (t, 3), sorted: both vertices, the smaller first, and the branch."""
-    branch = built.stages.cleaned.coloring.branch
+    cleaned = built.stages.cleaned  # cracks modulo full circles: joint limits are judged apart
+    branch = cleaned.coloring.branch
     torn = {
         (min(crack.i, crack.j), max(crack.i, crack.j), branch[color])
-        for crack in built.surface.cracks
+        for crack in cleaned.cracks
         for color in crack.colors
     }
     return np.array(sorted(torn), dtype=np.int64).reshape(-1, 3)
