@@ -34,6 +34,8 @@ from cellcolor.version import __version__
 if TYPE_CHECKING:
     import cellcolor
 
+Cracks = tuple[Crack, ...]
+
 _INJECTIVE = (
     "solutions have no names and are distinguished by continuity; a color with two configurations "
     "on one vertex: none found on this part"
@@ -140,7 +142,7 @@ class BuildResult:
             return None
         stages, links, coloring = self.stages, self.stages.links, self.stages.coloring
         cracks = find_cracks(links.edges, links.linked, coloring)
-        limits = _limit_colors(self.robot, stages, coloring, cracks, links)
+        limits = _limit_colors(self.prepared, stages, coloring, cracks, links)
         raw = replace(
             self.surface,
             colors=limits.names,
@@ -257,7 +259,7 @@ def labelled(
 ) -> tuple[LabelledSurface, LimitColors]:
     """The labelled surface of a scene, with the seconds that each stage took, and its colors."""
     cleaned = stages.cleaned
-    limits = _limit_colors(prepared.robot, stages, cleaned.coloring, cleaned.cracks, cleaned.links)
+    limits = _limit_colors(prepared, stages, cleaned.coloring, cleaned.cracks, cleaned.links)
     surface = LabelledSurface(
         name=prepared.scene.name,
         colors=limits.names,
@@ -272,8 +274,12 @@ def labelled(
 
 
 def _limit_colors(
-    robot: Robot, stages: Stages, coloring: Coloring, cracks: tuple[Crack, ...], links: Links
+    prepared: PreparedScene, stages: Stages, coloring: Coloring, cracks: Cracks, links: Links
 ) -> LimitColors:
+    robot = prepared.robot
+    if not prepared.setup.constraints.collision:  # joint limits are not asked about either
+        nowhere = np.full(robot.joints, np.inf)
+        robot = replace(robot, lower=-nowhere, upper=nowhere)
     configurations = stages.candidates.configurations
     return limit_colors(robot, coloring, cracks, configurations, links.edges, links.linked)
 
@@ -283,12 +289,6 @@ def _report(
 ) -> BuildReport:
     surface = prepared.surface
     remarks = prepared.kinematics.remarks(surface.vertices, -surface.normals)
-    if limits.positions:
-        divided = {limits.color[color] for color in limits.positions}
-        text = f"{count(len(divided), 'color')} divided so that the joints keep their limits"
-        if limits.winding:
-            text += f"; of them {len(limits.winding)} cut where they wind around"
-        remarks += (text,)
     return make_report(
         survey(prepared.surface, prepared.kinematics.viewpoints),
         prepared.surface,
@@ -302,7 +302,16 @@ def _report(
         stages.cleaned.report,
         None if stages.named else _INJECTIVE,
         _rounding_in_words(surface, prepared.setup.task) if surface.faceted else None,
+        _limits_in_words(limits) if limits.positions else None,
     )
+
+
+def _limits_in_words(limits: LimitColors) -> str:
+    divided = {limits.color[color] for color in limits.positions}
+    text = f"{count(len(divided), 'color')} divided, so that each keeps the joint limits"
+    if limits.winding:
+        text += f"; {len(limits.winding)} of them cut, as they wind around"
+    return text
 
 
 def _rounding_in_words(surface: Surface, task: Task) -> str:

@@ -62,6 +62,7 @@ class BuildReport:
         slivers: what the sliver policy did, None without one.
         injectivity: of an arm whose solutions have no names, what was found; None for others.
         rounding: over what the normals of a mesh are rounded; None for a shape that has its own.
+        limits: which colors are divided by joint limits; None if none is.
         seconds: wall time of each stage.
     """
 
@@ -80,6 +81,7 @@ class BuildReport:
     slivers: SliverReport | None = None
     injectivity: str | None = None
     rounding: str | None = None
+    limits: str | None = None
 
     @property
     def warnings(self) -> tuple[str, ...]:
@@ -126,6 +128,8 @@ class BuildReport:
         lines += [f"cracks  {self.cracks}"]
         if self.injectivity is not None:
             lines += [f"injectivity  {self.injectivity}"]
+        if self.limits is not None:
+            lines += [f"limits  {self.limits}"]
         if self.slivers is not None:
             lines += [self._slivers(self.slivers)]
         if self.nothing_covered is not None:
@@ -160,6 +164,7 @@ def make_report(
     slivers: SliverReport | None = None,
     injectivity: str | None = None,
     rounding: str | None = None,
+    limits: str | None = None,
 ) -> BuildReport:
     """Count what a build found."""
     areas = surface.vertex_areas()
@@ -192,6 +197,7 @@ def make_report(
         slivers=slivers,
         injectivity=injectivity,
         rounding=rounding,
+        limits=limits,
     )
 
 
