@@ -6,9 +6,11 @@ the nodes here. The links of a color lead from one node to another, and the comp
 the colors that keep the limits. Usually one of them is the whole color. A segment of a color that
 keeps the limits needs no lift-off for them.
 
-A component may come back to a vertex turned by a full circle, as around the robot's base. Then a
-part of it, a window of one full circle, gives each vertex one position. Where neighbors disagree
-there is a crack. The lowest, the middle and the highest window become colors.
+A component may come back to a vertex turned by a full circle, as around the robot's base. If the
+joint has two full circles, the color stays whole: wherever a segment begins to count, once around
+fits in. Otherwise a part of the component, a window of one full circle, gives each vertex one
+position. Where neighbors disagree there is a crack. The lowest, the middle and the highest window
+become colors.
 """
 
 from __future__ import annotations
@@ -29,6 +31,7 @@ from cellcolor.mesh.triangle_mesh import grouped
 _CIRCLE = 2 * np.pi
 _ROUNDING = 1e-9  # rad; an angle on its limit is inside
 _MARGIN = 0.02  # rad; between two vertices a joint may go a little beyond both
+_ENOUGH = 2 * _CIRCLE - _ROUNDING  # rad; positions over one circle fit in, wherever they begin
 _MOST = 64  # combinations of the joints' parts of one color
 
 
@@ -213,8 +216,11 @@ def _choices(
         if single:
             found.append(_positions(nodes, turned))
             continue
-        winds = True
         low, high = turned[nodes].min(), turned[nodes].max()
+        everywhere = bool(np.any(nodes, axis=1)[mask].all())
+        if upper - lower >= _ENOUGH and everywhere:
+            return [np.where(mask, angles, np.nan)], False
+        winds = True
         for middle in (low + np.pi, (low + high) / 2, high - np.pi):
             off = np.where(nodes, np.abs(turned - middle), np.inf)
             nearest = np.zeros_like(nodes)

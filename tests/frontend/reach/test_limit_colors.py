@@ -151,7 +151,7 @@ def test_every_walk_of_a_color_stays_in_the_limits(data: st.DataObject) -> None:
     chosen = data.draw(st.lists(st.sampled_from(pairs), min_size=1, unique=True))
     edges = np.array(sorted(chosen))
     angles = np.array(data.draw(st.lists(st.floats(-pi, 3.14), min_size=count, max_size=count)))
-    lower, upper = data.draw(st.floats(-6.5, -3.2)), data.draw(st.floats(3.2, 6.5))
+    lower, upper = data.draw(st.floats(-6.2, -3.2)), data.draw(st.floats(3.2, 6.2))
     found = divided(angles, edges, lower, upper)
     torn = {(c.i, c.j, color) for c in found.cracks for color in c.colors}
     assert np.any(found.members, axis=0).all()  # each angle has a position in these limits
@@ -162,3 +162,9 @@ def test_every_walk_of_a_color_stays_in_the_limits(data: st.DataObject) -> None:
             if own[i] and own[j]:
                 goes_on = abs(positions[i, 0] - positions[j, 0]) <= pi
                 assert goes_on == ((i, j, color) not in torn)
+
+
+def test_two_full_circles_are_enough_for_a_ring() -> None:
+    angles = np.radians(np.arange(0.0, 360.0, 10.0))
+    found = divided(angles, ring(36), -CIRCLE, CIRCLE)
+    assert (found.names, found.winding, found.cracks) == (("branch",), (), ())
