@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from cellcolor.data.instance import Instance
     from cellcolor.data.library_index import LibraryEntry
     from cellcolor.data.solution import Solution
-    from cellcolor.solvers.answers import OutsideAnswer
+    from cellcolor.solvers.portable import OutsideAnswer
 
 _FORMATS = ("opb", "wcnf", "mps", "dzn", "lp")
 
@@ -85,7 +85,7 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
     from cellcolor.cli.inputs import read_instance
     from cellcolor.data.solution import Solution
     from cellcolor.files.documents import read_text
-    from cellcolor.solvers.answers import read_answer
+    from cellcolor.solvers.portable import read_answer
 
     inputs, form = [source, given], kind_of_format(Solution.FORMAT)
     check_output(output, form, inputs)

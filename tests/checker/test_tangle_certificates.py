@@ -36,7 +36,7 @@ from cellcolor.decomposition import decompose, decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.lab.families import LARGE, MEDIUM
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.bounds.merged_surface import merge_cells
 from cellcolor.solvers.bounds.tangles import Tangles, Touching
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options

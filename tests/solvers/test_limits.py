@@ -20,7 +20,7 @@ from cellcolor.lab.families import blobs, hub, planar_graph
 from cellcolor.lab.families.hubs import hub_with_loops
 from cellcolor.solvers.bounds.conflicts import conflicts
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
-from cellcolor.solvers.bounds.domination import drop_dominated, left_out
+from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat import cuts, model_search, windows
 from cellcolor.solvers.cpsat.model import full as model_module

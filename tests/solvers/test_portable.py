@@ -21,12 +21,11 @@ from cellcolor.data.solution import Solution
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.files.paths import shipped_folder
 from cellcolor.lab.families import hub, hub_grid, hub_minimum, hub_with_loops, planar_graph
-from cellcolor.solvers.answers import read_answer
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from cellcolor.solvers.linear.coloring import Coloring, estimated_terms
 from cellcolor.solvers.linear.model import Model
-from cellcolor.solvers.portable import PORTABLE
+from cellcolor.solvers.portable import PORTABLE, read_answer
 from cellcolor.solvers.registry import REFERENCE
 from examples import examples
 

@@ -15,8 +15,7 @@ from itertools import combinations, product
 
 from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import Region
-from cellcolor.solvers.bounds.merged_cells import merge_cells
-from cellcolor.solvers.bounds.polygons import PolygonSurface, spanning_tree
+from cellcolor.solvers.bounds.merged_surface import PolygonSurface, merge_cells, spanning_tree
 from cellcolor.union_find import UnionFind
 
 MergedCell = frozenset[int]

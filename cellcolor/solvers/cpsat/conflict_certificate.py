@@ -13,8 +13,8 @@ from cellcolor.data.bound_kinds import (
     CertifiedTangle,
 )
 from cellcolor.solvers.bounds.cover import color_regions
-from cellcolor.solvers.bounds.domination import LeftOut
-from cellcolor.solvers.cpsat.search import PartSearch
+from cellcolor.solvers.bounds.reductions import LeftOut
+from cellcolor.solvers.cpsat.part_search import PartSearch
 
 MOST_CONFLICTS = 2_000
 """With more of them a certificate would be large, and searching it slow."""

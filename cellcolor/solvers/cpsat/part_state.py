@@ -7,14 +7,14 @@ and 5).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import Region, color_regions, greedy_strangers
-from cellcolor.solvers.bounds.crossings import enough_crossings
 from cellcolor.solvers.bounds.hubs import HubBound
+from cellcolor.solvers.bounds.reductions import enough_crossings
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, widened
 from cellcolor.solvers.cpsat.model.full import model_size
 from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
@@ -134,20 +134,18 @@ class PartState:
             self.segments, self.best = segments, (graph, painting)
             self._report()
 
+    def keep_all(self, graph: DartGraph, better: Iterable[Painting]) -> None:
+        """Better and better canonical paintings, until the best is proved or there is no time."""
+        for painting in better:
+            self.keep(graph, painting)
+            if self.done:
+                return
+
     def recolor(
         self, graph: DartGraph, painting: Painting, seed: int, deadline: Deadline, moves: int
     ) -> None:
-        """What local search makes of a canonical painting, kept if it is the best so far.
-
-        Args:
-            graph: its dart graph.
-            painting: what the search begins with.
-            seed: of the choice of moves.
-            deadline: when to stop.
-            moves: in vain for each segment, before nothing better is expected.
-        """
-        for better in recolor(graph, painting, seed, self.bound, deadline, moves):
-            self.keep(graph, better)
+        """What local search makes of a canonical painting, kept if it is the best so far."""
+        self.keep_all(graph, recolor(graph, painting, seed, self.bound, deadline, moves))
 
     def raise_to(self, bound: int, *, for_surface: bool) -> None:
         """A bound that is proved, in the search space alone or for any division of the surface."""

@@ -15,7 +15,7 @@ from cellcolor.data.solution import Division, Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
-from cellcolor.solvers.bounds.domination import LeftOut, drop_dominated, left_out
+from cellcolor.solvers.bounds.reductions import LeftOut, drop_dominated, left_out
 from cellcolor.solvers.cpsat.conflict_certificate import conflict_certificate
 from cellcolor.solvers.cpsat.cuts import FewestCuts
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
@@ -27,9 +27,9 @@ from cellcolor.solvers.cpsat.model.painting import (
     painting_of,
 )
 from cellcolor.solvers.cpsat.model_runs import Runner
+from cellcolor.solvers.cpsat.part_search import PartSearch
 from cellcolor.solvers.cpsat.parts import seam_places, split
 from cellcolor.solvers.cpsat.schemes.enumeration import optimal_schemes
-from cellcolor.solvers.cpsat.search import PartSearch
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
 RESERVES = 4
@@ -171,22 +171,26 @@ class _Search:
         """What is done for every part that is not proved, before any goes on to the next."""
         if not self._plans:
             return [PartSearch.cover, lambda part, deadline: part.models.solve(deadline)]
+
+        def within(share: float, stage: _Stage) -> _Stage:
+            return lambda part, deadline: stage(part, deadline.share(share))
+
         return [
             PartSearch.cover,
-            lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=True),
-            lambda part, deadline: part.improving.begin_large(deadline.share(1 / 4)),
-            lambda part, deadline: part.planning.route(
-                deadline.share(1 / 4 if part.large else 1 / 2)
-            ),
-            lambda part, deadline: part.count_links(deadline.share(1 / 4), before_plans=False),
-            lambda part, deadline: part.improving.drop(deadline.share(1 / 4)),
-            lambda part, deadline: part.improving.recolor_large(deadline.share(1 / 2)),
-            lambda part, deadline: part.planning.go_on(deadline.share(1 / 2)),
-            lambda part, deadline: part.planning.avoid(deadline.share(1 / 3)),
-            lambda part, deadline: part.improving.narrow_gap(deadline.share(3 / 4)),
-            lambda part, deadline: part.models.solve_small(deadline),
-            lambda part, deadline: part.models.solve(deadline),
-            lambda part, deadline: part.improving.improve_on(deadline),
+            within(1 / 4, PartSearch.count_many_links),
+            within(1 / 2, PartSearch.solve_exactly),
+            within(1 / 4, PartSearch.begin_large),
+            lambda part, its: part.planning.route(its.share(1 / 4 if part.large else 1 / 2)),
+            within(1 / 4, PartSearch.count_few_links),
+            PartSearch.believe_exact,
+            within(1 / 4, PartSearch.drop),
+            within(1 / 2, PartSearch.recolor_large),
+            within(1 / 2, lambda part, its: part.planning.go_on(its)),
+            within(1 / 3, lambda part, its: part.planning.avoid(its)),
+            within(3 / 4, PartSearch.narrow_gap),
+            lambda part, its: part.models.solve_small(its),
+            lambda part, its: part.models.solve(its),
+            PartSearch.improve_on,
         ]
 
     def _run_stage(self, stage: _Stage, parts: list[PartSearch]) -> None:

@@ -28,7 +28,7 @@ from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import CellcolorError, SolverMissing
 from cellcolor.processes import Child
 from cellcolor.solvers.bounds.cover import greedy_strangers
-from cellcolor.solvers.bounds.links import most_links
+from cellcolor.solvers.bounds.hubs import most_links
 from cellcolor.solvers.encodings.problem import Problem
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.joined_chains import division_of_chains

@@ -16,7 +16,7 @@ from collections.abc import Iterator, Sequence
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds.links import most_links
+from cellcolor.solvers.bounds.hubs import most_links
 from cellcolor.solvers.encodings.problem import Pair, Problem
 from cellcolor.solvers.encodings.solving import Encoding, EncodingSolver
 

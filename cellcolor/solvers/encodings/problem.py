@@ -14,7 +14,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError, TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions
-from cellcolor.solvers.bounds.domination import drop_dominated, left_out
+from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 
 Pair = tuple[int, int]
 """Two darts of one cell, the one that comes first in its list first."""

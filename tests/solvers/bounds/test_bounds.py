@@ -16,9 +16,8 @@ from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, planar_graph
 from cellcolor.solvers.bounds.cover import color_regions, hard_cells, set_cover
-from cellcolor.solvers.bounds.crossings import enough_crossings
-from cellcolor.solvers.bounds.domination import drop_dominated, left_out
-from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.bounds.merged_surface import merge_cells
+from cellcolor.solvers.bounds.reductions import drop_dominated, enough_crossings, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from examples import examples

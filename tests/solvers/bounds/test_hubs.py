@@ -16,8 +16,7 @@ from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.lab.families import hub, hub_grid, hub_with_loops, planar_graph
 from cellcolor.lab.families.hubs import hub_minimum
-from cellcolor.solvers.bounds.hubs import hub_bound
-from cellcolor.solvers.bounds.links import best_grouping
+from cellcolor.solvers.bounds.hubs import best_grouping, hub_bound
 from examples import examples
 
 SEEDS = st.integers(0, 10**6)

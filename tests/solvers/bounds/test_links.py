@@ -13,9 +13,8 @@ from hypothesis import strategies as st
 from cellcolor.checker import hubs_with_loops
 from cellcolor.deadline import NEVER
 from cellcolor.lab.families import hub_with_loops
-from cellcolor.solvers.bounds.hubs import joinable_colors
-from cellcolor.solvers.bounds.links import Grouping, best_grouping, links_bound
-from cellcolor.solvers.cpsat.hubs.several_loops import many_links
+from cellcolor.solvers.bounds.hubs import Grouping, best_grouping, joinable_colors, links_bound
+from cellcolor.solvers.cpsat.hub_division import many_links
 from examples import examples
 
 COLORS = st.frozensets(st.integers(0, 3), min_size=1, max_size=3)

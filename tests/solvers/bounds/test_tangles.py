@@ -16,7 +16,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.solvers.bounds.cover import color_regions, set_cover
-from cellcolor.solvers.bounds.merged_cells import merge_cells
+from cellcolor.solvers.bounds.merged_surface import merge_cells
 from cellcolor.solvers.bounds.tangles import TangledSegment, Tangles, Touching
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options

@@ -9,11 +9,11 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families.registry import MEDIUM
-from cellcolor.solvers.bounds.domination import drop_dominated, left_out
+from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.cpsat.model.painting import division_of
 from cellcolor.solvers.cpsat.model_runs import Runner
+from cellcolor.solvers.cpsat.part_search import PartSearch
 from cellcolor.solvers.cpsat.parts import split
-from cellcolor.solvers.cpsat.search import PartSearch
 from cellcolor.solvers.interface import Options
 
 
@@ -26,7 +26,7 @@ def test_what_segments_avoid_proves_the_last_one() -> None:
     search = PartSearch(part, options, Runner(options), lambda: None)
     search.cover(NEVER)
     search.planning.route(NEVER)
-    search.improving.drop(NEVER)
+    search.drop(NEVER)
     assert (search.segments, search.surface_bound) == (7, 6)
     search.planning.avoid(NEVER)
     assert search.surface_bound == 7
@@ -43,7 +43,7 @@ def test_a_large_part_begins_with_local_search() -> None:
     search = PartSearch(part, options, Runner(options), lambda: None)
     assert search.large
     search.cover(NEVER)
-    search.improving.begin_large(NEVER)
+    search.begin_large(NEVER)
     assert search.bound <= search.segments < 17
     graph, painting = search.best
     report = check_division(part.instance, division_of(graph, painting), seams=graph.seams)
@@ -58,6 +58,6 @@ def test_a_small_part_is_left_to_other_routes() -> None:
     search = PartSearch(part, options, Runner(options), lambda: None)
     search.cover(NEVER)
     before = search.best
-    search.improving.begin_large(NEVER)
-    search.improving.recolor_large(NEVER)
+    search.begin_large(NEVER)
+    search.recolor_large(NEVER)
     assert search.best is before and not search.done

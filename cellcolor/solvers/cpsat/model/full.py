@@ -16,10 +16,16 @@ from ortools.sat.python import cp_model
 from cellcolor.data.solution import Seam
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.bounds.cover import Region
-from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, Group, fixed_roots
+from cellcolor.solvers.cpsat.model.constraints import (
+    DEFINING,
+    REDUNDANT,
+    Group,
+    Variables,
+    fixed_roots,
+    make_variables,
+)
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
-from cellcolor.solvers.cpsat.model.variables import Variables, make_variables
 
 MANY_DARTS = 300
 """In a cell with more darts than this, terms are not counted one by one. Any two of its darts are

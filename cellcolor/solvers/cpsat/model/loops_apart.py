@@ -18,11 +18,16 @@ from ortools.sat.python import cp_model
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.solvers.bounds.cover import Region
-from cellcolor.solvers.cpsat.model.constraints import DEFINING, REDUNDANT, first_petal
+from cellcolor.solvers.cpsat.model.constraints import (
+    DEFINING,
+    REDUNDANT,
+    Variables,
+    first_petal,
+    make_variables,
+)
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.full import fewest_subcells, read_painting
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
-from cellcolor.solvers.cpsat.model.variables import Variables, make_variables
 from cellcolor.union_find import UnionFind
 
 GROUPS = tuple(group for group in (*DEFINING, *REDUNDANT) if group is not first_petal)

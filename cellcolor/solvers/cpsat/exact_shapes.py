@@ -1,0 +1,438 @@
+"""Exact minima of parts whose shape allows a recursion (docs/bounds/exact.md, with the proofs).
+
+- **Forests**: no cycle of cells and live edges, one live loop a cell. A recursion over the tree
+  asks of each subtree how many segments it needs, and in which colors joining it saves one.
+- **Wheels**: one hub, and around it cells whose other edges lead to their neighbors there. What
+  such an edge joins the hub can join as well, so that a wheel is solved as the star within it.
+- **Hubs of one-colored neighbors**: every cell with several colors has only neighbors with one.
+  Hub after hub is added; all that is remembered is which of the neighbors that later hubs share
+  are connected (a frontier, or transfer matrix, method).
+
+All hand back a division with the minimum, by traceback. They hold where each live edge is crossed
+once at most: always in the search space ``paper``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from cellcolor.deadline import Deadline
+from cellcolor.solvers.bounds.hubs import MOST_ENTRIES, best_grouping, recursion_size
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
+from cellcolor.solvers.cpsat.model.painting import Block, Painting
+from cellcolor.solvers.cpsat.parts import ConnectedPart
+from cellcolor.union_find import UnionFind
+
+MOST_STATES = 20_000
+"""Of the frontier; with more of them the hubs are left to other methods."""
+
+MOST_OPTIONS = 2_000
+"""Ways to connect shared neighbors within a hub."""
+
+
+@dataclass(frozen=True, slots=True)
+class Exact:
+    """A minimum, with a division that has it.
+
+    Attributes:
+        segments: no division that crosses each live edge once at most has fewer.
+        areas: the color of each cell's areas, and the darts across which each is joined.
+    """
+
+    segments: int
+    areas: dict[int, list[tuple[int, list[int]]]]
+
+    def painting(self, graph: DartGraph) -> Painting:
+        """The division on a graph with a strand of each live edge."""
+        index = {dart.name: number for number, dart in enumerate(graph.darts)}
+        return [
+            [
+                Block(color, {index[dart, 1] for dart in darts})
+                for color, darts in self.areas.get(cell) or [(min(colors), [])]
+            ]
+            for cell, colors in enumerate(graph.colors)
+        ]
+
+
+def exact_minimum(part: ConnectedPart, deadline: Deadline) -> Exact | None:
+    """The minimum of a forest or of hubs with one-colored neighbors; None for other parts.
+
+    Raises:
+        OutOfTime: the deadline came first.
+    """
+    instance = part.instance
+    if instance.most_live_loops > 1:
+        return None
+    read = _Part(part, deadline)
+    if read.is_tree or read.drop_rim():
+        return _Tree(read).solve()
+    return _Hubs(read).solve()
+
+
+class _Part:
+    """A part with one live loop a cell at most.
+
+    Attributes:
+        loops: of each cell.
+        joinable: the colors in which each live dart can be joined.
+    """
+
+    def __init__(self, part: ConnectedPart, deadline: Deadline) -> None:
+        self.deadline = deadline
+        self.instance = part.instance
+        self.colors = [frozenset(cell.colors) for cell in part.instance.cells]
+        self.loops: list[Sequence[int]] = [
+            loops[0] if loops else () for loops in part.instance.live_loops
+        ]
+        self.joinable = {
+            dart: frozenset(part.instance.joinable(dart)) for loop in self.loops for dart in loop
+        }
+
+    @property
+    def is_tree(self) -> bool:
+        """Whether there are fewer edges than cells, since edges connect all of them."""
+        return len(self.joinable) < 2 * len(self.loops)
+
+    def drop_rim(self) -> bool:
+        """Leave out the rim of a wheel; False and nothing left out if this is none."""
+        hub = max(range(len(self.loops)), key=lambda cell: len(self.loops[cell]))
+        spokes, count = self.loops[hub], len(self.loops[hub])
+        place = {self.instance.across(dart): at for at, dart in enumerate(spokes)}
+        if len(place) < count or len(place) < len(self.loops) - 1 or hub in place:
+            return False
+        for cell, at in place.items():
+            rim = [dart for dart in self.loops[cell] if dart != -spokes[at]]
+            if len(rim) > 2:
+                return False
+            for dart in rim:
+                other = self.instance.across(dart)
+                apart = (place[other] - at) % count
+                own = self.joinable[spokes[at]] & self.joinable[spokes[place[other]]]
+                if apart not in (1, count - 1) or not self.joinable[dart] <= own:
+                    return False
+        for cell, at in place.items():
+            self.loops[cell] = (-spokes[at],)
+        return True
+
+
+class _Tree:
+    """A part whose cells and live edges make a tree."""
+
+    def __init__(self, part: _Part) -> None:
+        self.instance, self.loops, self.joinable = part.instance, part.loops, part.joinable
+        self.deadline = part.deadline
+
+    def solve(self) -> Exact | None:
+        """From the leaves to cell 0, and back."""
+        sizes = (recursion_size([self.joinable[d] for d in own]) for own in self.loops)
+        if max(sizes) > MOST_ENTRIES:
+            return None
+        order, up = [0], {0: 0}
+        for cell in order:
+            for dart in self.loops[cell]:
+                if dart != up[cell]:
+                    beyond = self.instance.across(dart)
+                    up[beyond] = -dart
+                    order.append(beyond)
+        # Of each dart that leads down: the fewest segments of what lies there, and the colors in
+        # which joining it to a segment that is counted elsewhere saves one of them.
+        fewest: dict[int, int] = {}
+        saving: dict[int, frozenset[int]] = {}
+        for cell in reversed(order):
+            self.deadline.check()
+            dart = up[cell]
+            darts = self._down(cell, dart)
+            below = sum(fewest[d] for d in darts)
+            sets = [saving[d] for d in darts if saving[d]]
+            least = below - best_grouping(sets).links if sets else below + 1
+            if cell == 0:
+                break
+            fewest[-dart] = least
+            saving[-dart] = frozenset(
+                color
+                for color in self.joinable[dart]
+                if below - best_grouping([frozenset((color,)), *sets]).links == least - 1
+            )
+        areas: dict[int, list[tuple[int, list[int]]]] = {}
+        joined: dict[int, int] = {}
+        for cell in order:
+            self.deadline.check()
+            darts = [d for d in self._down(cell, up[cell]) if saving[d]]
+            sets = [saving[d] for d in darts]
+            if cell in joined:
+                darts, sets = [up[cell], *darts], [frozenset((joined[cell],)), *sets]
+            areas[cell] = []
+            for group in best_grouping(sets).groups if sets else ():
+                own = [darts[place] for place in group.darts]
+                areas[cell].append((group.color, own))
+                joined |= {self.instance.across(d): group.color for d in own if d != up[cell]}
+        return Exact(least, areas)
+
+    def _down(self, cell: int, up: int) -> Sequence[int]:
+        """The darts of a cell in cyclic order from the one that leads up, without that."""
+        loop = self.loops[cell]
+        if not up:
+            return loop
+        at = loop.index(up)
+        return (*loop[at + 1 :], *loop[:at])
+
+
+_Groups = frozenset[frozenset[int]]
+"""Groups of two neighbors and more."""
+
+_Open = tuple[int, _Groups, frozenset[int]]
+"""The last dart of a group that is not closed, the groups within it, and its own petals."""
+
+_State = tuple[int, ...]
+"""A label for each petal on the frontier; connected ones have the same."""
+
+_Chosen = tuple[tuple[int, tuple[int, ...]], ...]
+"""Areas of a hub, each with its color and its darts."""
+
+
+class _Hubs:
+    """Hubs are the cells with several colors. Their neighbors, and what is joined among these
+    neighbors whatever happens, are the **petals**."""
+
+    def __init__(self, part: _Part) -> None:
+        self.instance, self.loops, self.joinable = part.instance, part.loops, part.joinable
+        self.colors, self.deadline = part.colors, part.deadline
+
+    def solve(self) -> Exact | None:
+        """Add hub after hub; a state says which petals on the frontier are connected."""
+        hubs = [cell for cell, colors in enumerate(self.colors) if len(colors) > 1]
+        single = [cell for cell, colors in enumerate(self.colors) if len(colors) == 1]
+        petals: UnionFind[int] = UnionFind(single)
+        for edge in self.instance.live_edges:
+            sides = self.instance.edge(edge).left, self.instance.edge(edge).right
+            many = sum(len(self.colors[side]) > 1 for side in sides)
+            if many == 2 or sides[0] == sides[1]:
+                return None
+            if not many:
+                petals.union(*sides)
+        self._petal = {
+            dart: petals[self.instance.across(dart)] for hub in hubs for dart in self.loops[hub]
+        }
+        users: dict[int, int] = {}
+        for hub in hubs:
+            for petal in {self._petal[dart] for dart in self.loops[hub]}:
+                users[petal] = users.get(petal, 0) + 1
+        frontier: list[int] = []
+        states: dict[_State, int] = {(): 0}
+        # Of each hub, for each state after it: the state before, and the hub's areas.
+        steps: list[dict[_State, tuple[_State, _Chosen]]] = []
+        for hub in (order := self._order(hubs)):
+            self.deadline.check()
+            own = [self._petal[dart] for dart in self.loops[hub]]
+            shared = {p for p in own if users[p] > 1 or p in frontier or own.count(p) > 1}
+            options = self._options(hub, shared)
+            if options is None or len(states) * len(options) > 100 * MOST_STATES:
+                return None
+            places = [*frontier, *(p for p in dict.fromkeys(own) if p in shared - set(frontier))]
+            for petal in set(own):
+                users[petal] -= 1
+            kept = [place for place, petal in enumerate(places) if users[petal]]
+            at = {petal: place for place, petal in enumerate(places)}
+            found: dict[_State, int] = {}
+            step: dict[_State, tuple[_State, _Chosen]] = {}
+            ways = [
+                (links, chosen, [[at[petal] for petal in group] for group in groups])
+                for groups, (links, chosen) in options.items()
+            ]
+            for number, (state, value) in enumerate(states.items()):
+                if number % 100 == 0:
+                    self.deadline.check()
+                labels = [*state, *range(len(places), 2 * len(places) - len(state))]
+                for links, chosen, groups in ways:
+                    after, joined = _united(labels, groups)
+                    key = _canonical([after[place] for place in kept])
+                    if value + links + joined > found.get(key, -1):
+                        found[key] = value + links + joined
+                        step[key] = state, chosen
+            frontier = [places[place] for place in kept]
+            states = _best_states(found)
+            if len(states) > MOST_STATES:
+                return None
+            steps.append(step)
+        areas: dict[int, list[tuple[int, list[int]]]] = {}
+        last: _State = ()
+        for hub, step in zip(reversed(order), reversed(steps), strict=True):
+            last, chosen = step[last]
+            areas[hub] = [(color, list(darts)) for color, darts in chosen]
+        self._join_petals(areas)
+        return Exact(len(petals.sets()) - states[()], areas)
+
+    def _order(self, hubs: Sequence[int]) -> list[int]:
+        """Breadth first from the hub that leaves the shortest frontiers, or as they come."""
+        of: dict[int, list[int]] = {}
+        for hub in hubs:
+            for dart in self.loops[hub]:
+                of.setdefault(self._petal[dart], []).append(hub)
+        orders = [list(hubs)]
+        for first in hubs[:20]:
+            order = dict.fromkeys([first])
+            for start in hubs:
+                order.setdefault(start)
+                waiting = list(order)
+                for hub in waiting:
+                    for dart in self.loops[hub]:
+                        for other in of[self._petal[dart]]:
+                            if other not in order:
+                                order[other] = None
+                                waiting.append(other)
+            orders.append(list(order))
+
+        def widest(order: Sequence[int]) -> int:
+            place = {hub: number for number, hub in enumerate(order)}
+            change = [0] * (len(order) + 1)
+            for own in of.values():
+                places = [place[hub] for hub in own]
+                change[min(places)] += 1
+                change[max(places)] -= 1
+            return max(sum(change[: number + 1]) for number in range(len(order)))
+
+        return min(orders, key=widest) if hubs else []
+
+    def _options(self, hub: int, shared: set[int]) -> dict[_Groups, tuple[int, _Chosen]] | None:
+        """The ways to connect shared petals within a hub, each with the most links besides.
+
+        A group's links are those to petals of its own, and between those if it has no others. None
+        if there are too many ways.
+        """
+        darts = self.loops[hub]
+        petals = [self._petal[dart] for dart in darts]
+        color = [min(self.joinable[dart]) for dart in darts]
+        count = len(darts)
+        # ways[first, end]: of the darts from the one to before the other.
+        ways: dict[tuple[int, int], dict[_Groups, tuple[int, _Chosen]]] = {}
+        for first in reversed(range(count + 1)):
+            for end in range(first, count + 1):
+                self.deadline.check()
+                if first == end:
+                    ways[first, end] = {frozenset(): (0, ())}
+                    continue
+                # Groups that begin with the first dart, by their last one and shared petals.
+                open_: dict[
+                    tuple[int, _Groups, frozenset[int]], tuple[int, _Chosen, tuple[int, ...]]
+                ]
+                open_ = {(first, frozenset(), _only(petals[first], shared)): (0, (), (first,))}
+                found: dict[_Groups, tuple[int, _Chosen]] = {}
+                for last in range(first, end):
+                    for (at, groups, own), (links, chosen, members) in list(open_.items()):
+                        if at != last:
+                            continue
+                        area = (color[first], tuple(darts[m] for m in members))
+                        whole = groups | {own} if len(own) > 1 else groups
+                        for further, (more, others) in ways[last + 1, end].items():
+                            both = whole | further
+                            total = links + more
+                            if total > found.get(both, (-1,))[0]:
+                                found[both] = total, (*chosen, area, *others)
+                        for other in range(last + 1, end):
+                            if color[other] != color[first]:
+                                continue
+                            longer = own | _only(petals[other], shared)
+                            # A petal of its own is a link; a shared one is counted as it connects.
+                            link = int(petals[other] not in shared or not own)
+                            for further, (more, others) in ways[last + 1, other].items():
+                                key = other, groups | further, longer
+                                total = links + more + link
+                                if total > open_.get(key, (-1,))[0]:
+                                    open_[key] = total, (*chosen, *others), (*members, other)
+                    if len(open_) > 10 * MOST_OPTIONS:
+                        return None
+                ways[first, end] = _undominated(found)
+                if len(ways[first, end]) > MOST_OPTIONS:
+                    return None
+        return ways[0, count]
+
+    def _join_petals(self, areas: dict[int, list[tuple[int, list[int]]]]) -> None:
+        """The other sides of what hubs and petals join."""
+        for hub in list(areas):
+            for color, darts in areas[hub]:
+                for dart in darts:
+                    beyond = self.instance.across(dart)
+                    areas.setdefault(beyond, [(color, [])])[0][1].append(-dart)
+        for edge in self.instance.live_edges:
+            if edge not in self._petal and -edge not in self._petal:
+                for dart in (edge, -edge):
+                    cell = self.instance.across(-dart)
+                    own = areas.setdefault(cell, [(min(self.colors[cell]), [])])
+                    own[0][1].append(dart)
+
+
+def _only(petal: int, shared: set[int]) -> frozenset[int]:
+    return frozenset((petal,)) if petal in shared else frozenset()
+
+
+def _united(labels: Sequence[int], groups: Iterable[Sequence[int]]) -> tuple[list[int], int]:
+    """Labels with the places of each group under one, and how many labels that are fewer."""
+    found, joined = list(labels), 0
+    for first, *others in groups:
+        for other in others:
+            one, two = found[first], found[other]
+            if one != two:
+                found = [one if label == two else label for label in found]
+                joined += 1
+    return found, joined
+
+
+def _canonical(labels: Iterable[int]) -> _State:
+    """Labels numbered as they come."""
+    number: dict[int, int] = {}
+    return tuple(number.setdefault(label, len(number)) for label in labels)
+
+
+def _undominated(found: dict[_Groups, tuple[int, _Chosen]]) -> dict[_Groups, tuple[int, _Chosen]]:
+    """Without ways of which another one connects all the same petals and has no fewer links."""
+    kept: dict[_Groups, tuple[int, _Chosen]] = {}
+    order = sorted(found, key=lambda groups: (-found[groups][0], -sum(map(len, groups))))
+    for groups in order:
+        if not any(
+            all(any(group <= its for its in other) for group in groups)
+            for other, (links, _) in kept.items()
+            if links >= found[groups][0]
+        ):
+            kept[groups] = found[groups]
+    return kept
+
+
+def _best_states(found: dict[_State, int]) -> dict[_State, int]:
+    """Without states that another one is never behind, by the best few.
+
+    One with more connections than another has at most as many to gain later; it is behind by those
+    that the other one could still make and it could not.
+    """
+    order = sorted(found, key=lambda state: (-found[state], len(set(state))))
+    kept: dict[_State, int] = {}
+    few: list[_State] = []
+    for state in order:
+        value = found[state]
+        if any(_behind(state, other) <= found[other] - value for other in few):
+            continue
+        kept[state] = value
+        if len(few) < 60:
+            few.append(state)
+    return kept
+
+
+def _behind(state: _State, other: _State) -> int:
+    """How many connections the first of two states lacks to be as connected as both together."""
+    # By hand, as this takes most of the time. Labels of the other one are joined by the first.
+    parent = list(range(len(other)))
+    first: dict[int, int] = {}
+    count = 0
+    for one, two in zip(state, other, strict=True):
+        while parent[two] != two:
+            two = parent[two]
+        if one not in first:
+            first[one] = two
+            continue
+        root = first[one]
+        while parent[root] != root:
+            root = parent[root]
+        if root != two:
+            parent[two] = root
+            count += 1
+    return len(first) - (len(set(other)) - count)
