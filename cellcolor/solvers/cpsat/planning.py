@@ -25,8 +25,14 @@ FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
 be routed takes a few."""
 
+LEVELS = (1, 0.1), (2, 0.1), (1, 0.4), (2, 0.4)
+"""How much of a linear relaxation plans are made with that were left undecided, and the share of
+the effort. Plans of many segments are ruled out by a full relaxation or by a small one, hardly ever
+by both; without any, as small plans are made, by neither."""
+
 FAR = 2
-"""How many times the bound a large part may have after its first routes to be planned further."""
+"""How many times the bound a large part may have for its plans to be routed. Plans of what is
+farther from it only raise the bound."""
 
 ATTEMPTS = 3
 """Plans to route before the full model has to decide."""
@@ -101,7 +107,7 @@ class Planning:
         """
         while True:
             deadline.check()
-            plan = planner.plan(self._part.bound, attempt, self._effort > PLAN_EFFORT)
+            plan = planner.plan(self._part.bound, attempt, self._thorough)
             if plan is None:
                 self._part.raise_to(self._part.bound + 1, for_surface=True)
                 if not planner.heeds_conflicts:
@@ -111,9 +117,9 @@ class Planning:
             # Looking for segments that cross takes longer than routing when none do. With 0 rings
             # a cell is painted whole, with 1 it has room for cutting paths. What has been planned
             # and not routed before is not likely to be routed now.
-            for rings in () if self._avoiding else (0, 1):
+            for rings in () if self._avoiding or (self._thorough and self._far) else (0, 1):
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
-                if self._part.large and self._part.segments > FAR * self._part.bound:
+                if self._far and not self._thorough:
                     raise Undecided  # local search first: on so large a part this takes too long
             if self._part.done:
                 return plan
@@ -124,12 +130,24 @@ class Planning:
         self, model: cp_model.CpModel, seed: int
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
         # Too small for a portfolio.
-        solver = self._part.runner.single(self._effort, seed)
-        if self._effort > PLAN_EFFORT:
-            # What takes effort are plans of many segments. As with covers (``bounds/cover``), it is
-            # the linear relaxation that tells that there are none. Small plans are quicker without.
-            solver.parameters.linearization_level = 2
-        return solver, self._part.runner.solve(solver, model)
+        for level, share in LEVELS if self._thorough else ((None, 1.0),):
+            solver = self._part.runner.single(share * self._effort, seed)
+            if level is not None:
+                solver.parameters.linearization_level = level
+            status = self._part.runner.solve(solver, model)
+            if status != cp_model.UNKNOWN:
+                break
+        return solver, status
+
+    @property
+    def _far(self) -> bool:
+        """Whether a large part is so far from its bound that routing what is planned is no use."""
+        return self._part.large and self._part.segments > FAR * self._part.bound
+
+    @property
+    def _thorough(self) -> bool:
+        """Whether this is for plans that were left undecided."""
+        return self._effort > PLAN_EFFORT
 
     def _route(
         self, plan: SegmentPlan, rings: int, rounds: int, seed: int, deadline: Deadline

@@ -10,7 +10,7 @@ from exhaustive_minima import noncrossing
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cellcolor.checker import hubs_with_loops
+from cellcolor.checker import hubs
 from cellcolor.deadline import NEVER
 from cellcolor.lab.families import hub_with_loops
 from cellcolor.solvers.bounds.hubs import Grouping, best_grouping, joinable_colors, links_bound
@@ -58,7 +58,7 @@ def test_no_more_links_can_be_drawn_between_several_loops(loops: list[list[int]]
     bound = links_bound(single(loops))
     assert bound is not None and bound >= drawn
     # The checker counts by itself.
-    assert hubs_with_loops.most_links(loops, lambda: None) == bound
+    assert hubs.most_links(loops, lambda: None) == bound
 
 
 @examples(30)

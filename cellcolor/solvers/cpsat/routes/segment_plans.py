@@ -41,6 +41,7 @@ class PlanCells:
         tangles: the tangles that a plan has to satisfy.
 
     Attributes:
+        regions_of: the color regions of each merged cell.
         kinds: of each color region the merged cells that partings or tangles name, with the first
             of their kind. Merged cells that are ends of the same partings, and in the same groups,
             are of one kind: a segment that touches one of them may touch all. Those that none
@@ -54,6 +55,10 @@ class PlanCells:
         tangles: Sequence[Tangle],
     ) -> None:
         self.of_region = of_region
+        self.regions_of: dict[int, list[int]] = {}
+        for region, merged_cells in enumerate(of_region):
+            for merged_cell in sorted(merged_cells):
+                self.regions_of.setdefault(merged_cell, []).append(region)
         self.parted = parted
         self.tangles = tangles
         places: list[dict[int, list[int]]] = [{} for _ in of_region]
@@ -64,6 +69,29 @@ class PlanCells:
         for own in places:
             first: dict[tuple[int, ...], int] = {}
             self.kinds.append({m: first.setdefault(tuple(own[m]), m) for m in sorted(own)})
+
+    def demands(self) -> Iterator[int]:
+        """Merged cells such that a plan touches all others wherever it touches these.
+
+        A merged cell is touched where another one is if it lies in all regions of that one, and is
+        of its kind there, or of none.
+        """
+        different: dict[tuple[tuple[int, int | None], ...], int] = {}
+        for merged_cell, regions in self.regions_of.items():
+            key = tuple((region, self.kinds[region].get(merged_cell)) for region in regions)
+            different.setdefault(key, merged_cell)
+        cells_with: dict[int, set[int]] = {}
+        of = {merged_cell: dict(key) for key, merged_cell in different.items()}
+        for merged_cell, own in of.items():
+            for region in own:
+                cells_with.setdefault(region, set()).add(merged_cell)
+        implied: set[int] = set()
+        for merged_cell, own in of.items():
+            for other in set.intersection(*(cells_with[region] for region in own)):
+                its = of[other]
+                if other != merged_cell and all(its[r] in (None, kind) for r, kind in own.items()):
+                    implied.add(other)
+        return (merged_cell for merged_cell in of if merged_cell not in implied)
 
     def kinds_of(self, region: int, merged_cells: Iterable[int]) -> frozenset[int]:
         """The kinds of some merged cells of a region."""
@@ -134,18 +162,15 @@ class PlanModel:
 
     def _add_cover(self) -> None:
         """Every merged cell is touched by some segment."""
-        touching: dict[int, list[cp_model.IntVar]] = {}
-        for region, merged_cells in enumerate(self._cells.of_region):
-            kinds = self._cells.kinds[region]
-            for copy in range(self._copies):
-                for merged_cell, kind in kinds.items():
-                    literal = self.touched[region, copy][kind]
-                    touching.setdefault(merged_cell, []).append(literal)
-            for merged_cell in merged_cells - kinds.keys():
-                touching.setdefault(merged_cell, []).append(self.in_use[region, 0])
-        # Most merged cells are touched wherever another one is.
-        different = {tuple(literal.index for literal in own): own for own in touching.values()}
-        for literals in different.values():
+        for merged_cell in self._cells.demands():
+            literals = []
+            for region in self._cells.regions_of[merged_cell]:
+                kind = self._cells.kinds[region].get(merged_cell)
+                if kind is None:
+                    literals.append(self.in_use[region, 0])
+                else:
+                    own = range(self._copies)
+                    literals += [self.touched[region, copy][kind] for copy in own]
             self.model.add_bool_or(literals)
 
     def _touches(self, segment: _Segment, merged_cells: Iterable[int]) -> cp_model.IntVar:
