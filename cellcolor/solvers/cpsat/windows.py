@@ -1,16 +1,25 @@
-"""A division improved window by window: some cells are solved anew, all others stay as they are.
+"""A division improved window by window: large neighborhood search (Shaw, CP 1998).
 
-What lies outside a window is contracted: a connected piece of a segment becomes one cell of one
-color, with all the darts by which it meets the window. The full model of such a graph is small, and
-its routes are short, so that large neighborhood search (Shaw, CP 1998) gets on where the whole is
-hopeless. All that is done for a window takes time by what it meets, not by the size of the whole.
+Some cells, the window, are divided anew; all others stay as they are. What lies outside is
+contracted: a **piece** of a segment outside, that is blocks of it that are connected without the
+window, becomes one cell of one color, with all the darts by which it **faces** the window. So two
+pieces of a color that the window joins are a segment less. Three steps make a turn:
+
+1. ``_Window`` contracts what is outside;
+2. the small graph is divided, by ``drop_segments`` or by the full model;
+3. ``_Window.put_back`` writes what was found into the whole division.
+
+A dart outside that faces the window belongs to a block or, in state 0, shows the one before it
+along the border of its cell: this is the block that a join across it would enlarge.
+
+Small windows have small models and short routes, so that this gets on where the whole is hopeless.
+All that is done for one takes time by what it meets, not by the size of the whole.
 """
 
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
 
 from ortools.sat.python import cp_model
 
@@ -48,26 +57,6 @@ FRUITLESS = 3
 """Tries for each segment of a division before nothing better is expected."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Window:
-    """Some cells, and all that touches them contracted.
-
-    Attributes:
-        graph: the window's cells first, then a cell for each piece outside.
-        cells: the cell of the whole graph that each of the first cells is.
-        darts: the dart of the whole graph that each dart is.
-        blocks: for each dart of the whole graph that faces the window from outside, the block that
-            it belongs to or, in state 0, shows.
-        painting: what the division is on the window's graph.
-    """
-
-    graph: DartGraph
-    cells: list[int]
-    darts: list[int]
-    blocks: dict[int, Block]
-    painting: Painting
-
-
 def improve(
     graph: DartGraph, painting: Painting, solve: SolveWithSeed, seed: int, deadline: Deadline
 ) -> Iterator[Painting]:
@@ -95,7 +84,7 @@ def improve(
         cells = _cells_around(graph, segment, room, chance)
         if not cells:
             continue
-        window = _contracted(graph, painting, block_of, cells)
+        window = _Window(graph, painting, block_of, cells)
         if routed:
             found = _routed(window, chance.randrange(2**20), deadline.share(SHARE))
         else:
@@ -107,7 +96,7 @@ def improve(
         )
         if fewer < 0:
             continue
-        painting = _with_window(graph, painting, window, found, block_of)
+        painting = window.put_back(painting, found, block_of)
         if fewer:
             fruitless = 0
             gained += fewer
@@ -144,109 +133,148 @@ def _cells_around(
     return kept
 
 
-def _contracted(
-    graph: DartGraph, painting: Painting, block_of: Mapping[int, Block], cells: list[int]
-) -> _Window:
-    inside = set(cells)
-    facing: dict[int, Block] = {}
-    for cell in cells:
-        for dart in graph.lists[cell]:
-            twin = graph.darts[dart].twin
-            beyond = graph.darts[twin].cell
-            if beyond not in inside:
-                facing[twin] = _shown(graph.lists[beyond], painting[beyond], twin)
-    pieces = _pieces(graph, block_of, facing.values(), inside)
-    lists = [
-        [d for d in graph.lists[cell] if _can_join(graph, d, facing.get(graph.darts[d].twin))]
-        for cell in cells
-    ]
-    kept = {dart for own in lists for dart in own}
-    outside: dict[int, list[int]] = {}
-    for dart, block in facing.items():
-        if graph.darts[dart].twin in kept:
-            outside.setdefault(pieces[id(block)], []).append(dart)
-    colors = [graph.colors[cell] for cell in cells]
-    colors += [frozenset((facing[darts[0]].color,)) for darts in outside.values()]
-    order = [*lists, *outside.values()]
-    darts = [dart for own in order for dart in own]
-    index = {dart: number for number, dart in enumerate(darts)}
-    numbered = [(tuple(index[dart] for dart in own),) for own in order]
-    whole = [
-        Dart(
-            graph.darts[dart].name,
-            cell,
-            index[graph.darts[dart].twin],
-            # What faces the window from outside has one color, and its other side no more.
-            graph.darts[dart].colors
-            & colors[cell]
-            & (
-                frozenset((facing[graph.darts[dart].twin].color,))
-                if graph.darts[dart].twin in facing
-                else colors[cell]
-            ),
-        )
-        for cell, own in enumerate(order)
-        for dart in own
-    ]
-    reduced = DartGraph(tuple(whole), tuple(numbered), tuple(colors), graph.seams)
-    before = _restricted(reduced, painting, block_of, cells, darts)
-    return _Window(reduced, cells, darts, facing, before)
+class _Window:
+    """Some cells of a division, and all that touches them contracted.
 
+    Args:
+        whole: the dart graph of the division.
+        painting: the division.
+        block_of: its block of each dart in state 1.
+        cells: the window.
 
-def _pieces(
-    graph: DartGraph, block_of: Mapping[int, Block], facing: Iterable[Block], inside: set[int]
-) -> dict[int, int]:
-    """By the id of each block outside a window the piece of its segment that it is in.
-
-    Only blocks that hang together with those that face the window are looked at.
+    Attributes:
+        graph: the window's cells first, then a cell for each piece outside.
+        painting: what the division is on this graph.
     """
-    piece: dict[int, int] = {}
-    for number, first in enumerate(facing):
-        if id(first) in piece:
-            continue
-        piece[id(first)] = number
-        reached = [first]
-        for block in reached:
-            for dart in block.darts:
-                twin = graph.darts[dart].twin
-                if graph.darts[twin].cell in inside:
-                    continue
-                other = block_of[twin]
-                if id(other) not in piece:
-                    piece[id(other)] = number
-                    reached.append(other)
-    return piece
 
+    def __init__(
+        self,
+        whole: DartGraph,
+        painting: Painting,
+        block_of: Mapping[int, Block],
+        cells: Sequence[int],
+    ) -> None:
+        self._whole = whole
+        self._cells = cells
+        # For each dart outside that faces the window the block that it belongs to or shows.
+        self._facing: dict[int, Block] = {}
+        inside = set(cells)
+        for cell in cells:
+            for dart in whole.lists[cell]:
+                twin = whole.darts[dart].twin
+                beyond = whole.darts[twin].cell
+                if beyond not in inside:
+                    self._facing[twin] = _shown(whole.lists[beyond], painting[beyond], twin)
+        order, colors = self._contracted(block_of)
+        # The dart of the whole graph that each dart here is.
+        self._darts = [dart for own in order for dart in own]
+        self.graph = self._small_graph(order, colors)
+        self.painting = self._restricted(painting, block_of)
 
-def _restricted(
-    reduced: DartGraph,
-    painting: Painting,
-    block_of: Mapping[int, Block],
-    cells: Sequence[int],
-    darts: Sequence[int],
-) -> Painting:
-    """What a division is on a window's graph."""
-    joined = {
-        number
-        for number, dart in enumerate(darts)
-        if dart in block_of and darts[reduced.darts[number].twin] in block_of
-    }
-    index = {darts[number]: number for number in joined}
-    own = [
-        [Block(b.color, {index[dart] for dart in b.darts if dart in index}) for b in painting[cell]]
-        for cell in cells
-    ]
-    beyond = [
-        [Block(min(colors), joined.intersection(numbers))]
-        for numbers, colors in zip(
-            reduced.lists[len(cells) :], reduced.colors[len(cells) :], strict=True
-        )
-    ]
-    return [[b for b in blocks if b.darts] or blocks[:1] for blocks in [*own, *beyond]]
+    def _contracted(
+        self, block_of: Mapping[int, Block]
+    ) -> tuple[list[list[int]], list[frozenset[int]]]:
+        """The darts of each small cell, as they are called in the whole graph, and its colors."""
+        whole, facing = self._whole, self._facing
+        piece = self._pieces(block_of)
+        inside: list[list[int]] = []
+        outside: dict[int, list[int]] = {}
+        for cell in self._cells:
+            inside.append([])
+            for dart in whole.lists[cell]:
+                beyond = facing.get(whole.darts[dart].twin)
+                if beyond is None or beyond.color in whole.darts[dart].colors:
+                    inside[-1].append(dart)
+        kept = {dart for own in inside for dart in own}
+        for dart, block in facing.items():
+            if whole.darts[dart].twin in kept:
+                outside.setdefault(piece[id(block)], []).append(dart)
+        colors = [whole.colors[cell] for cell in self._cells]
+        colors += [frozenset((facing[darts[0]].color,)) for darts in outside.values()]
+        return [*inside, *outside.values()], colors
 
+    def _pieces(self, block_of: Mapping[int, Block]) -> dict[int, int]:
+        """By the id of each block outside that is connected with a facing one, its piece."""
+        darts, inside = self._whole.darts, set(self._cells)
+        piece: dict[int, int] = {}
+        for number, first in enumerate(self._facing.values()):
+            if id(first) in piece:
+                continue
+            piece[id(first)] = number
+            reached = [first]
+            for block in reached:
+                for twin in (darts[dart].twin for dart in block.darts):
+                    if darts[twin].cell in inside:
+                        continue
+                    other = block_of[twin]
+                    if id(other) not in piece:
+                        piece[id(other)] = number
+                        reached.append(other)
+        return piece
 
-def _can_join(graph: DartGraph, dart: int, beyond: Block | None) -> bool:
-    return beyond is None or beyond.color in graph.darts[dart].colors
+    def _small_graph(
+        self, order: Sequence[Sequence[int]], colors: Sequence[frozenset[int]]
+    ) -> DartGraph:
+        whole, facing = self._whole, self._facing
+        index = {dart: number for number, dart in enumerate(self._darts)}
+        found = []
+        for cell, own in enumerate(order):
+            for dart in own:
+                twin = whole.darts[dart].twin
+                joinable = whole.darts[dart].colors & colors[cell]
+                if twin in facing:
+                    joinable &= {facing[twin].color}  # what is outside keeps its color
+                found.append(Dart(whole.darts[dart].name, cell, index[twin], joinable))
+        loops = tuple((tuple(index[dart] for dart in own),) for own in order)
+        return DartGraph(tuple(found), loops, tuple(colors), whole.seams)
+
+    def _restricted(self, painting: Painting, block_of: Mapping[int, Block]) -> Painting:
+        """What the division is on the small graph."""
+        joined = {
+            number
+            for number, dart in enumerate(self._darts)
+            if dart in block_of and self._darts[self.graph.darts[number].twin] in block_of
+        }
+        index = {self._darts[number]: number for number in joined}
+        own = [
+            [Block(b.color, {index[d] for d in b.darts if d in index}) for b in painting[cell]]
+            for cell in self._cells
+        ]
+        count = len(self._cells)
+        beyond = [
+            [Block(min(colors), joined.intersection(numbers))]
+            for numbers, colors in zip(
+                self.graph.lists[count:], self.graph.colors[count:], strict=True
+            )
+        ]
+        return [[b for b in blocks if b.darts] or blocks[:1] for blocks in [*own, *beyond]]
+
+    def put_back(self, painting: Painting, found: Painting, block_of: dict[int, Block]) -> Painting:
+        """The whole division with the window as it was found; ``block_of`` changes with it."""
+        whole = self._whole
+        joined = {self._darts[dart] for blocks in found for block in blocks for dart in block.darts}
+        around = {whole.darts[dart].cell for dart in self._facing}
+        changed = list(painting)
+        for cell, blocks in zip(self._cells, found, strict=False):
+            changed[cell] = [Block(b.color, {self._darts[d] for d in b.darts}) for b in blocks]
+        # Facing blocks gain and lose darts. They are copied, since the old division stays as it is.
+        copies: dict[int, Block] = {}
+        for cell in around:
+            copies |= {id(b): Block(b.color, set(b.darts)) for b in painting[cell]}
+        for dart, block in self._facing.items():
+            copies[id(block)].darts.discard(dart)
+            if dart in joined:
+                copies[id(block)].darts.add(dart)
+        for cell in around:
+            own = [copies[id(block)] for block in painting[cell]]
+            changed[cell] = [block for block in own if block.darts] or own[:1]
+        changed = canonical(whole, changed, around.union(self._cells))
+        for cell, (old, new) in enumerate(zip(painting, changed, strict=True)):
+            if old is not new:
+                for dart in whole.lists[cell]:
+                    block_of.pop(dart, None)
+                block_of.update({dart: block for block in new for dart in block.darts})
+        return changed
 
 
 def _shown(darts: Sequence[int], blocks: Sequence[Block], dart: int) -> Block:
@@ -277,41 +305,6 @@ def _solved(window: _Window, solve: SolveWithSeed, seed: int) -> Painting | None
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
     return read_painting(window.graph, built.variables, solver)
-
-
-def _with_window(
-    graph: DartGraph,
-    painting: Painting,
-    window: _Window,
-    found: Painting,
-    block_of: dict[int, Block],
-) -> Painting:
-    """The whole painting with the window as it was found; the blocks of darts change with it."""
-    joined = {window.darts[dart] for blocks in found for block in blocks for dart in block.darts}
-    around = {graph.darts[dart].cell for dart in window.blocks}
-    changed = list(painting)
-    for cell, blocks in zip(window.cells, found, strict=False):
-        changed[cell] = [Block(b.color, {window.darts[d] for d in b.darts}) for b in blocks]
-    copies: dict[int, Block] = {}
-    for cell in around:
-        for block in painting[cell]:
-            copies[id(block)] = Block(block.color, set(block.darts))
-        changed[cell] = [copies[id(block)] for block in painting[cell]]
-    for dart, block in window.blocks.items():
-        if dart in joined:
-            copies[id(block)].darts.add(dart)
-        else:
-            copies[id(block)].darts.discard(dart)
-    for cell in around:
-        # A block that was joined with the window only may have no darts left.
-        changed[cell] = [b for b in changed[cell] if b.darts] or changed[cell][:1]
-    changed = canonical(graph, changed, around.union(window.cells))
-    for cell, (old, new) in enumerate(zip(painting, changed, strict=True)):
-        if old is not new:
-            for dart in graph.lists[cell]:
-                block_of.pop(dart, None)
-            block_of.update({dart: block for block in new for dart in block.darts})
-    return changed
 
 
 def _regions(graph: DartGraph) -> list[Region]:
