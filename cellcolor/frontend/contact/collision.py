@@ -73,10 +73,12 @@ def hits_itself(
     for number, (i, j) in enumerate(robot.tested_pairs):
         first, second = robot.bodies[i], robot.bodies[j]
         radii = first.radius + second.radius
-        rows = np.flatnonzero(~hit if asked is None else asked[number] & ~hit)
-        # Bounding spheres first.
-        apart = _norm(centers[i, rows] - centers[j, rows])
-        rows = rows[apart <= radii + (first.length + second.length) / 2]
+        if asked is None:  # then bounding spheres first
+            farthest = radii + (first.length + second.length) / 2
+            near = _norm(centers[i] - centers[j]) <= farthest
+        else:
+            near = asked[number]
+        rows = np.flatnonzero(near & ~hit)
         if not len(rows):
             continue
         a, b = ends[i][:, rows], ends[j][:, rows]
