@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
+from meshed_arm import write_package
 from world import World
 
 from cellcolor.frontend.arm.kinematics import forward
@@ -27,8 +29,26 @@ def prepared(request: pytest.FixtureRequest, scene: Varied) -> PreparedScene:
     return prepare(wok.with_obstacle(BoxObstacle(size_m=(0.1, 0.1, 0.4), position_m=(0.1, 0.4, 0))))
 
 
+@pytest.mark.parametrize("margin", [0.0, 0.006])
+@pytest.mark.parametrize("chosen", ["hull", "exact"])
+def test_verdicts_are_the_same_of_links_with_meshes(
+    scene: Varied, tmp_path: Path, chosen: str, margin: float
+) -> None:
+    urdf = write_package(tmp_path, "toy_description") / "urdf" / "arm.urdf"
+    arm = {"arm_urdf": str(urdf), "mesh_collision": chosen}
+    kept = {"to_object_m": margin, "to_obstacles_m": margin, "between_links_m": margin}
+    wok = scene(target_vertices=300, radius_m=0.22, half_angle_rad=1.5)
+    prepared = prepare(wok.with_setup(wok.setup.varied(robot=arm, margins=kept)))
+    assert prepared.robot.has_solids
+    same_verdicts(prepared, 0.03)
+
+
 @pytest.mark.parametrize("step", [0.003, 0.03, 0.3])
 def test_verdicts_are_the_same_with_known_distances(prepared: PreparedScene, step: float) -> None:
+    same_verdicts(prepared, step)
+
+
+def same_verdicts(prepared: PreparedScene, step: float) -> None:
     rng = np.random.default_rng(3)
     known = rng.uniform(-np.pi, np.pi, (500, 6))
     rows = rng.integers(0, 500, 4000)
