@@ -3,15 +3,17 @@
 A set-up is the same surface as another placement, or another arm, labels it. The colors of several
 set-ups stand side by side on one labelled surface; no color of one leads on into a color of
 another, so the ordinary solver proves its minimum. Which set-ups these are is settled in turns
-(logic-based Benders decomposition, docs/setups.md). A master model chooses set-ups and color
-regions that cover enough; every segment lies in one region of one set-up, so at least so many are
-needed. The surface with the colors of these regions alone is solved, which is quick. What it needs
-in truth the master learns, for these regions and all that lie within them, and chooses others,
-until none of those could be better.
+(logic-based Benders decomposition, docs/setups.md). A master model chooses color regions that cover
+enough; every segment lies in one region of one set-up, so at least so many are needed. The surface
+with the colors of these regions alone is solved, which is quick. What it needs in truth the master
+learns, for these regions and all that lie within them, and chooses others, until none of those
+could be better. Where the fewest set-ups are asked for, each set of so few has a master of its own,
+as far as these can be listed: small models are solved in no time, one with all regions is not.
 """
 
 from __future__ import annotations
 
+import heapq
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -19,7 +21,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from ortools.sat.python import cp_model
 
-from cellcolor.arrays import Mask
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
@@ -37,6 +38,7 @@ _WHOLE = 2**40
 _PRICE_UNIT = 1000
 """Prices are told to a thousandth of a lift-off."""
 _SAME = 1e-6
+_MOST_SETS = 20_000  # of set-ups, each with a model of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,37 +134,55 @@ def choose(
     report = progress or (lambda _: None)
     asked = _Asked(surfaces, cover, options)
     report("the fewest set-ups")
-    master = _Master(asked, 1.0 if change_over is None else change_over)
-    fewest = master.fewest_set_ups()
-    if change_over is None:
-        master.insist_on(fewest)
+    fewest = asked.fewest_set_ups()
+    price = 1.0 if change_over is None else change_over
+    sets = None if change_over is not None else asked.sets_of(fewest)
+    if sets is None:
+        number = None if change_over is not None else fewest
+        masters = [_Master(asked, range(len(surfaces)), price, number)]
+    else:
+        report(f"{len(sets)} sets of {fewest}")
+        masters = [_Master(asked, set_ups, price) for set_ups in sets]
     best: Choice | None = None
-    tried: set[frozenset[int]] = set()
+    cost, tried = np.inf, 0
+    queue = [(0.0, place) for place in range(len(masters))]  # by what each costs at least
     try:
-        while best is None or master.least < master.cost(best) - _SAME:
-            chosen = master.next_choice()
-            report(f"choice {len(tried) + 1}, at least {master.least:g} segments")
-            if chosen in tried or not asked.everything:
+        while queue[0][0] < cost - _SAME:
+            least, place = queue[0]
+            chosen = masters[place].next_choice()
+            if masters[place].least > least:  # perhaps another one looks better now
+                heapq.heapreplace(queue, (masters[place].least, place))
+                if queue[0][0] < masters[place].least:
+                    continue
+            if masters[place].least >= cost - _SAME:
+                continue
+            if chosen in masters[place].tried or not asked.everything:
                 # Its regions alone are not enough, or not what has to be covered: all of the same
                 # set-ups.
                 chosen = asked.regions_of({asked.regions[one].set_up for one in chosen})
-                if chosen in tried:  # no solver knows better
+                if chosen in masters[place].tried:  # no solver knows better
                     break
-            tried.add(chosen)
-            solved, least = asked.solved(chosen)
-            master.learn(chosen, least)
-            if solved is not None and (best is None or master.cost(solved) < master.cost(best)):
-                best = solved
+            tried += 1
+            report(f"choice {tried}, at least {queue[0][0]:g}")
+            solved, needed = asked.solved(chosen)
+            masters[place].learn(chosen, needed)
+            if solved is not None:
+                own = (solved.solution.segments or 0) + (price - 1) * len(solved.set_ups)
+                if own < cost:
+                    best, cost = solved, own
     except OutOfTime:
         if best is None:
             raise
     if best is None:
         raise OutOfTime
-    proved = master.least >= master.cost(best) - _SAME
+    proved = queue[0][0] >= cost - _SAME
+    least = queue[0][0] - (price - 1) * len(best.set_ups)
     return replace(
         best,
         fewest_set_ups=fewest,
-        at_least_segments=(best.solution.segments or 0) if proved else master.least_segments(best),
+        at_least_segments=(
+            best.solution.segments or 0 if proved else max(1, int(np.ceil(least - _SAME)))
+        ),
         proved=proved,
     )
 
@@ -173,16 +193,95 @@ class _Asked:
     def __init__(self, surfaces: Sequence[LabelledSurface], cover: float, options: Options) -> None:
         self.surfaces, self.options = surfaces, options
         self.areas = surfaces[0].vertex_areas
-        reached: Mask = np.zeros(len(self.areas), dtype=bool)
         self.regions: list[_Region] = []
         for number, surface in enumerate(surfaces):
-            options.deadline.check()
-            reached |= [bool(own) for own in surface.vertex_colors]
             self.regions += _regions_of(number, surface, options.deadline)
+        self._reach = np.array([[bool(own) for own in one.vertex_colors] for one in surfaces])
+        reached = self._reach.any(axis=0)
         self.whole = float(self.areas[reached].sum())
         if not self.whole:
             raise InputError(None, None, "nothing is reached in any of the set-ups")
         self.cover, self.everything = cover, cover >= 1
+
+    def fewest_set_ups(self) -> int:
+        """No fewer cover enough.
+
+        Raises:
+            OutOfTime: that was not proved in time.
+        """
+        model = cp_model.CpModel()
+        used = [model.new_bool_var("") for _ in self.surfaces]
+        self.cover_enough(model, used, [np.flatnonzero(row).tolist() for row in self._reach.T])
+        model.minimize(sum(used))
+        solver = self.run(model)
+        if solver.best_objective_bound < solver.objective_value - 0.5:
+            raise OutOfTime
+        return round(solver.objective_value)
+
+    def sets_of(self, size: int) -> list[tuple[int, ...]] | None:
+        """All sets of so many set-ups that cover everything; None if they cannot be listed."""
+        if not self.everything:
+            return None
+        places = _hardest({tuple(np.flatnonzero(row).tolist()) for row in self._reach.T} - {()})
+        found: set[tuple[int, ...]] = set()
+        begun: list[tuple[int, ...]] = [()]
+        while begun:
+            some = begun.pop()
+            open_place = next((p for p in places if not set(p) & set(some)), None)
+            if open_place is None:
+                # Without what is not needed it would be a smaller set, which there is none of.
+                found.add(tuple(sorted(some)))
+            elif len(some) < size:
+                begun += [(*some, number) for number in open_place]
+            if len(found) + len(begun) > _MOST_SETS:
+                return None
+        return sorted(found)
+
+    def cover_enough(
+        self,
+        model: cp_model.CpModel,
+        literals: Sequence[cp_model.IntVar],
+        covering: Iterable[Iterable[int]],
+    ) -> None:
+        """Of what covers each vertex choose some, so that enough is covered.
+
+        Args:
+            model: to add that to.
+            literals: of what can be chosen.
+            covering: the numbers, for each vertex, of those that cover it.
+        """
+        # Vertices that are covered by the same are one place with one weight.
+        places: Counter[tuple[int, ...]] = Counter()
+        for own, area in zip(covering, self.areas.tolist(), strict=True):
+            if numbers := tuple(own):
+                places[numbers] += area
+        if self.everything:
+            for place in _hardest(places):
+                model.add_bool_or([literals[number] for number in place])
+            return
+        covered = []
+        for place, area in places.items():
+            one = model.new_bool_var("")
+            model.add_bool_or([~one, *(literals[number] for number in place)])
+            covered.append(round(area / self.whole * _WHOLE) * one)
+        model.add(sum(covered) >= round(self.cover * _WHOLE) - len(places))
+
+    def run(self, model: cp_model.CpModel) -> cp_model.CpSolver:
+        """The solver with a choice.
+
+        Raises:
+            OutOfTime: none was found in time.
+        """
+        workers = self.options.workers or PORTFOLIO
+        solver = make_cp_solver(self.options.deadline, workers, self.options.seed)
+        # By measure, with 200 set-ups of which all have to be covered: 15 s instead of minutes.
+        solver.parameters.linearization_level = 0 if self.everything else 2
+        status, interrupt = solve_interruptibly(solver, model)
+        if interrupt is not None:
+            raise interrupt
+        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            raise OutOfTime
+        return solver
 
     def regions_of(self, set_ups: Collection[int]) -> frozenset[int]:
         """The numbers of all regions of some set-ups."""
@@ -217,77 +316,48 @@ class _Asked:
 
 
 class _Master:
-    """The model that chooses set-ups and color regions that cover enough."""
+    """A model that chooses color regions of some set-ups, so that they cover enough."""
 
-    def __init__(self, asked: _Asked, price: float) -> None:
-        """``price`` is that of a change-over, in lift-offs."""
-        self._asked, self._price = asked, price
-        self._model = model = cp_model.CpModel()
-        self._used = [model.new_bool_var("") for _ in asked.surfaces]
-        self._regions = [model.new_bool_var("") for _ in asked.regions]
-        self._segments = model.new_int_var(0, len(asked.regions) + len(asked.areas), "")
+    def __init__(
+        self, asked: _Asked, set_ups: Collection[int], price: float, number: int | None = None
+    ) -> None:
+        """A model that is not built before it is asked.
+
+        Args:
+            asked: the regions.
+            set_ups: those that may be used.
+            price: of a change-over, in lift-offs.
+            number: of set-ups to be used; None for any.
+        """
+        self._asked, self._set_ups, self._price, self._number = asked, set_ups, price, number
+        self._model: cp_model.CpModel | None = None
+        self.least = 0.0
+        """No choice costs less, in segments and in what change-overs cost beyond one each."""
+        self.tried: set[frozenset[int]] = set()
+
+    def _build(self) -> cp_model.CpModel:
+        asked, model = self._asked, cp_model.CpModel()
+        self._numbers = sorted(asked.regions_of(set(self._set_ups)))
+        self._regions = [model.new_bool_var("") for _ in self._numbers]
+        self._segments = model.new_int_var(0, len(self._numbers) + len(asked.areas), "")
         model.add(self._segments >= sum(self._regions))
-        own: list[list[cp_model.IntVar]] = [[] for _ in asked.surfaces]
+        used = {number: model.new_bool_var("") for number in self._set_ups}
+        own: dict[int, list[cp_model.IntVar]] = {number: [] for number in self._set_ups}
         of_vertex: list[list[int]] = [[] for _ in asked.areas]
-        for number, (literal, region) in enumerate(zip(self._regions, asked.regions, strict=True)):
-            model.add_implication(literal, self._used[region.set_up])
+        for place, (number, literal) in enumerate(zip(self._numbers, self._regions, strict=True)):
+            region = asked.regions[number]
+            model.add_implication(literal, used[region.set_up])
             own[region.set_up].append(literal)
             for vertex in region.vertices:
-                of_vertex[vertex].append(number)
-        for used, literals in zip(self._used, own, strict=True):
-            model.add_bool_or([~used, *literals])  # what is set up paints something
-        # Vertices in the same regions are one place with one weight.
-        places: Counter[tuple[int, ...]] = Counter()
-        for regions, area in zip(of_vertex, asked.areas.tolist(), strict=True):
-            if regions:
-                places[tuple(regions)] += area
-        if asked.everything:
-            # A place is covered where another place is that has none but some of its regions.
-            hardest = _hardest(places)
-            for place in hardest:
-                model.add_bool_or([self._regions[region] for region in place])
-            # This follows, and prunes where there are many set-ups.
-            set_ups = (tuple({asked.regions[region].set_up for region in p}) for p in hardest)
-            for numbers in _hardest(set_ups):
-                model.add_bool_or([self._used[number] for number in numbers])
-        else:
-            covered, total = [], 0
-            for place, area in places.items():
-                weight, one = round(area / asked.whole * _WHOLE), model.new_bool_var("")
-                model.add_bool_or([~one, *(self._regions[region] for region in place)])
-                covered.append(weight * one)
-                total += weight
-            model.add(sum(covered) >= round(asked.cover * total))
-        self.least = 0.0
-        """No choice costs less, in segments and in prices of more than one for change-overs."""
-
-    def cost(self, choice: Choice) -> float:
-        """Segments, and what change-overs cost beyond one each."""
-        return (choice.solution.segments or 0) + (self._price - 1) * len(choice.set_ups)
-
-    def least_segments(self, choice: Choice) -> int:
-        """With as many set-ups no division has fewer."""
-        extra = (self._price - 1) * len(choice.set_ups)
-        return max(1, int(np.ceil(self.least - extra - _SAME)))
-
-    def fewest_set_ups(self) -> int:
-        """No fewer cover enough.
-
-        Raises:
-            OutOfTime: that was not proved in time.
-        """
-        self._model.minimize(sum(self._used))
-        solver = self._run()
-        if solver.best_objective_bound < solver.objective_value - 0.5:
-            raise OutOfTime
-        self._model.minimize(
-            _PRICE_UNIT * self._segments + round((self._price - 1) * _PRICE_UNIT) * sum(self._used)
-        )
-        return round(solver.objective_value)
-
-    def insist_on(self, number: int) -> None:
-        """Choose so many set-ups from now on."""
-        self._model.add(sum(self._used) == number)
+                of_vertex[vertex].append(place)
+        for number, literals in own.items():
+            model.add_bool_or([~used[number], *literals])  # what is set up paints something
+        asked.cover_enough(model, self._regions, of_vertex)
+        if self._number is not None:
+            model.add(sum(used.values()) == self._number)
+        extra = round((self._price - 1) * _PRICE_UNIT)
+        model.minimize(_PRICE_UNIT * self._segments + extra * sum(used.values()))
+        return model
 
     def next_choice(self) -> frozenset[int]:
         """The regions that look cheapest.
@@ -295,42 +365,30 @@ class _Master:
         Raises:
             OutOfTime: no choice was found in time.
         """
-        solver = self._run()
+        self._model = self._model or self._build()
+        solver = self._asked.run(self._model)
         self.least = max(self.least, solver.best_objective_bound / _PRICE_UNIT)
-        return frozenset(
-            number for number, literal in enumerate(self._regions) if solver.value(literal)
-        )
+        pairs = zip(self._numbers, self._regions, strict=True)
+        return frozenset(number for number, literal in pairs if solver.value(literal))
 
-    def learn(self, chosen: Collection[int], least: int) -> None:
+    def learn(self, chosen: frozenset[int], least: int) -> None:
         """With these regions, and others that lie within them, there are so many segments.
 
         A region lies within another one if that has all of its vertices and all of its edges: a
         segment of the one could be a segment of the other.
         """
+        assert self._model is not None
         asked = self._asked
+        self.tried.add(chosen)
         known = [asked.regions[one] for one in chosen]
         others = [
             literal
-            for literal, region in zip(self._regions, asked.regions, strict=True)
-            if not any(_within(asked.surfaces, region, other) for other in known)
+            for number, literal in zip(self._numbers, self._regions, strict=True)
+            if not any(_within(asked.surfaces, asked.regions[number], other) for other in known)
         ]
         nothing_else = self._model.new_bool_var("")
         self._model.add_bool_or([nothing_else, *others])
         self._model.add(self._segments >= least).only_enforce_if(nothing_else)
-
-    def _run(self) -> cp_model.CpSolver:
-        """The solver with a choice."""
-        asked = self._asked
-        options = asked.options
-        solver = make_cp_solver(options.deadline, options.workers or PORTFOLIO, options.seed)
-        # By measure, with 200 set-ups of which all have to be covered: 15 s instead of minutes.
-        solver.parameters.linearization_level = 0 if asked.everything else 2
-        status, interrupt = solve_interruptibly(solver, self._model)
-        if interrupt is not None:
-            raise interrupt
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            raise OutOfTime
-        return solver
 
 
 def _within(surfaces: Sequence[LabelledSurface], one: _Region, other: _Region) -> bool:
