@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
 import tempfile
 import time
 from collections import Counter
@@ -71,6 +72,8 @@ def drawn(number: int, arms: list[Path], folder: Path) -> tuple[Path, str]:
     if not (began / "setup.toml").exists():
         every["capsule"].export(folder / "first.obj")
         cellcolor.new(folder / "first.obj", arm, began, unit="m")
+        setup = began / "setup.toml"
+        setup.write_text(re.sub("(?m)^home_rad = .*$", 'home_rad = "free"', setup.read_text()))
     far, side = rng.uniform(0.45, 0.75), rng.uniform(-1.0, 1.0)
     size = REACH.get(arm.stem, 0.9)
     place = [far * size * np.cos(side), far * size * np.sin(side), rng.uniform(0.05, 0.45) * size]
@@ -99,7 +102,7 @@ REACH = {
 
 def outcome(scene: Path | str, time_limit: float) -> dict[str, Any]:
     """How a plan ended: ``valid``, or why not."""
-    begun = time.monotonic()
+    begun, worked = time.monotonic(), time.process_time()
     stages: list[tuple[str, float]] = []
 
     def progress(stage: str) -> None:
@@ -109,7 +112,11 @@ def outcome(scene: Path | str, time_limit: float) -> dict[str, Any]:
     try:
         planned = cellcolor.plan(scene, time_limit=time_limit, progress=progress)
     except InputError as error:
-        found = {"ends": "refused", "cause": str(error).rpartition(": ")[2][:60], "text": str(error)}
+        found = {
+            "ends": "refused",
+            "cause": str(error).rpartition(": ")[2][:60],
+            "text": str(error),
+        }
     except CellcolorError as error:
         found = {"ends": type(error).__name__, "cause": "time", "text": str(error)}
     except Exception as error:
@@ -127,8 +134,11 @@ def outcome(scene: Path | str, time_limit: float) -> dict[str, Any]:
             "text": "; ".join(fault.text for fault in verdict.faults[:3]),
             "lift_offs": [verdict.minimum_lift_offs, verdict.lift_offs],
             "extra": dict(extra),
+            "blocked": planned.trajectory.meta.get("blocked", []),
+            "stages": {stage: round(took, 1) for stage, took in planned.seconds.items()},
         }
     found["seconds"] = round(time.monotonic() - begun, 1)
+    found["cpu"] = round(time.process_time() - worked, 1)
     found["last stage"] = stages[-1][0] if stages else None
     return found
 

@@ -328,7 +328,7 @@ def plan(
     from cellcolor.frontend.prepared import prepare
     from cellcolor.frontend.scene import Scene
     from cellcolor.frontend.stage_clock import StageClock
-    from cellcolor.motion.home import check_home
+    from cellcolor.motion.home import home_of
     from cellcolor.motion.limits import motion_of
     from cellcolor.motion.plan import plan_motion
     from cellcolor.motion.scene_painting import paint_scene
@@ -340,7 +340,7 @@ def plan(
     with clock.timed("preparation"):
         prepared = prepare(_with_motion(given, motion), deadline)
         # What is wrong with the motion is refused before the long work begins.
-        check_home(prepared, motion_of(prepared))
+        home_of(prepared, motion_of(prepared))
     with clock.timed("colors"):
         subject = _built(prepared, path, StageClock(deadline, progress))
     so_far, whole = UnfinishedPlan(subject, None, None, None, ()), subject

@@ -173,7 +173,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     judge = Judge(workplace, scene.validity_test)
     notes = arm.robot.warnings + notes_on_units(scene, arm.kinematics.reach)
     if setup.constraints.collision:
-        home = None if setup.motion is None else setup.motion.home_rad
+        home = None if setup.motion is None else setup.motion.home
         with in_file(setup.file):
             wide = check_capsules(arm.near_itself, home)
         notes += () if wide is None else (wide,)

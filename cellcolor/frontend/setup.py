@@ -254,7 +254,7 @@ class Motion(Table):
     arm keeps ``clearance_m`` from everything. A URDF has velocities, which
     ``joint_velocities_rad_per_s`` may lower, but no accelerations. Lists of joints go from base to
     tool, with m in the place of rad for prismatic ones; ``home_rad`` is where the arm begins and
-    ends, nowhere in particular without it.
+    ends, nowhere in particular without it. ``"free"`` asks for a free position, which is found.
     """
 
     tool_radius_m: Positive = 0.015
@@ -264,7 +264,12 @@ class Motion(Table):
     joint_accelerations_rad_per_s2: tuple[Positive, ...]
     retract_m: Positive = 0.05
     clearance_m: NotNegative = 0.005
-    home_rad: tuple[JointAngle, ...] | None = None
+    home_rad: tuple[JointAngle, ...] | Literal["free"] | None = None
+
+    @property
+    def home(self) -> tuple[float, ...] | None:
+        """``home_rad`` if it is a position."""
+        return None if isinstance(self.home_rad, str) else self.home_rad
 
 
 class Setup(FileTable):

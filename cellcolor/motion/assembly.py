@@ -71,7 +71,8 @@ def assembled(
     Raises:
         OutOfTime: the deadline came first.
     """
-    rows, unplanned = _Rows(), []
+    rows = _Rows()
+    unplanned: dict[int, str] = {}
     extra: list[ExtraLiftOff] = []
     repeated: list[RepeatedStretch] = []
     last_of: dict[int, int] = {}
@@ -81,7 +82,7 @@ def assembled(
         at_stroke = 1 if number else 0  # the first sample is the stroke's last one
         gap = _add_transfer(rows, robot, transfer, at_stroke, number < len(strokes), speeds)
         if gap is not None:
-            unplanned.append(gap)
+            unplanned[gap] = transfer.blocked
         if number == len(strokes):
             break
         stroke = strokes[number]
@@ -118,7 +119,7 @@ def assembled(
         extra_lift_offs=tuple(extra),
         left_out=left_out,
         repeated=tuple(repeated),
-        meta=meta,
+        meta=meta | ({"blocked": list(unplanned.values())} if unplanned else {}),
     )
 
 

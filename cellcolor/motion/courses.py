@@ -14,14 +14,22 @@ from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.mesh.dividing import small_triangle_at
-from cellcolor.motion.following import Followed, bowed, follow
+from cellcolor.motion.following import (
+    Followed,
+    bowed,
+    follow,
+    joint_space,
+    off_way,
+    unwound,
+)
 from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP
 from cellcolor.tool_paths.cover import Covered
 
 _ROUNDS = 3  # of paths laid out; what still fails on the last ones is cut out of them
 _FARTHEST = 0.4  # rad, m; of a joint from a sample to the next
-_HALVINGS = 6  # of a step in which one goes farther, or the tool bows
+_HALVINGS = 9  # of a step in which one goes farther, or the tool leaves its way
+_BETWEEN = (0.25, 0.5, 0.75)  # of a step, where that is tested
 
 
 @dataclass(frozen=True)
@@ -101,23 +109,44 @@ def _course(
 ) -> Course:
     """A branch along a path, with samples so close that joints may move evenly between them.
 
-    Beside a singularity a joint turns by much on a millimeter: then a trajectory does not say how
-    the joint gets there, or the tool bows off its way. A step that is still too long on the last
-    round is torn.
+    A step is halved where a joint moves far, as beside a singularity, and where the tool leaves its
+    way or the surface's normal between the samples, as beside a sharp edge. A step that still does
+    on the last round is torn.
     """
+
+    def at(places: Array) -> Samples:
+        return with_normals_of(sampled(path, places), surface.mesh, normals)
+
     places = even_places(path)
+    samples = at(places)
+    followed = follow(prepared, samples, branch, deadline)
     for halvings in range(_HALVINGS + 1):
-        samples = with_normals_of(sampled(path, places), surface.mesh, normals)
-        followed = follow(prepared, samples, branch, deadline)
-        valid = followed.reasons == VALID
-        far = np.abs(np.diff(followed.joints, axis=0)).max(axis=1) > _FARTHEST
-        fast = far | bowed(prepared.robot, followed.joints)
-        fast &= valid[:-1] & valid[1:] & ~followed.torn
-        if not fast.any() or halvings == _HALVINGS:
+        joints, reasons, torn = followed.joints, followed.reasons, followed.torn
+        valid = reasons == VALID
+        bad = np.abs(np.diff(joints, axis=0)).max(axis=1) > _FARTHEST
+        bad |= bowed(prepared.robot, joints)
+        for share in _BETWEEN:
+            way = joints[:-1] + share * np.diff(joints, axis=0)
+            bad |= off_way(prepared.robot, way, at(places[:-1] + share * np.diff(places)))
+        bad &= valid[:-1] & valid[1:] & ~torn
+        rows = np.flatnonzero(bad)
+        if not len(rows) or halvings == _HALVINGS:
             break
-        middle = (places[:-1] + places[1:]) / 2
-        places = np.sort(np.concatenate([places, middle[fast]]))
-    return Course(path, samples, replace(followed, torn=followed.torn | fast))
+        # Only the new samples are followed, each between its neighbors.
+        middle = (places[rows] + places[rows + 1]) / 2
+        threes = np.column_stack([places[rows], middle, places[rows + 1]]).ravel()
+        between = follow(prepared, at(threes), branch, deadline)
+        places = np.insert(places, rows + 1, middle)
+        joints = np.insert(joints, rows + 1, between.joints[1::3], axis=0)
+        torn = torn.copy()
+        torn[rows] = between.torn[::3]
+        followed = Followed(
+            unwound(joints, joint_space(prepared)),
+            np.insert(reasons, rows + 1, between.reasons[1::3]),
+            np.insert(torn, rows + 1, between.torn[1::3]),
+        )
+        samples = at(places)
+    return Course(path, samples, replace(followed, torn=followed.torn | bad))
 
 
 def _failures(followed: Followed, names: tuple[str, ...]) -> Iterator[tuple[int, str]]:

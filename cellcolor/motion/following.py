@@ -22,6 +22,8 @@ from cellcolor.motion.samples import Samples, angles_between
 _BOW = 0.3  # of the way between two samples, for the tip: where normals turn fast, steps are short
 _BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
 _ROUNDING = 1e-6  # m
+_OFF = 4e-4  # m, of the tip off the surface; the judge allows a millimeter
+_TILT = float(np.deg2rad(0.6))  # of the tool's axis off the normal; the judge allows a degree
 
 
 @dataclass(frozen=True)
@@ -88,6 +90,19 @@ def bowed(robot: Robot, joints: Array) -> Mask:
     axis = ends.tool_axis[:-1] + ends.tool_axis[1:]
     axis /= np.linalg.norm(axis, axis=1, keepdims=True)
     return np.asarray((off > too_far) | (angles_between(middle.tool_axis, axis) > _BOW_ANGLE))
+
+
+def off_way(robot: Robot, joints: Array, samples: Samples) -> Mask:
+    """Which configurations (k, joints) have tip or axis off the sample (k) that they are meant for.
+
+    Of the tip only the distance along the normal counts.
+    """
+    poses = forward(robot, joints)
+    lifted = np.einsum("ij,ij->i", poses.tip - samples.points, samples.normals)
+    off = np.abs(lifted) > _OFF
+    if robot.task.direction:
+        off |= angles_between(poses.tool_axis, -samples.normals) > _TILT
+    return np.asarray(off)
 
 
 def unwound(joints: Array, space: JointSpace) -> Array:

@@ -12,6 +12,7 @@ from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward
 from cellcolor.frontend.arm.robot import Robot, wider, wider_body
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.memory import cached
 from cellcolor.motion.following import joint_space
 
@@ -43,8 +44,24 @@ class FreeSpace:
         self._near_obstacles = keeping(clearance, margins.to_obstacles_m)
         self._near_object = keeping(clearance, margins.to_object_m)
         self._near_ground = keeping(clearance, margins.to_ground_m)
-        # Two bodies that keep a distance from each other keep half of it each.
-        self._half = keeping(clearance / 2, margins.between_links_m / 2)
+        # Two bodies that keep a distance from each other keep half of it each. Links that are never
+        # so far apart, as a tool on a short flange and the link behind it, keep only the margin.
+        half = keeping(clearance / 2, margins.between_links_m / 2)
+        never = {frozenset(pair) for pair in always_touching(half)} if clearance else set()
+
+        def of_pairs(robot: Robot, apart: bool) -> Robot:
+            bodies = robot.bodies
+            return replace(
+                robot,
+                tested_pairs=tuple(
+                    (i, j)
+                    for i, j in robot.tested_pairs
+                    if (frozenset((bodies[i].link, bodies[j].link)) not in never) == apart
+                ),
+            )
+
+        margin = keeping(0.0, margins.between_links_m / 2)
+        self._halves = (of_pairs(half, True), *([of_pairs(margin, False)] if never else []))
 
     def __call__(self, configurations: Array) -> Mask:
         """Which of configurations (k, joints), taken as they are, are free, (k,)."""
@@ -95,11 +112,11 @@ class FreeSpace:
             for link, body in alone(around):
                 if solid.hits(body, body_ends(body, poses), poses)[0]:
                     found.append(f"{link} and {what}")
-        ends = body_ends(self._half, poses)
         found += [
-            " and ".join(name(self._half, body) for body in pair)
-            for pair in self._half.tested_pairs
-            if hits_itself(replace(self._half, tested_pairs=(pair,)), ends, poses)[0]
+            " and ".join(name(half, body) for body in pair)
+            for half in self._halves
+            for pair in half.tested_pairs
+            if hits_itself(replace(half, tested_pairs=(pair,)), body_ends(half, poses), poses)[0]
         ]
         return list(dict.fromkeys(found))
 
@@ -116,9 +133,9 @@ class FreeSpace:
         for around, solid in (*near, (self._near_object, place.target)):
             left = np.flatnonzero(~hit)
             hit[left] = solid.hits(around, body_ends(around, poses)[:, :, left], poses.take(left))
-        left = np.flatnonzero(~hit)
-        halves = body_ends(self._half, poses)[:, :, left]
-        hit[left] = hits_itself(self._half, halves, poses.take(left))
+        for half in self._halves:
+            left = np.flatnonzero(~hit)
+            hit[left] = hits_itself(half, body_ends(half, poses)[:, :, left], poses.take(left))
         return hit
 
 

@@ -22,23 +22,27 @@ _SHOWN = 3  # contacts
 _DIGITS = 2  # of a proposed position, rad or m
 
 
-def home_of(motion: Motion) -> Array | None:
-    """Where the arm begins and ends (joints,), rad or m; None if that does not matter."""
-    return None if motion.home_rad is None else np.array(motion.home_rad)
-
-
-def check_home(prepared: PreparedScene, motion: Motion) -> None:
-    """Reject a home position that is not free.
+def home_of(prepared: PreparedScene, motion: Motion) -> Array | None:
+    """Where the arm begins and ends (joints,), rad or m; None if that does not matter.
 
     Raises:
-        InputError: with the bodies that are in each other's way there, and a free position near it.
+        InputError: that position is not free, with the bodies that are in each other's way there
+            and a free position near it; or ``free`` was asked for, and none was found.
     """
-    home = home_of(motion)
-    if home is None:
-        return
+    if motion.home_rad is None:
+        return None
     free = FreeSpace(prepared, motion.clearance_m)
+    if motion.home is None:
+        lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in free.space.limits)
+        middle = np.round((lower + upper) / 2, _DIGITS)
+        near = free_near(free, middle)
+        if near is None:
+            with in_file(prepared.setup.file):
+                raise InputError(None, "motion.home_rad", "no free position was found; give one")
+        return np.array(near)
+    home = np.array(motion.home)
     if free(home[None])[0]:
-        return
+        return home
     how, found = "touch", FreeSpace(prepared, 0.0).touched(home)
     if not found:
         how, found = "are nearer than motion.clearance_m or a margin allows", free.touched(home)
@@ -48,7 +52,8 @@ def check_home(prepared: PreparedScene, motion: Motion) -> None:
     proposed = (
         "; no free position was found near it"
         if near is None
-        else f"; free is, for example, [{', '.join(f'{angle:g}' for angle in near)}]"
+        else f"; free is, for example, [{', '.join(f'{angle:g}' for angle in near)}]; "
+        'home_rad = "free" finds one as well'
     )
     with in_file(prepared.setup.file):
         message = f"the arm cannot stand there: {shown} {how}{proposed}"

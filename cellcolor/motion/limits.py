@@ -33,12 +33,15 @@ def motion_of(prepared: PreparedScene) -> Motion:
         motion = setup.motion
         if motion is None:
             raise InputError(None, "motion", "planning a motion needs this table")
-        for key in ("joint_velocities_rad_per_s", "joint_accelerations_rad_per_s2", "home_rad"):
-            given = getattr(motion, key)
+        for key, given in (
+            ("joint_velocities_rad_per_s", motion.joint_velocities_rad_per_s),
+            ("joint_accelerations_rad_per_s2", motion.joint_accelerations_rad_per_s2),
+            ("home_rad", motion.home),
+        ):
             if given is not None and len(given) != robot.joints:
                 message = f"has {len(given)} numbers for {robot.joints} joints"
                 raise InputError(None, f"motion.{key}", message)
-        for joint, at in enumerate(motion.home_rad or ()):
+        for joint, at in enumerate(motion.home or ()):
             if not robot.lower[joint] <= at <= robot.upper[joint]:
                 message = f"outside the limits of {robot.joint_names[joint]!r}"
                 if robot.slides[joint]:

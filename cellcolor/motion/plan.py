@@ -17,7 +17,6 @@ from cellcolor.frontend.build import BuildResult
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.motion.assembly import assembled
 from cellcolor.motion.following import joint_space
-from cellcolor.motion.home import home_of
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.order import ordered
 from cellcolor.motion.segment import Ground, SegmentStrokes, strokes_of
@@ -87,7 +86,7 @@ def plan_motion(
     """
     prepared = built.prepared
     motion = motion_of(prepared)
-    speeds, home = speeds_of(motion, prepared.robot), home_of(motion)
+    speeds = speeds_of(motion, prepared.robot)
     # Refuses a home that is no place for the arm, before anything takes time.
     planner = Transfers(prepared, motion, speeds.velocities, seed, deadline)
     clock = StageClock(deadline, progress)
@@ -136,7 +135,7 @@ def plan_motion(
     if not strokes:
         raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
-        strokes = ordered(strokes, joint_space(prepared), speeds.velocities, home, deadline)
+        strokes = ordered(strokes, joint_space(prepared), speeds.velocities, planner.home, deadline)
     with clock.timed("transfers"):
         strokes, transfers = planner.between_strokes(strokes)
     with clock.timed("times"):

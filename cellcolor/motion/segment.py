@@ -6,6 +6,7 @@ from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Index
 from cellcolor.data.surface import LabelledSurface
@@ -17,6 +18,9 @@ from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
 from cellcolor.tool_paths.cover import Covered
+
+_SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
+_SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short
 
 Lay = Callable[[int, Collection[tuple[int, int]], Index], Covered]
 """The tool paths of a segment, given walls (mesh edges) and small triangles to leave out."""
@@ -113,7 +117,7 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
         for stroke in strokes
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
-    return SegmentStrokes(courses, cut, walls)
+    return SegmentStrokes(courses, _worth_a_lift_off(cut, ground.shortest), walls)
 
 
 def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
@@ -128,7 +132,31 @@ def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
         if parts and found:
             parts[0] = replace(parts[0], parting=_apart(course))
         found += parts
-    return found
+    return _worth_a_lift_off(found, ground.shortest)
+
+
+def _worth_a_lift_off(strokes: list[Stroke], spacing: float) -> list[Stroke]:
+    """Strokes without those that hardly cover anything that longer ones do not.
+
+    Left out are strokes shorter than two spacings, and those whose every sample is within a spacing
+    of a longer one, while what they leave is less than half a percent of the whole length.
+    """
+    lengths = [stroke.length for stroke in strokes]
+    kept: list[int] = []
+    spared = _SPARED * sum(lengths)
+    for at in sorted(range(len(strokes)), key=lambda at: (-lengths[at], at)):
+        if kept:
+            points = np.concatenate([strokes[other].points for other in kept])
+            beside = cKDTree(points).query(strokes[at].points)[0].max() <= spacing
+            short = lengths[at] < _SHORT * spacing and lengths[at] <= spared
+            if beside or short:
+                spared -= 0.0 if beside else lengths[at]
+                continue
+        kept.append(at)
+    return [
+        strokes[at] if number else replace(strokes[at], parting=None)
+        for number, at in enumerate(sorted(kept))
+    ]
 
 
 def _apart(course: Course) -> Parting:

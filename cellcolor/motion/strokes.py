@@ -53,6 +53,11 @@ class Stroke:
     def __len__(self) -> int:
         return len(self.points)
 
+    @property
+    def length(self) -> float:
+        """Of the way in contact, m."""
+        return float(np.linalg.norm(np.diff(self.points, axis=0), axis=1).sum())
+
     def is_closed(self, space: JointSpace) -> bool:
         """Whether it ends where it begins, in the same configuration but for whole turns."""
         apart = float(np.linalg.norm(self.points[0] - self.points[-1]))
@@ -71,6 +76,15 @@ class Stroke:
         """The same stroke in reverse."""
         return replace(
             self, points=self.points[::-1], normals=self.normals[::-1], joints=self.joints[::-1]
+        )
+
+    def followed_by(self, rows: slice) -> Stroke:
+        """The stroke, and then some of its samples once more."""
+        return replace(
+            self,
+            points=np.concatenate([self.points, self.points[rows]]),
+            normals=np.concatenate([self.normals, self.normals[rows]]),
+            joints=np.concatenate([self.joints, self.joints[rows]]),
         )
 
     def begun_at(self, sample: int, space: JointSpace) -> Stroke:
@@ -118,10 +132,9 @@ def trimmed(
         rows = slice(int(first), int(last) + 1)
         joints = space.unwrap(followed.joints[rows])
         points, normals = samples.points[rows], samples.normals[rows]
-        length = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum())
-        if len(points) < 2 or (length < shortest and len(points) < len(samples)):
+        stroke = Stroke(segment, branch, points, normals, joints)
+        if len(points) < 2 or (stroke.length < shortest and len(points) < len(samples)):
             continue
-        parting = None
         if found:
             at = int(first) - 1
             cause = (
@@ -129,7 +142,8 @@ def trimmed(
             )
             x, y, z = samples.points[at].tolist()
             parting = Parting("trimmed", f"the path was cut where {cause}", (x, y, z))
-        found.append(Stroke(segment, branch, points, normals, joints, parting))
+            stroke = replace(stroke, parting=parting)
+        found.append(stroke)
     return found
 
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import Deadline
@@ -15,7 +16,7 @@ from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.free_space import FreeSpace
-from cellcolor.motion.home import check_home, home_of
+from cellcolor.motion.home import home_of
 from cellcolor.motion.samples import DISTANCE, TURN, angles_between
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke
@@ -23,14 +24,25 @@ from cellcolor.motion.turns import Visit, chosen_turns
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).
 _FASTER = 0.3  # rad; from one sample of a retreat to the next a branch that jumps moves farther
+_TILTS = (30.0, 60.0)  # degrees off the normal, of retreats where that along it is blocked
+_AROUND = 6  # of each tilt
+_SHARES = (1.0, 0.4, 0.1)  # of the clearance that a retreat's end keeps, the most that it can
+_STARTS = 24  # of a closed stroke that are tried where the arm cannot leave
+_TRIMMED = 0.5  # spacings that an open stroke may lose at an end for that
+_RETRACED = 10.0, 0.15  # spacings, or of a stroke's length, that it may go back over for that
 _COARSE = 0.04  # rad, between samples of a move that is only tried
-_FEW_ROUNDS, _MANY_ROUNDS = 600, 20_000  # of the sampling planner: seconds, or a minute or two
 _FINE = 0.01  # rad, the same where that let a hit through
+_DRAWN, _STOPS = 256, 40  # configurations drawn for a map of free ones, and kept in it
+_WIDER = 0.7  # rad; around the ends of all retreats they are drawn from
+_TESTS = 80  # moves of that map that are tested for one transfer
+_FEW_ROUNDS, _MANY_ROUNDS = 600, 6_000  # of the sampling planner: seconds, or half a minute
 _SPARE = 0.005  # m, more than the clearance that is kept while a way is looked for
-_NEAR = 0.3  # rad; so near its ends it keeps no more than the clearance
+_NEAR = 0.3  # rad; so near its ends it keeps only what these keep
+_BREAK = 0.2  # s; so much a stop on the way costs
 _BLOCKED = 10.0  # s; by so much longer a move counts that no simple way is known for
 _DEEP = 60.0  # s; and by so much, times the share of it that is not free
 _ROOM = 0.999  # of the largest steps, for rounding
+_SHOWN = 3  # pairs of bodies that are named
 
 
 @dataclass(frozen=True)
@@ -40,10 +52,12 @@ class Transfer:
     Attributes:
         joints: (k, joints) rad or m, unwound.
         gap: the configuration after which the way was not planned; None if all was planned.
+        blocked: what is in the way there, a clause.
     """
 
     joints: Array
-    gap: int | None
+    gap: int | None = None
+    blocked: str = ""
 
 
 class Transfers:
@@ -62,17 +76,18 @@ class Transfers:
         Raises:
             InputError: the home position is not free.
         """
-        check_home(prepared, motion)
         self._prepared, self._seed, self._deadline = prepared, seed, deadline
-        self._height, self._velocities = motion.retract_m, velocities
+        self._motion, self._velocities = motion, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
-        self._clear = FreeSpace(prepared, motion.clearance_m)
+        self._levels = [FreeSpace(prepared, share * motion.clearance_m) for share in _SHARES]
+        self._clear = self._levels[0]
         self._wide = FreeSpace(prepared, motion.clearance_m + _SPARE)
-        self._home, self._space = home_of(motion), joint_space(prepared)
+        self.home, self._space = home_of(prepared, motion), joint_space(prepared)
         self._shares: dict[bytes, float] = {}
+        self._stops: list[Array] = []
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
-        """The strokes with their turns fixed, and all motions without contact.
+        """The strokes with ends and turns fixed, and all motions without contact.
 
         These are the way to the first stroke, those between strokes, and the way from the last
         one. Without a home position the first begins, and the last ends, where the tool is
@@ -84,11 +99,10 @@ class Transfers:
         Raises:
             OutOfTime: the deadline came first.
         """
-        onto, off = (
-            [self._retreat(one.joints[at], one.normals[at], one.branch) for one in strokes]
-            for at in (0, -1)
-        )
-        space, home = self._space, self._home
+        left = [self._left(stroke) for stroke in strokes]
+        strokes = [stroke for stroke, _, _ in left]
+        onto, off = [way for _, way, _ in left], [way for _, _, way in left]
+        space, home = self._space, self.home
         visits = []
         for way_on, stroke, way_off in zip(onto, strokes, off, strict=True):
             span = np.concatenate([way_on, stroke.joints, way_off])
@@ -101,52 +115,115 @@ class Transfers:
             [self._high(way + space.period * own) for way, own in zip(ways, circles, strict=True)]
             for ways in (onto, off)
         )
+        self._stops = self._free_stops([way[-1] for way in (*onto, *off)])
         if home is None:
             return turned, [
-                Transfer(onto[0][::-1], None),
+                Transfer(onto[0][::-1]),
                 *(self._joined(*ways) for ways in zip(off[:-1], onto[1:], strict=True)),
-                Transfer(off[-1], None),
+                Transfer(off[-1]),
             ]
         ways = zip([home[None], *off], [*onto, home[None]], strict=True)
         return turned, [self._joined(*pair) for pair in ways]
 
-    def _retreat(self, joints: Array, normal: Array, branch: int) -> Array:
-        """Off the surface along the normal, at most as high as the setup says.
+    def _left(self, stroke: Stroke) -> tuple[Stroke, Array, Array]:
+        """A stroke that begins and ends where the arm can leave it, and both retreats.
 
-        The branch stays the same. The way ends at the greatest height that is clear of everything,
-        with nothing in the way below it; there may be none, and then it has no length.
+        A closed one begins elsewhere. An open one loses a little at the end, or goes back over
+        itself as far as to a place that the arm can leave; if there is none, it stays as it is.
+        """
+        if stroke.is_closed(self._space):
+            apart = np.linspace(0, len(stroke) - 1, _STARTS, endpoint=False).astype(int)
+            for at in sorted(set(apart.tolist()), key=lambda at: min(at, len(stroke) - at)):
+                begun = stroke.begun_at(at, self._space)
+                onto = self._retreat(begun, 0)
+                if len(onto) > 1:
+                    wound = self._space.period * self._space.periods(begun.joints[-1] - onto[0])
+                    return begun, onto, onto + wound
+        onto = self._retreat(stroke, 0)
+        if len(onto) == 1:
+            stroke, onto = self._ended_elsewhere(stroke.reversed())
+            stroke = stroke.reversed()
+        off = self._retreat(stroke, -1)
+        if len(off) == 1:
+            stroke, off = self._ended_elsewhere(stroke)
+        return stroke, onto, off
 
-        Args:
-            joints: (joints,) in contact, unwound.
-            normal: (3,) the surface's, outward.
-            branch: of the configuration.
+    def _ended_elsewhere(self, stroke: Stroke) -> tuple[Stroke, Array]:
+        """A stroke with an end that the arm can leave, and the retreat from it."""
+        spacing = self._motion.spacing_m
+        steps = np.linalg.norm(np.diff(stroke.points[::-1], axis=0), axis=1)
+        back = np.concatenate([[0.0], np.cumsum(steps)])  # from the end on
+        most = max(_RETRACED[0] * spacing, _RETRACED[1] * back[-1])
+        for far in np.arange(0.25, most / spacing, 0.5) * spacing:
+            if far >= back[-1]:
+                break
+            self._deadline.check()
+            at = len(stroke) - 1 - int(np.searchsorted(back, far))
+            off = self._retreat(stroke, at)
+            if len(off) == 1 or at < 1:
+                continue
+            if far <= _TRIMMED * spacing:
+                return stroke.part(0, at + 1), off
+            again = slice(len(stroke) - 2, at - 1 if at else None, -1)
+            return stroke.followed_by(again), off
+        return stroke, stroke.joints[-1:]
+
+    def _retreat(self, stroke: Stroke, at: int) -> Array:
+        """Off the surface from a sample of a stroke, at most as high as the setup says.
+
+        Along the normal if that leads to where the arm keeps its clearance, otherwise in the
+        direction in which it comes to keep most of it. Direction of the tool and branch stay the
+        same. There may be no way off, and then it has no length.
 
         Returns:
             (k, joints) from the contact on, unwound.
         """
+        joints, normal = stroke.joints[at], stroke.normals[at]
+        found = []
+        for direction in _directions(normal):
+            way = self._off(joints, normal, direction, stroke.branch)
+            if len(way) == 1:
+                continue
+            level = self._level(way[-1])
+            if level == 0:
+                return way
+            found.append((level, -len(way), way))
+        return min(found, key=lambda one: one[:2])[2] if found else joints[None]
+
+    def _off(self, joints: Array, normal: Array, direction: Array, branch: int) -> Array:
+        """One retreat (k, joints), cut where it is as high as it can be."""
+        height = self._motion.retract_m
         tip = forward(self._prepared.robot, joints[None]).tip[0]
-        count = int(np.ceil(self._height / (DISTANCE * _ROOM)))
-        heights = np.linspace(0.0, self._height, count + 1)[1:]
-        points = tip + heights[:, None] * normal
-        directions = np.tile(-normal, (count, 1))
-        found = self._prepared.arm.follow(points, directions, np.full(count, branch, dtype=np.intp))
+        count = int(np.ceil(height / (DISTANCE * _ROOM)))
+        points = tip + np.linspace(0.0, height, count + 1)[1:, None] * direction
+        axes, branches = np.tile(-normal, (count, 1)), np.full(count, branch, dtype=np.intp)
+        found = self._prepared.arm.follow(points, axes, branches)
         solved = ~np.isnan(found[:, 0])
         found = found[: count if solved.all() else int(np.argmin(solved))]
         way = joints + self._space.unwrap(np.concatenate([joints[None], found]) - joints)
         steady = self._space.largest(np.diff(way, axis=0)) <= _FASTER
         fine = np.append(steady & self._leaving.clear(way[1:]), False)
-        way = way[: int(np.argmin(fine)) + 1]
-        clear = np.flatnonzero(self._clear.clear(way[1:]))
-        return np.asarray(way[: clear[-1] + 2 if len(clear) else 1])
+        return self._cut(way[: int(np.argmin(fine)) + 1])
+
+    def _cut(self, way: Array) -> Array:
+        """A way off as far as it keeps most of the clearance."""
+        for free in self._levels:
+            clear = np.flatnonzero(free.clear(way[1:]))
+            if len(clear):
+                return np.asarray(way[: clear[-1] + 2])
+        return way[:1]
+
+    def _level(self, joints: Array) -> int:
+        """Which share of the clearance (``_SHARES``) is kept; their number for none."""
+        each = (level for level, free in enumerate(self._levels) if free.clear(joints[None])[0])
+        return next(each, len(_SHARES))
 
     def _high(self, way: Array) -> Array:
         """A retreat, cut where it leaves the limits, and there where it is still clear."""
         inside = np.append(self._clear.inside(way), False)
         if inside[:-1].all():
             return way
-        way = way[: max(1, int(np.argmin(inside)))]
-        clear = np.flatnonzero(self._clear(way[1:]))
-        return np.asarray(way[: clear[-1] + 2 if len(clear) else 1])
+        return self._cut(way[: max(1, int(np.argmin(inside)))])
 
     def _joined(self, off: Array, onto: Array) -> Transfer:
         """Along one retreat, freely to the end of another one, and back along that."""
@@ -154,7 +231,8 @@ class Transfers:
             off = np.concatenate([off, off])  # so that there is a sample without contact
         between = self._between(off[-1], onto[-1])
         joints = np.concatenate([off[:-1], between.joints, onto[:-1][::-1]])
-        return Transfer(joints, None if between.gap is None else len(off) - 1 + between.gap)
+        gap = None if between.gap is None else len(off) - 1 + between.gap
+        return Transfer(joints, gap, between.blocked)
 
     def _blocked(self, start: Array, end: Array) -> float:
         """What share of the samples of a straight move is not free."""
@@ -169,8 +247,8 @@ class Transfers:
         share = self._blocked(start, end)
         if share == 0.0:
             return 0.0
-        if self._home is not None:
-            legs = (start, self._home), (self._home, end)
+        if self.home is not None:
+            legs = (start, self.home), (self.home, end)
             if all(self._blocked(*leg) == 0.0 for leg in legs):
                 return sum(self._seconds(*leg) for leg in legs) - self._seconds(start, end)
         return _BLOCKED + _DEEP * share
@@ -184,50 +262,102 @@ class Transfers:
         return float(1.0 - self._clear(start + share * (end - start)).mean())
 
     def _between(self, start: Array, end: Array) -> Transfer:
-        """Straight for the joints, or over the home position, or as sampled, or not at all."""
-        tried = [np.array([start, end])]
-        if self._home is not None:
-            tried.append(np.array([start, self._home, end]))
-        for corners in tried:
-            self._deadline.check()
-            way = self._dense(corners)
-            if self._clear(way).all():
-                return Transfer(way, None)
-        if self._clear(np.array([start, end])).all():
-            roomy = self._roomy(start, end)
-            for free, step, rounds in (
+        """Straight for the joints, or over free configurations, or as sampled, or not at all."""
+        levels = self._level(start), self._level(end)
+        if max(levels) == len(_SHARES):
+            where = (start, end)[int(np.argmax(levels))]
+            return Transfer(np.array([start, end]), 0, self._bodies(where[None]))
+        near = self._levels[max(levels)]
+        for over in (self._clear, near) if max(levels) else (self._clear,):
+            free = self._ramped(over, near, start, end)
+            found = self._over_stops(start, end, free)
+            if found is not None:
+                return Transfer(found)
+            roomy = self._ramped(self._wide, near, start, end) if over is self._clear else free
+            last = over is near
+            for tested, step, rounds in (
                 (roomy, _COARSE, _FEW_ROUNDS),
-                (self._clear, _FINE, _FEW_ROUNDS),
-                (self._clear, _FINE, _MANY_ROUNDS),
+                (free, _FINE, _MANY_ROUNDS if last else _FEW_ROUNDS),
             ):
-                found = sampled_way(
-                    start, end, self._space, free, step, rounds, self._seed, self._deadline
+                corners = sampled_way(
+                    start, end, self._space, tested, step, rounds, self._seed, self._deadline
                 )
                 self._deadline.check()
-                if found is None:
-                    continue
-                way = self._dense(found)
-                if self._clear(way).all():
-                    return Transfer(way, None)
-        return Transfer(np.array([start, end]), 0)
+                if corners is not None and free(way := self._dense(corners)).all():
+                    self._stops += list(corners[1:-1])
+                    return Transfer(way)
+        straight = self._dense(np.array([start, end]))
+        return Transfer(np.array([start, end]), 0, self._bodies(straight[~self._clear(straight)]))
 
-    def _roomy(self, start: Array, end: Array) -> Callable[[Array], Mask]:
-        """Free with more room than needed, but near the ends, which need not have it.
+    def _bodies(self, configurations: Array) -> str:
+        """Which bodies are in each other's way in the middle one of some configurations."""
+        if not len(configurations):
+            return "no way was found round what is near"
+        found = self._clear.touched(configurations[len(configurations) // 2])
+        return ", ".join(found[:_SHOWN]) or "a joint limit"
 
-        With that a way that was tested at few configurations is free between them as well.
+    def _ramped(
+        self, over: FreeSpace, near: FreeSpace, start: Array, end: Array
+    ) -> Callable[[Array], Mask]:
+        """Which configurations (k, joints) are free, those near the ends with less room.
+
+        With room to spare, a way that was tested at few configurations is free between them too.
         """
 
         def free(configurations: Array) -> Mask:
-            found = self._wide(configurations)
+            found = over(configurations)
             off = np.minimum(
                 self._space.largest(configurations - start),
                 self._space.largest(configurations - end),
             )
             doubtful = np.flatnonzero(~found & (off < _NEAR))
-            found[doubtful] = self._clear(configurations[doubtful])
+            found[doubtful] = near(configurations[doubtful])
             return found
 
         return free
+
+    def _free_stops(self, ends: Sequence[Array]) -> list[Array]:
+        """Free configurations that ways may lead over: home, and some about the strokes' ends."""
+        stops = [] if self.home is None else [self.home]
+        around = np.array([*ends, *stops])
+        low = np.maximum(around.min(axis=0) - _WIDER * self._space.units, self._space.lower)
+        high = np.minimum(around.max(axis=0) + _WIDER * self._space.units, self._space.upper)
+        drawn = np.random.default_rng(self._seed).uniform(low, high, (_DRAWN, len(low)))
+        return stops + list(drawn[self._wide(drawn)][:_STOPS])
+
+    def _over_stops(self, start: Array, end: Array, free: Callable[[Array], Mask]) -> Array | None:
+        """The quickest way over stops whose straight moves are free, sampled; None without one.
+
+        Moves are tested only where they are on the quickest way that is left (Bohlin and Kavraki,
+        Path planning using lazy PRM, 2000).
+        """
+        nodes = np.array([start, end, *self._stops])
+        seconds = (np.abs(nodes[:, None] - nodes[None]) / self._velocities).max(axis=2)
+        seconds += _BREAK * ~np.eye(len(nodes), dtype=bool)
+        tested: dict[tuple[int, int], Array] = {}
+        for _ in range(_TESTS):
+            self._deadline.check()
+            lengths, before = dijkstra(seconds, indices=0, return_predecessors=True)
+            if not np.isfinite(lengths[1]):
+                return None
+            way = [1]
+            while way[-1]:
+                way.append(int(before[way[-1]]))
+            moves = list(pairwise(way[::-1]))
+            untested = next((move for move in moves if move not in tested), None)
+            if untested is None:
+                return np.concatenate([nodes[:1], *(tested[move][1:] for move in moves)])
+            one, other = untested
+            count = max(2, int(np.ceil(self._space.largest(nodes[other] - nodes[one]) / _COARSE)))
+            share = np.linspace(0.0, 1.0, count + 1)[:, None]
+            is_free = bool(free(nodes[one] + share * (nodes[other] - nodes[one])).all())
+            if is_free:
+                tested[untested] = self._dense(nodes[[one, other]])
+                is_free = bool(free(tested[untested]).all())
+            if not is_free:
+                tested.pop(untested, None)
+                seconds[one, other] = seconds[other, one] = 0.0  # no edge, in scipy's words
+        return None
 
     def _dense(self, corners: Array) -> Array:
         """Samples (k, joints) of straight ways for the joints through corners (c, joints).
@@ -251,3 +381,15 @@ class Transfers:
                 count = int(np.ceil(count * excess / _ROOM))
             parts.append(way[1:])
         return np.concatenate(parts)
+
+
+def _directions(normal: Array) -> Iterator[Array]:
+    """The normal (3,), then unit vectors tilted off it, around it."""
+    yield normal
+    across = np.cross(normal, np.eye(3)[np.abs(normal).argmin()])
+    across /= np.linalg.norm(across)
+    other = np.cross(normal, across)
+    for tilt in np.radians(_TILTS):
+        for turn in 2 * np.pi * np.arange(_AROUND) / _AROUND:
+            aside = np.cos(turn) * across + np.sin(turn) * other
+            yield np.cos(tilt) * normal + np.sin(tilt) * aside

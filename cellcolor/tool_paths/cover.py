@@ -27,6 +27,7 @@ ASKED_FOR = "left out on request"
 _TRIANGLES = 24  # for each square of the spacing, about
 _MOST_TRIANGLES = 4_000_000
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
+_INWARD = 2e-5  # m; so far off the border points are put that lie on it
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -162,15 +163,22 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
 
 
 def _path(region: Region, laid: Laid) -> ToolPath:
-    """The path in the world."""
-    walk = np.array(laid.walk, dtype=np.int64)
+    """The path in the world, a hair off the region's border where it runs along it.
+
+    On the border itself rounding decides on which side of a crack a point lies.
+    """
     mesh = laid.mesh
+    walk = np.array(laid.walk, dtype=np.int64)
+    inward = np.zeros_like(mesh.points)
+    for side in range(3):
+        at = mesh.corners[:, side]
+        middle = mesh.points[mesh.corners].mean(axis=1) - mesh.points[at]
+        np.add.at(inward, at, middle)
+    inward[~mesh.border] = 0.0
+    lengths = np.linalg.norm(inward, axis=1, keepdims=True)
+    points = mesh.points + _INWARD * inward / np.where(lengths > 0, lengths, 1.0)
     return ToolPath(
-        region.segment,
-        region.color,
-        mesh.points[walk],
-        mesh.normals[walk],
-        mesh.faces_of_walk(walk),
+        region.segment, region.color, points[walk], mesh.normals[walk], mesh.faces_of_walk(walk)
     )
 
 

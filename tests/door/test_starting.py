@@ -18,7 +18,7 @@ import cellcolor
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
-from cellcolor.motion.home import check_home
+from cellcolor.motion.home import home_of
 from cellcolor.motion.limits import motion_of
 
 Capture = pytest.CaptureFixture[str]
@@ -52,7 +52,7 @@ def test_family_flange_place_and_home_are_found(
     prepared = prepare(scene)
     assert np.allclose(np.ptp(prepared.surface.vertices, axis=0)[:2], (0.16, 0.12))
     assert motion_of(prepared).home_rad is not None
-    check_home(prepared, motion_of(prepared))
+    home_of(prepared, motion_of(prepared))
     built = cellcolor.build(scene)
     # It asked some of the vertices.
     whole = built.report.reachable / built.report.vertices

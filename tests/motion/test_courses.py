@@ -37,6 +37,9 @@ def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
 
     monkeypatch.setattr(courses, "follow", follow)
     monkeypatch.setattr(courses, "bowed", lambda _robot, joints: np.zeros(len(joints) - 1, bool))
+    monkeypatch.setattr(courses, "off_way", lambda *_: False)
+    monkeypatch.setattr(courses, "unwound", lambda joints, _: joints)
+    monkeypatch.setattr(courses, "joint_space", lambda _: None)
     up = np.tile([0.0, 0.0, 1.0], (3, 1))
     ends = np.array([[-0.0301, 0.0, 0.0], [0.0302, 0.0, 0.0]])
     path = ToolPath(0, 0, ends, up[:2], np.array([0]))

@@ -13,7 +13,7 @@ import cellcolor
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene, prepare
-from cellcolor.motion.home import check_home
+from cellcolor.motion.home import home_of
 from cellcolor.motion.limits import motion_of
 
 HEIGHT = 0.44  # m; of a ground that the arm at home reaches into
@@ -34,7 +34,7 @@ def lowest(prepared: PreparedScene, joints: list[float]) -> dict[str, float]:
 def refused(prepared: PreparedScene) -> tuple[str, list[float]]:
     """What a refusal says, and the position that it proposes."""
     with pytest.raises(InputError) as caught:
-        check_home(prepared, motion_of(prepared))
+        home_of(prepared, motion_of(prepared))
     assert caught.value.field == "motion.home_rad"
     assert str(prepared.setup.file) in str(caught.value)
     (proposed,) = re.findall(r"free is, for example, \[(.*)\]", caught.value.message)
@@ -75,7 +75,7 @@ def test_an_object_at_the_tool_is_named(far: float) -> None:
     said, proposed = refused(moved)
     assert "and the object" in said
     assert ("touch;" in said) == (far == 0)
-    check_home(moved, motion_of(moved).varied(home_rad=proposed))  # passes its own advice
+    home_of(moved, motion_of(moved).varied(home_rad=proposed))  # passes its own advice
 
 
 def test_it_is_refused_before_colors_are_computed() -> None:

@@ -201,8 +201,8 @@ def _paths(paths: ToolPaths | None, lift: float) -> dict[str, Any]:
 def _still(report: MotionReport) -> Trajectory:
     """The arm standing still, at home or in some valid configuration on the part."""
     robot, motion = report.built.robot, report.built.scene.setup.motion
-    if motion is not None and motion.home_rad is not None:
-        joints = np.array([motion.home_rad])
+    if motion is not None and motion.home is not None:
+        joints = np.array([motion.home])
     else:
         joints = report.built.configurations[report.built.reasons == VALID][:1]
     poses = forward(robot, joints)
