@@ -59,15 +59,18 @@ class _Numbers(click.ParamType):  # type: ignore[type-arg]
         said: what is said where they are something else.
         count: how many; None for any number of them.
         finite: whether each has to be finite.
+        word: what may be said instead of numbers.
     """
 
     name = "numbers"
 
-    def __init__(self, said: str, count: int | None = None, *, finite: bool = False) -> None:
-        self.said, self.count, self.finite = said, count, finite
+    def __init__(
+        self, said: str, count: int | None = None, *, finite: bool = False, word: str | None = None
+    ) -> None:
+        self.said, self.count, self.finite, self.word = said, count, finite, word
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
-        if isinstance(value, tuple):
+        if isinstance(value, tuple) or value == self.word:
             return value
         try:
             numbers = tuple(map(float, value.split(",")))
@@ -211,7 +214,7 @@ _MOTION = {
     "joint_accelerations_rad_per_s2": "A URDF has none; rad/s² (m/s² for sliding joints).",
     "retract_m": "Along the normal, before a move to another stroke, m.",
     "clearance_m": "Distance from everything between strokes, m.",
-    "home_rad": "Where the arm begins and ends, rad (m for sliding joints).",
+    "home_rad": "Where the arm begins and ends, rad (m for sliding joints), or free.",
 }
 """Keys of a setup's table ``[motion]``. The setup says what may be left out, and checks numbers."""
 
@@ -219,12 +222,14 @@ _MOTION = {
 def motion_options(command: Command) -> Command:
     """An option for each key of a setup's table ``[motion]``; those left out are None."""
     for key, meaning in reversed(_MOTION.items()):
-        several = key.startswith("joint") or key == "home_rad"
+        home = key == "home_rad"
+        several = home or key.startswith("joint")
+        numbers = _Numbers("must be numbers N,N,…", finite=True, word="free" if home else None)
         command = click.option(
             f"--{key.replace('_', '-')}",
             key,
             metavar="N,N,…" if several else "N",
-            type=_Numbers("must be numbers N,N,…", finite=True) if several else _Number(),
+            type=numbers if several else _Number(),
             help=meaning,
         )(command)
     return command

@@ -67,7 +67,7 @@ def _fitting(farthest: float, spacing: float) -> float:
         farthest: from the border, m.
         spacing: the wanted one, m; it is kept where none that fits is near.
     """
-    fitting = farthest / np.ceil(farthest / (_WIDEST * spacing))
+    fitting = farthest / max(np.ceil(farthest / (_WIDEST * spacing)), 1.0)  # 0 if all is border
     return float(fitting) if fitting >= _NARROWEST * spacing else spacing
 
 

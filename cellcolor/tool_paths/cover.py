@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -28,6 +29,7 @@ _TRIANGLES = 24  # for each square of the spacing, about
 _MOST_TRIANGLES = 4_000_000
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
 _INWARD = 2e-5  # m; so far off the border points are put that lie on it
+_INWARD_SHARE = 0.1  # of the way into the triangle, at most
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -163,23 +165,51 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
 
 
 def _path(region: Region, laid: Laid) -> ToolPath:
-    """The path in the world, a hair off the region's border where it runs along it.
+    """The path in the world, a hair inside the region where it runs along the border.
 
-    On the border itself rounding decides on which side of a crack a point lies.
+    On the border itself rounding decides on which side of a crack a point lies. Each step stays in
+    its triangle, so where the triangle beside the border changes, the path touches the border,
+    unless both lie in one triangle of the surface and the border is convex there.
     """
     mesh = laid.mesh
     walk = np.array(laid.walk, dtype=np.int64)
-    inward = np.zeros_like(mesh.points)
-    for side in range(3):
-        at = mesh.corners[:, side]
-        middle = mesh.points[mesh.corners].mean(axis=1) - mesh.points[at]
-        np.add.at(inward, at, middle)
-    inward[~mesh.border] = 0.0
-    lengths = np.linalg.norm(inward, axis=1, keepdims=True)
-    points = mesh.points + _INWARD * inward / np.where(lengths > 0, lengths, 1.0)
+    faces = mesh.faces_of_walk(walk)
+    triangle = np.empty(len(mesh.edges), dtype=np.int64)
+    triangle[mesh.edge_of_side] = np.arange(len(mesh.corners))[:, None]
+    number = mesh.find(np.stack([walk[:-1], walk[1:]], axis=1))
+    beside = np.where(mesh.triangles_at[number] == 1, triangle[number], -1)
+    angles = np.zeros(len(mesh.points))
+    np.add.at(angles, mesh.corners.ravel(), _angles(mesh.points[mesh.corners]).ravel())
+    points, normals = [mesh.points[walk[0]]], [mesh.normals[walk[0]]]
+    owns: list[Any] = []
+    for step, other in enumerate(beside.tolist()):
+        ends, face = walk[step : step + 2], faces[step]
+        if other >= 0:
+            third = mesh.points[np.setdiff1d(mesh.corners[other], ends)[0]]
+            before = step and beside[step - 1] >= 0 and faces[step - 1] == face
+            if before and angles[ends[0]] < np.pi:
+                for rows in (points, normals, owns):
+                    rows.pop()
+            for end in ends:
+                way = third - mesh.points[end]
+                share = min(_INWARD / max(float(np.linalg.norm(way)), _INWARD), _INWARD_SHARE)
+                points.append(mesh.points[end] + share * way)
+                normals.append(mesh.normals[end])
+                owns.append(face)
+        points.append(mesh.points[ends[1]])
+        normals.append(mesh.normals[ends[1]])
+        owns.append(face)
     return ToolPath(
-        region.segment, region.color, points[walk], mesh.normals[walk], mesh.faces_of_walk(walk)
+        region.segment, region.color, np.array(points), np.array(normals), np.array(owns)
     )
+
+
+def _angles(triangles: Array) -> Array:
+    """Angles (m, 3) at the corners of triangles (m, 3, 3), rad."""
+    one = np.roll(triangles, -1, axis=1) - triangles
+    other = np.roll(triangles, 1, axis=1) - triangles
+    across = np.linalg.norm(np.cross(one, other), axis=2)
+    return np.asarray(np.arctan2(across, (one * other).sum(axis=2)))
 
 
 def _left_out(
