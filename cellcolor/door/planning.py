@@ -232,7 +232,11 @@ class PlannedScene(UnfinishedPlan):
         said += [str(self.trajectory) + (f", {extra} beyond the minimum" if extra else "")]
         if self.trajectory.unplanned:
             moves = count(len(self.trajectory.unplanned), "move")
-            said.append(f"{moves} between strokes not planned: the arm must not drive there")
+            between = "; ".join(dict.fromkeys(self.trajectory.meta.get("blocked", ())))
+            said.append(
+                f"{moves} between strokes not planned: the arm must not drive there"
+                + (f"; in the way: {between}" if between else "")
+            )
         covered = self.verdict.covered
         said.append(f"judge: {self.verdict}" + ("" if covered is None else f"; {covered}"))
         said += [str(answer) for answer in (self.answered.answers if self.answered else ())]

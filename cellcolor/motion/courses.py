@@ -86,8 +86,9 @@ def laid_out(
     for _ in range(_ROUNDS):
         covered = lay(np.array(sorted(reasons), dtype=np.int64))
         courses, failing = [], {}
-        for path in covered.paths.paths:
-            course = _course(prepared, path, surface, normals, branch, deadline)
+        for path, corners in zip(covered.paths.paths, covered.along_border, strict=True):
+            places = even_places(path, corners)
+            course = _course(prepared, path, places, surface, normals, branch, deadline)
             samples = course.samples
             courses.append(course)
             for at, why in _failures(course.followed, prepared.judge.reason_names):
@@ -102,6 +103,7 @@ def laid_out(
 def _course(
     prepared: PreparedScene,
     path: ToolPath,
+    places: Array,
     surface: LabelledSurface,
     normals: Array,
     branch: int,
@@ -117,7 +119,6 @@ def _course(
     def at(places: Array) -> Samples:
         return with_normals_of(sampled(path, places), surface.mesh, normals)
 
-    places = even_places(path)
     samples = at(places)
     followed = follow(prepared, samples, branch, deadline)
     for halvings in range(_HALVINGS + 1):

@@ -11,6 +11,7 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.frontend.tables import in_file
+from cellcolor.motion.following import joint_space
 from cellcolor.motion.free_space import FreeSpace
 
 _TRIED = 256  # configurations at each distance
@@ -18,6 +19,7 @@ _FIRST, _FARTHER = (
     0.1,
     1.3,
 )  # rad (or units of a slide), and the factor from one distance to the next
+_ROOMS = (0.1, 0.03, 0.0)  # m, more than the clearance, that a position that is found keeps
 _SHOWN = 3  # contacts
 _DIGITS = 2  # of a proposed position, rad or m
 
@@ -31,16 +33,18 @@ def home_of(prepared: PreparedScene, motion: Motion) -> Array | None:
     """
     if motion.home_rad is None:
         return None
-    free = FreeSpace(prepared, motion.clearance_m)
     if motion.home is None:
-        lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in free.space.limits)
-        middle = np.round((lower + upper) / 2, _DIGITS)
-        near = free_near(free, middle)
+        lower, upper = (np.clip(limit, -np.pi, np.pi) for limit in joint_space(prepared).limits)
+        middle, near = np.round((lower + upper) / 2, _DIGITS), None
+        for room in _ROOMS:
+            near = free_near(FreeSpace(prepared, motion.clearance_m + room), middle)
+            if near is not None:
+                break
         if near is None:
             with in_file(prepared.setup.file):
                 raise InputError(None, "motion.home_rad", "no free position was found; give one")
         return np.array(near)
-    home = np.array(motion.home)
+    home, free = np.array(motion.home), FreeSpace(prepared, motion.clearance_m)
     if free(home[None])[0]:
         return home
     how, found = "touch", FreeSpace(prepared, 0.0).touched(home)

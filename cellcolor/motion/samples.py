@@ -63,17 +63,22 @@ def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Sam
     return Samples(samples.points, turned, samples.faces)
 
 
-def even_places(path: ToolPath) -> Array:
+def even_places(path: ToolPath, corners: Index | None = None) -> Array:
     """Places (k,) of samples all along a path, both ends among them.
 
     A place is the way from the path's beginning, in shares of what samples may be apart.
 
     The way between neighbors is at most 1 mm long along the path, and the normal turns by at most
     1 degree on it. The larger share of the two sets an equal distance for all.
-    Corners of the path are not samples: a chord cuts them by less than half a millimeter.
+    Corners of the path are not samples, but those that are asked for: a chord cuts them by less
+    than half a millimeter.
+
+    Args:
+        corners: numbers of points of the path.
     """
-    total = float(np.cumsum(_shares(path))[-1])
-    return np.linspace(0.0, total, max(int(np.ceil(total)), 1) + 1)
+    passed = np.concatenate([[0.0], np.cumsum(_shares(path))])
+    even = np.linspace(0.0, passed[-1], max(int(np.ceil(passed[-1])), 1) + 1)
+    return even if corners is None else np.union1d(even, passed[corners])
 
 
 def sampled(path: ToolPath, places: Array | None = None) -> Samples:

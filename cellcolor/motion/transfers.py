@@ -34,13 +34,15 @@ _COARSE = 0.04  # rad, between samples of a move that is only tried
 _FINE = 0.01  # rad, the same where that let a hit through
 _DRAWN, _STOPS = 256, 40  # configurations drawn for a map of free ones, and kept in it
 _WIDER = 0.7  # rad; around the ends of all retreats they are drawn from
-_TESTS = 80  # moves of that map that are tested for one transfer
+_LIFTED = 4  # heights above each retreat that are in it, a retreat apart
+_TESTS = 150  # moves of that map that are tested for one transfer
 _FEW_ROUNDS, _MANY_ROUNDS = 600, 6_000  # of the sampling planner: seconds, or half a minute
 _SPARE = 0.005  # m, more than the clearance that is kept while a way is looked for
 _NEAR = 0.3  # rad; so near its ends it keeps only what these keep
 _BREAK = 0.2  # s; so much a stop on the way costs
 _BLOCKED = 10.0  # s; by so much longer a move counts that no simple way is known for
 _DEEP = 60.0  # s; and by so much, times the share of it that is not free
+_LONGER = 10.0  # times the time of a straight move that is blocked; so few turns are preferred
 _ROOM = 0.999  # of the largest steps, for rounding
 _SHOWN = 3  # pairs of bodies that are named
 
@@ -115,7 +117,13 @@ class Transfers:
             [self._high(way + space.period * own) for way, own in zip(ways, circles, strict=True)]
             for ways in (onto, off)
         )
-        self._stops = self._free_stops([way[-1] for way in (*onto, *off)])
+        ends = [
+            (way[-1], stroke.branch)
+            for ways in (onto, off)
+            for way, stroke in zip(ways, turned, strict=True)
+        ]
+        self._stops = self._free_stops([end for end, _ in ends])
+        self._stops += [high for end in ends for high in self._higher(*end)]
         if home is None:
             return turned, [
                 Transfer(onto[0][::-1]),
@@ -251,7 +259,7 @@ class Transfers:
             legs = (start, self.home), (self.home, end)
             if all(self._blocked(*leg) == 0.0 for leg in legs):
                 return sum(self._seconds(*leg) for leg in legs) - self._seconds(start, end)
-        return _BLOCKED + _DEEP * share
+        return _BLOCKED + _DEEP * share + _LONGER * self._seconds(start, end)
 
     def _seconds(self, start: Array, end: Array) -> float:
         return float((np.abs(end - start) / self._velocities).max())
@@ -315,6 +323,18 @@ class Transfers:
             return found
 
         return free
+
+    def _higher(self, end: Array, branch: int) -> Array:
+        """Free configurations (k, joints) straight above another one, as the tool points."""
+        poses = forward(self._prepared.robot, end[None])
+        heights = self._motion.retract_m * np.arange(1, _LIFTED + 1)
+        points = poses.tip - heights[:, None] * poses.tool_axis
+        found = self._prepared.arm.follow(
+            points, np.tile(poses.tool_axis, (_LIFTED, 1)), np.full(_LIFTED, branch, dtype=np.intp)
+        )
+        found = found[~np.isnan(found[:, 0])]
+        found = end + self._space.unwrap(np.concatenate([end[None], found]) - end)[1:]
+        return np.asarray(found[self._clear(found)])
 
     def _free_stops(self, ends: Sequence[Array]) -> list[Array]:
         """Free configurations that ways may lead over: home, and some about the strokes' ends."""

@@ -41,12 +41,15 @@ class Covered:
         measures: of each path, in the same order.
         in_all: of all together.
         uncovered: what no path comes near to, and why, the largest first.
+        along_border: of each path, its points beside a border that it runs along; where a chord
+            cuts a corner there, it may lie beyond the border.
     """
 
     paths: ToolPaths
     measures: tuple[PathMeasures, ...]
     in_all: PathMeasures
     uncovered: tuple[Uncovered, ...]
+    along_border: tuple[Index, ...] = ()
 
     def __str__(self) -> str:
         visits = f"{self.in_all.mean_visits:.2f} visits"
@@ -92,7 +95,7 @@ def cover(
     """
     lay = find_pattern(pattern)
     _check_lengths(surface, spacing_m, tool_radius_m)
-    paths, measures, uncovered = [], [], []
+    paths, measures, uncovered, along_border = [], [], [], []
     regions = regions_of(surface, segment_of, colors, normals, walls, left_out)
     for number, region in enumerate(regions):
         deadline.check()
@@ -106,7 +109,9 @@ def cover(
             continue
         laid = with_spurs(lay(region.mesh, spacing_m, deadline), spacing_m, deadline)
         own, left = measure(laid, region.segment, spacing_m)
-        paths.append(_path(region, laid))
+        path, beside = _path(region, laid)
+        paths.append(path)
+        along_border.append(beside)
         measures.append(own)
         uncovered += left
     uncovered += _left_out(surface, segment_of, left_out)
@@ -116,6 +121,7 @@ def cover(
         tuple(measures),
         in_all(measures, spacing_m),
         tuple(uncovered),
+        tuple(along_border),
     )
 
 
@@ -164,12 +170,15 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
         raise InputError(None, "spacing_m", message)
 
 
-def _path(region: Region, laid: Laid) -> ToolPath:
+def _path(region: Region, laid: Laid) -> tuple[ToolPath, Index]:
     """The path in the world, a hair inside the region where it runs along the border.
 
     On the border itself rounding decides on which side of a crack a point lies. Each step stays in
     its triangle, so where the triangle beside the border changes, the path touches the border,
     unless both lie in one triangle of the surface and the border is convex there.
+
+    Returns:
+        The path, and the numbers of its points that were put inside.
     """
     mesh = laid.mesh
     walk = np.array(laid.walk, dtype=np.int64)
@@ -182,6 +191,7 @@ def _path(region: Region, laid: Laid) -> ToolPath:
     np.add.at(angles, mesh.corners.ravel(), _angles(mesh.points[mesh.corners]).ravel())
     points, normals = [mesh.points[walk[0]]], [mesh.normals[walk[0]]]
     owns: list[Any] = []
+    moved: list[int] = []
     for step, other in enumerate(beside.tolist()):
         ends, face = walk[step : step + 2], faces[step]
         if other >= 0:
@@ -192,6 +202,7 @@ def _path(region: Region, laid: Laid) -> ToolPath:
                     rows.pop()
             for end in ends:
                 way = third - mesh.points[end]
+                moved.append(len(points))
                 share = min(_INWARD / max(float(np.linalg.norm(way)), _INWARD), _INWARD_SHARE)
                 points.append(mesh.points[end] + share * way)
                 normals.append(mesh.normals[end])
@@ -199,9 +210,10 @@ def _path(region: Region, laid: Laid) -> ToolPath:
         points.append(mesh.points[ends[1]])
         normals.append(mesh.normals[ends[1]])
         owns.append(face)
-    return ToolPath(
+    path = ToolPath(
         region.segment, region.color, np.array(points), np.array(normals), np.array(owns)
     )
+    return path, np.array(moved, dtype=np.int64)
 
 
 def _angles(triangles: Array) -> Array:

@@ -44,7 +44,7 @@ def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
     ends = np.array([[-0.0301, 0.0, 0.0], [0.0302, 0.0, 0.0]])
     path = ToolPath(0, 0, ends, up[:2], np.array([0]))
     mesh = TriangleMesh(CORNERS, np.array([[0, 1, 2]]))
-    laid: Any = SimpleNamespace(paths=SimpleNamespace(paths=(path,)))
+    laid: Any = SimpleNamespace(paths=SimpleNamespace(paths=(path,)), along_border=(None,))
     judge = SimpleNamespace(reason_names=("valid",))
     prepared: Any = SimpleNamespace(judge=judge, robot=None)
     surface: Any = SimpleNamespace(mesh=mesh)
