@@ -24,6 +24,7 @@ from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decomposition_of
 from cellcolor.lab.families import blobs
+from cellcolor.questions import choosing_set_ups
 from cellcolor.questions.choosing_set_ups import choose
 from cellcolor.solvers.interface import Options
 from examples import examples
@@ -74,14 +75,18 @@ def drawn_at_random(seed: int, count: int) -> list[LabelledSurface]:
 
 
 @examples(20)
-@given(seed=st.integers(0, 10**6), count=st.integers(1, 4))
-def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int) -> None:
+@given(seed=st.integers(0, 10**6), count=st.integers(1, 4), listed=st.booleans())
+def test_no_choice_has_fewer_set_ups_or_fewer_segments(seed: int, count: int, listed: bool) -> None:
+    """Whether each set of set-ups has a model of its own or all of them have one."""
     surfaces = drawn_at_random(seed, count)
     assume(any(reached(one).any() for one in surfaces))
     sets = covering(surfaces, 1.0)
     graphs = [decomposition_of(together([surfaces[n] for n in some])).instance for some in sets]
     assume(all(graph.most_live_loops < 2 for graph in graphs))
-    choice = choose(surfaces, 1.0, None, Options())
+    with pytest.MonkeyPatch.context() as patch:
+        if not listed:
+            patch.setattr(choosing_set_ups, "_MOST_SETS", 0)
+        choice = choose(surfaces, 1.0, None, Options())
     assert len(choice.set_ups) == choice.fewest_set_ups == len(sets[0])
     assert choice.set_ups in sets
     assert choice.covered_share == pytest.approx(1.0)
