@@ -6,9 +6,9 @@ import numpy as np
 
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward, tool_across
+from cellcolor.frontend.arm.kinematics import angle_about, bytes_of_poses, forward, tool_across
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.arm.turned import angle_about, turn_at
+from cellcolor.frontend.arm.turned import turn_at
 from cellcolor.frontend.setup import Turn
 from cellcolor.memory import chunks
 from cellcolor.trajectory_checker.dense import Dense

@@ -33,11 +33,12 @@ from cellcolor.frontend.arm.calibrated import (
 )
 from cellcolor.frontend.arm.inverse import (
     InverseKinematics,
+    check_lever,
     check_tool_on_last_axis,
     locked_angle,
     pose_at_zero,
 )
-from cellcolor.frontend.arm.kinematics import farthest_reach, nearest_points
+from cellcolor.frontend.arm.kinematics import farthest_reach, frames_along, nearest_points
 from cellcolor.frontend.arm.newton import exact_solutions
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, signs_of
@@ -70,7 +71,7 @@ class EaikKinematics(InverseKinematics):
                 raise InputError(str(robot.files[0]), "robot", _UNKNOWN)
             axes = ideal
         along = np.sign(axes.directions[5] @ poses.tool_axis[0])
-        self._tool_at_zero = _frames(along * axes.directions[5:6])[0]
+        self._tool_at_zero = frames_along(along * axes.directions[5:6])[0]
         # The tip as it is on the ideal arm: at its height on the last axis.
         height = float((poses.tip[0] - axes.points[5]) @ axes.directions[5])
         self._tip = height * axes.directions[5]
@@ -86,12 +87,7 @@ class EaikKinematics(InverseKinematics):
         wrist = nearest_points(*lines[5], *lines[4])[0]
         self.reach = farthest_reach(self._robot, shoulder)
         self.lever = float(np.linalg.norm(tip - wrist))
-        if self.lever > self.reach - self.lever:
-            raise InputError(
-                str(self._robot.files[1]),
-                f"link[{files.tip_link}]",
-                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
-            )
+        check_lever(self._robot, files, self.lever, self.reach - self.lever)
         first = axes.directions[0]
         up = -first if first[2] < 0 else first
         self.viewpoints = np.array([shoulder, shoulder + (self.reach - self.lever) * up])
@@ -145,7 +141,7 @@ class EaikKinematics(InverseKinematics):
     def _flanges(self, points: Array, directions: Array) -> list[Array]:
         """Poses (4, 4) of the last frame, turned as the world at zero, for any one turn."""
         poses = np.tile(np.eye(4), (len(points), 1, 1))
-        poses[:, :3, :3] = _frames(directions) @ self._tool_at_zero.T
+        poses[:, :3, :3] = frames_along(directions) @ self._tool_at_zero.T
         poses[:, :3, 3] = points - poses[:, :3, :3] @ self._tip
         return list(poses)
 
@@ -155,13 +151,6 @@ _UNKNOWN = (
     "them parallel; 'offset-wrist' solves arms whose axes 2 and 3 are parallel and 4 and 5 meet, "
     "and an own solver can be named (docs/how-to/add-a-family-of-arms.md)"
 )
-
-
-def _frames(directions: Array) -> Array:
-    """Right-handed frames (n, 3, 3) with unit vectors (n, 3) as their z axes."""
-    across = np.cross(directions, np.eye(3)[np.argmin(np.abs(directions), axis=1)])
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    return np.stack([across, np.cross(directions, across), directions], axis=2)
 
 
 def _solver(axes: Axes):  # type: ignore[no-untyped-def]  # EAIK has no types

@@ -132,6 +132,17 @@ def locked_angle(robot: Robot, files: RobotFiles) -> float:
     return locked
 
 
+def check_lever(robot: Robot, files: RobotFiles, lever: float, arm: float) -> None:
+    """Refuse a tool whose tip is farther from the wrist than an arm is long, both in m.
+
+    Raises:
+        InputError: names the link of the tip.
+    """
+    if lever > arm:
+        message = f"the tool is longer than the arm: tip {lever:.3f} m from the wrist"
+        raise InputError(str(robot.files[1]), f"link[{files.tip_link}]", message)
+
+
 def pose_at_zero(robot: Robot) -> Poses:
     """Where everything is with all joints at zero, one configuration."""
     return forward(robot, np.zeros((1, robot.joints)))

@@ -198,13 +198,13 @@ def task_jacobian(poses: Poses) -> tuple[Array, Array]:
         unit vectors across the tool that the last two are angular velocities about.
     """
     linear, angular = tip_jacobian(poses)
-    across = _across(poses.tool_axis)
+    across = two_across(poses.tool_axis)
     return np.concatenate([linear, across @ angular], axis=1)[:, :, :TASK_JOINTS], across
 
 
 def _rows(linear: Array, angular: Array, tool_axis: Array, task: TaskSpace) -> Array:
     """The task's Jacobian (n, dimensions, task joints), m and rad per rad."""
-    across = _across(tool_axis)
+    across = two_across(tool_axis)
     rows = [across @ linear if task.plane else linear]
     if task.direction:
         rows.append(across @ angular)
@@ -213,7 +213,7 @@ def _rows(linear: Array, angular: Array, tool_axis: Array, task: TaskSpace) -> A
     return np.concatenate(rows, axis=1)[:, :, : task.joints]
 
 
-def _across(tool_axis: Array) -> Array:
+def two_across(tool_axis: Array) -> Array:
     """Two unit vectors (n, 2, 3) that make a right-handed frame with the tool axis (n, 3)."""
     # A perpendicular that is never near zero: cross with the coordinate axis farthest off.
     farthest = np.eye(3)[np.argmin(np.abs(tool_axis), axis=1)]
@@ -272,9 +272,7 @@ def farthest_reach(robot: Robot, shoulder: Array) -> float:
             poses = forward(robot, q)
             axis, start = poses.axis[:, joint], poses.origin[:, joint + 1]
             moved, away = poses.tip - start, start - shoulder
-            sine = np.einsum("ni,ni->n", axis, np.cross(moved, away))
-            along = np.einsum("ni,ni->n", axis, moved) * np.einsum("ni,ni->n", axis, away)
-            q[:, joint] += np.arctan2(sine, np.einsum("ni,ni->n", moved, away) - along)
+            q[:, joint] += angle_about(axis, moved, away)
         reached = float(_distances(robot, q, shoulder).max())
         if reached - farthest <= _GAIN:
             break
@@ -362,3 +360,23 @@ def nearest_points(p: Array, u: Array, q: Array, v: Array) -> tuple[Array, Array
     along = ((q - p) @ u - cosine * ((q - p) @ v)) / sine if sine > 1e-12 else 0.0
     here = p + along * u
     return here, q + ((here - q) @ v) * v
+
+
+def angle_about(axes: Array, first: Array, second: Array) -> Array:
+    """By which angle (...,) in rad, in (-pi, pi], second follows from first about unit vectors.
+
+    All (..., 3); parts of the first and the second along the unit vectors do not count.
+    """
+    sine = np.einsum("...i,...i->...", axes, np.cross(first, second))
+    along = np.einsum("...i,...i->...", axes, first) * np.einsum("...i,...i->...", axes, second)
+    return np.asarray(np.arctan2(sine, np.einsum("...i,...i->...", first, second) - along))
+
+
+def frames_along(directions: Array) -> Array:
+    """Right-handed frames (n, 3, 3) with unit vectors (n, 3) as their z axes."""
+    return np.concatenate([two_across(directions), directions[:, None]], axis=1).transpose(0, 2, 1)
+
+
+def one_across(direction: Array) -> Array:
+    """A unit vector (3,) at right angles to another one."""
+    return np.asarray(two_across(direction[None])[0, 0])

@@ -32,11 +32,18 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.calibrated import remark_on_missing
 from cellcolor.frontend.arm.inverse import (
     InverseKinematics,
+    check_lever,
     check_tool_on_last_axis,
     locked_angle,
     pose_at_zero,
 )
-from cellcolor.frontend.arm.kinematics import farthest_reach, nearest_points
+from cellcolor.frontend.arm.kinematics import (
+    angle_about,
+    farthest_reach,
+    frames_along,
+    nearest_points,
+    one_across,
+)
 from cellcolor.frontend.arm.newton import merged, polished
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.setup import RobotFiles
@@ -91,9 +98,8 @@ class OffsetWrist(InverseKinematics):
         wrist = nearest_points(points[5], self._axes[5], points[4], self._axes[4])[0]
         self.reach = farthest_reach(robot, self._shoulder)
         self.lever = float(np.linalg.norm(self._tip - self._center))
-        if np.linalg.norm(self._tip - wrist) > self.reach / 2:
-            message = f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist"
-            raise InputError(str(robot.files[1]), f"link[{files.tip_link}]", message)
+        out = float(np.linalg.norm(self._tip - wrist))
+        check_lever(robot, files, out, self.reach - out)
         up = self._axes[0] * (-1.0 if self._axes[0, 2] < 0 else 1.0)
         self.viewpoints = np.array([self._shoulder, self._shoulder + sum(self._lengths) * up])
 
@@ -183,8 +189,8 @@ class OffsetWrist(InverseKinematics):
         upper, fore = self._lengths
         with np.errstate(invalid="ignore", divide="ignore"):
             bend = np.arccos((far - upper**2 - fore**2) / (2 * upper * fore))
-        third = bend * np.array([1, -1, 1, -1]) - _angle(n, self._upper, self._fore)  # about n
-        second = _angle(n, self._upper + _turned(n, third, self._fore), goal)
+        third = bend * np.array([1, -1, 1, -1]) - angle_about(n, self._upper, self._fore)  # about n
+        second = angle_about(n, self._upper + _turned(n, third, self._fore), goal)
         joints = np.stack([first, second, np.sign(self._axes[2] @ n) * third], axis=2)
         turned = _turned(z, first, _turned(n, second + third, fourth))
         cosine = np.einsum("kwi,ki->kw", turned, link.rotation @ fifth)
@@ -197,15 +203,15 @@ class OffsetWrist(InverseKinematics):
         _, three, _ = self.off(link)
         z, n, fourth, fifth = self._axes[0], self._axes[1], self._axes[3], self._axes[4]
         both = three[..., 1] + np.sign(self._axes[2] @ n) * three[..., 2]
-        across = np.cross(fifth, np.eye(3)[np.argmin(np.abs(fifth))])
+        across = one_across(fifth)
 
         def behind_third(vector: Array) -> Array:
             """A vector of the link before joint 6, seen from behind joint 3 at zero."""
             here = (link.rotation @ vector)[:, None]
             return _turned(n, -both, _turned(z, -three[..., 0], here))
 
-        q4 = _angle(fourth, fifth, behind_third(fifth))
-        q5 = _angle(fifth, across, _turned(fourth, -q4, behind_third(across)))
+        q4 = angle_about(fourth, fifth, behind_third(fifth))
+        q5 = angle_about(fifth, across, _turned(fourth, -q4, behind_third(across)))
         last = np.full((*q4.shape, 1), self._locked)
         return np.concatenate([three, q4[..., None], q5[..., None], last], axis=2)
 
@@ -290,15 +296,15 @@ class _Turned:
     """The link before joint 6 with the tool in poses, turned about it by angles (k,)."""
 
     def __init__(self, points: Array, directions: Array, angles: Array, tool: Array) -> None:
-        across = np.cross(directions, np.eye(3)[np.argmin(np.abs(directions), axis=1)])
-        across /= np.linalg.norm(across, axis=1, keepdims=True)
-        x = np.cos(angles)[:, None] * across
-        x += np.sin(angles)[:, None] * np.cross(directions, across)
-        there = np.stack([x, np.cross(directions, x), directions], axis=2)
-        own = np.cross(tool, np.eye(3)[np.argmin(np.abs(tool))])
-        own /= np.linalg.norm(own)
+        frames = frames_along(directions)
+        sine, cosine = np.sin(angles)[:, None], np.cos(angles)[:, None]
+        x, y = (
+            cosine * frames[:, :, 0] + sine * frames[:, :, 1],
+            cosine * frames[:, :, 1] - sine * frames[:, :, 0],
+        )
+        there = np.stack([x, y, directions], axis=2)
         self.points = points
-        self.rotation: Array = there @ np.stack([own, np.cross(tool, own), tool])
+        self.rotation: Array = there @ frames_along(tool[None])[0].T
 
     def moved(self, point: Array, tip: Array) -> Array:
         """Where a point (3,) of the link at zero is, (k, 3)."""
@@ -310,10 +316,3 @@ def _turned(axis: Array, angles: Array, vectors: Array) -> Array:
     sine, cosine = np.sin(angles)[..., None], np.cos(angles)[..., None]
     along = (vectors @ axis)[..., None] * axis
     return np.asarray(along + cosine * (vectors - along) + sine * np.cross(axis, vectors))
-
-
-def _angle(axis: Array, first: Array, second: Array) -> Array:
-    """By which angle (...,) about a unit vector second (..., 3) follows from first (..., 3)."""
-    sine = np.cross(first, second) @ axis
-    along = (first @ axis) * (second @ axis)
-    return np.asarray(np.arctan2(sine, np.einsum("...i,...i->...", first, second) - along))

@@ -16,8 +16,15 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.inverse import InverseKinematics, pose_at_zero
-from cellcolor.frontend.arm.kinematics import farthest_reach, forward, nearest_points, turned
+from cellcolor.frontend.arm.inverse import InverseKinematics, check_lever, pose_at_zero
+from cellcolor.frontend.arm.kinematics import (
+    angle_about,
+    farthest_reach,
+    forward,
+    nearest_points,
+    one_across,
+    turned,
+)
 from cellcolor.frontend.arm.robot import FREE_TURN, Robot
 from cellcolor.frontend.setup import RobotFiles, Turn
 
@@ -50,16 +57,6 @@ def turned_about(directions: Array, across: Array, angles: Array) -> Array:
     """Vectors (n, 3) across unit vectors (n, 3), turned about these by angles (n,) in rad."""
     cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
     return np.asarray(cosine * across + sine * np.cross(directions, across))
-
-
-def angle_about(directions: Array, first: Array, second: Array) -> Array:
-    """By which angle (n,) in rad, in (-pi, pi], second follows from first about unit vectors.
-
-    All (n, 3); the first and the second may have parts along the unit vectors, which do not count.
-    """
-    sine = np.einsum("ni,ni->n", directions, np.cross(first, second))
-    along = np.einsum("ni,ni->n", directions, first) * np.einsum("ni,ni->n", directions, second)
-    return np.asarray(np.arctan2(sine, np.einsum("ni,ni->n", first, second) - along))
 
 
 _PARALLEL = 1e-6  # rad
@@ -121,7 +118,7 @@ def on_last_axis(robot: Robot) -> Robot:
     within = poses.rotation[0, -1].T
     tip = np.eye(4)
     z = within @ (sense * axis)
-    x = _any_across(z)
+    x = one_across(z)
     tip[:3, :3] = np.column_stack([x, np.cross(z, x), z])
     tip[:3, 3] = within @ (foot - poses.origin[0, -1])
     return dataclasses.replace(robot, tip=tip, task=FREE_TURN)
@@ -140,19 +137,10 @@ def with_last_joint(robot: Robot, configurations: Array, rotation: Array) -> Arr
     axis = robot.axis[last]
     for placement in robot.placement[last + 1 :]:  # nothing turns behind it
         axis = placement[:3, :3].T @ axis
-    across = _any_across(axis)
+    across = one_across(axis)
     have, wanted = turned(poses.rotation[:, -1], across), turned(rotation, across)
     found[:, last] = angle_about(poses.axis[:, last], have, wanted)
     return found
-
-
-def _any_across(direction: Array) -> Array:
-    """A unit vector (3,) at right angles to another one."""
-    across = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
-    return np.asarray(across / np.linalg.norm(across))
-
-
-_PARALLEL = 1e-6  # rad
 
 
 class TurnedKinematics(InverseKinematics):
@@ -190,12 +178,7 @@ class TurnedKinematics(InverseKinematics):
         self.reach = farthest_reach(robot, shoulder_of(robot))
         self.viewpoints = self.own.viewpoints
         self.lever = float(np.linalg.norm(poses.tip[0] - wrist_of(robot)))
-        if self.lever > self.reach - self.lever:
-            raise InputError(
-                str(robot.files[1]),
-                f"link[{files.tip_link}]",
-                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
-            )
+        check_lever(robot, files, self.lever, self.reach - self.lever)
         self._angles = np.radians(turn.degrees)
         self.branches = self.own.branches
         if turn.is_choice:

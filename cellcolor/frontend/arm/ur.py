@@ -32,11 +32,12 @@ from cellcolor.frontend.arm.calibrated import (
 from cellcolor.frontend.arm.inverse import (
     MUST_LIE,
     InverseKinematics,
+    check_lever,
     check_tool_on_last_axis,
     locked_angle,
     pose_at_zero,
 )
-from cellcolor.frontend.arm.kinematics import forward
+from cellcolor.frontend.arm.kinematics import angle_about, forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import Signs, signs_of
 from cellcolor.frontend.setup import RobotFiles
@@ -168,7 +169,7 @@ def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
         np.cross(z2, z5),
         np.cross(z6, z5),
     ]
-    offset = [_angle(x[i], x[i + 1], axes[i]) for i in range(5)]
+    offset = [float(angle_about(axes[i], x[i], x[i + 1])) for i in range(5)]
     return UrGeometry(
         **lengths,
         shoulder=shoulder,
@@ -188,10 +189,6 @@ def _crossing(p: Array, u: Array, q: Array) -> Array:
 
 def _across(vector: Array, axis: Array) -> Array:
     return vector - (vector @ axis) * axis
-
-
-def _angle(start: Array, end: Array, about: Array) -> float:
-    return float(np.arctan2(np.cross(start, end) @ about, start @ end))
 
 
 def solve_inverse(
@@ -302,12 +299,8 @@ class UrKinematics(InverseKinematics):
             self._near = _near_ideal(robot, self.geometry, self._locked)
         self.lever, self.viewpoints = self.geometry.reach, self.geometry.viewpoints
         self.reach = self.geometry.arm_reach
-        if self.lever > abs(self.geometry.a2) + abs(self.geometry.a3):
-            raise InputError(
-                str(robot.files[1]),
-                f"link[{files.tip_link}]",
-                f"the tool is longer than the arm: tip {self.lever:.3f} m from the wrist",
-            )
+        g = self.geometry
+        check_lever(robot, files, self.lever, abs(g.a2) + abs(g.a3))
 
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None

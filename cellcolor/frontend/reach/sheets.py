@@ -72,33 +72,25 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
     found = bare.inverse(surface.vertices, -surface.normals, deadline)
     verdicts = judge(found.reshape(-1, bare.robot.joints), deadline)
     nodes = (verdicts.reasons == VALID).reshape(found.shape[:2])
-    turned, own, robot, directions = bare.kinematics, bare.kinematics, bare.robot, -surface.normals
-    if isinstance(turned, TurnedKinematics):
+    turned, own, robot, along = bare.kinematics, bare.kinematics, bare.robot, surface
+    if isinstance(turned, TurnedKinematics):  # followed with the tool on the last axis
         robot, own = turned.straight, turned.own
-        tips, directions = turned.straightened(surface.vertices, directions)
-        surface = Surface(tips, surface.faces, -directions)
-    measure = replace(bare.measure, lever=own.lever)
-    limits = bare.conditioning if bare.setup.constraints.conditioning else None
-    tracker = Tracker(robot, measure, limits)
+        tips, directions = turned.straightened(surface.vertices, -surface.normals)
+        along = Surface(tips, surface.faces, -directions)
+    on, measure = bare.setup.constraints, replace(bare.measure, lever=own.lever)
+    tracker = Tracker(robot, measure, bare.conditioning if on.conditioning else None)
     solutions = tracker.described(verdicts.configurations.reshape(found.shape))
-    ends = (bare.robot.lower, bare.robot.upper) if bare.setup.constraints.collision else None
-    linking = Linking(surface, nodes, solutions, tracker, ends)
-    edges = surface.edges()
-    links = [np.empty((0, 3), dtype=np.int64)]
-    together = edges_at_once(nodes.shape[1], robot.joints)
-    for first in range(0, len(edges), together):
-        deadline.check()
-        links.append(linking.links(edges[first : first + together]) + np.array([first, 0, 0]))
-    slot = sheets_of(surface, np.concatenate(links), nodes, solutions)
-    vertex = np.arange(len(slot))[:, None]
-    joints = np.where((slot >= 0)[:, :, None], solutions.joints[vertex, slot], np.nan)
-    valid = nodes[vertex, slot] & (slot >= 0)
+    limits = (bare.robot.lower, bare.robot.upper) if on.collision else None
+    links = Linking(along, nodes, solutions, tracker, limits).all_links(deadline)
+    slot = sheets_of(surface, links, nodes, solutions)
+    vertex, there = np.arange(len(slot))[:, None], slot >= 0
+    joints = np.where(there[:, :, None], solutions.joints[vertex, slot], np.nan)
+    poses = along.vertices, -along.normals
     sheets = SheetKinematics(
-        own, Tracker(robot, measure), (surface.vertices, directions), joints, valid
+        own, Tracker(robot, measure), poses, joints, nodes[vertex, slot] & there
     )
-    if isinstance(turned, TurnedKinematics):
-        return replace(bare, kinematics=turned.with_own(sheets), nameless=bare)
-    return replace(bare, kinematics=sheets, nameless=bare)
+    kinematics = turned.with_own(sheets) if isinstance(turned, TurnedKinematics) else sheets
+    return replace(bare, kinematics=kinematics, nameless=bare)
 
 
 class SheetKinematics(InverseKinematics):
@@ -206,6 +198,15 @@ class Linking:
     solutions: Solutions
     tracker: Tracker
     limits: tuple[Array, Array] | None
+
+    def all_links(self, deadline: Deadline) -> Index:
+        """Linked pairs (l, 3) of all mesh edges, these in batches that fit into memory."""
+        edges, found = self.surface.edges(), [np.empty((0, 3), dtype=np.int64)]
+        together = edges_at_once(self.nodes.shape[1], self.solutions.joints.shape[2])
+        for first in range(0, len(edges), together):
+            deadline.check()
+            found.append(self.links(edges[first : first + together]) + np.array([first, 0, 0]))
+        return np.concatenate(found)
 
     def links(self, edges: Index) -> Index:
         """Linked pairs (l, 3): rows of edges (k, 2), and the slots of solutions at both ends."""

@@ -18,13 +18,14 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.arm.eaik import EaikKinematics
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import (
+    angle_about,
     forward,
     manipulability,
     task_determinant,
     tip_jacobian,
 )
 from cellcolor.frontend.arm.robot import FREE_TURN, GIVEN_TURN, Robot
-from cellcolor.frontend.arm.turned import TurnedKinematics, angle_about, turn_at, turned_about
+from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at, turned_about
 from cellcolor.frontend.arm.ur import BRANCHES as UR_BRANCHES
 from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.setup import RobotFiles, Turn
