@@ -310,3 +310,15 @@ def test_an_arm_without_names_is_driven_and_judged_like_the_others() -> None:
     planned = cellcolor.plan(bare.with_setup(bare.setup.varied(robot=tool)))
     assert planned.verdict.valid and planned.verdict.lift_offs == 0
     assert planned.solution.lower_bound == 1 and "sheet" in planned.built.branches[0]
+
+
+def test_sheets_of_whole_poses_have_the_turn_that_the_setup_gives() -> None:
+    bare = plate(dh_arms.urdf("passing"), "eaik", vertices=60)
+    turn = {"robot": {"locked_joint_6_rad": None}, "task": {"turn": {"along": (1.0, 0.0, 0.0)}}}
+    built = build_surface(bare.with_setup(bare.setup.varied(**turn)))
+    vertex, sheet = np.nonzero(built.reasons == 0)
+    assert len(vertex) > 400
+    poses = forward(built.robot, built.configurations[vertex, sheet])
+    assert np.abs(poses.tip - built.stages.surface.vertices[vertex]).max() < 1e-9
+    across = poses.rotation[:, -1] @ built.robot.tip[:3, 0]
+    assert np.abs(across - [1, 0, 0]).max() < 1e-9
