@@ -146,7 +146,7 @@ class BuildResult:
         raw = replace(
             self.surface,
             colors=limits.names,
-            vertex_colors=_vertex_colors(limits),
+            vertex_colors=_vertex_colors(limits, len(self.surface.vertices)),
             cracks=limits.cracks,
             given_up=(),
         )
@@ -265,7 +265,7 @@ def labelled(
         colors=limits.names,
         vertices=prepared.surface.vertices,
         faces=prepared.surface.faces,
-        vertex_colors=_vertex_colors(limits),
+        vertex_colors=_vertex_colors(limits, len(prepared.surface.vertices)),
         cracks=limits.cracks,
         meta=_meta(prepared.scene, stages, seconds),
         given_up=_given_up(stages.candidates.valid, cleaned.coloring),
@@ -328,8 +328,8 @@ def _rounding_in_words(surface: Surface, task: Task) -> str:
     )
 
 
-def _vertex_colors(limits: LimitColors) -> tuple[tuple[int, ...], ...]:
-    members = np.array(limits.members, dtype=bool).T
+def _vertex_colors(limits: LimitColors, vertices: int) -> tuple[tuple[int, ...], ...]:
+    members = np.array(limits.members, dtype=bool).reshape(-1, vertices).T
     return tuple(tuple(np.flatnonzero(own).tolist()) for own in members)
 
 
