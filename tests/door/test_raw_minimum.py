@@ -48,7 +48,7 @@ def test_what_is_not_found_in_time_is_not_said(
     built: BuildResult, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The minimum itself stays; of the raw one only what is known."""
-    monkeypatch.setattr(solving, "_RAW_SECONDS", 0.0)
+    monkeypatch.setattr(solving, "_BESIDE_SECONDS", 0.0)
     solution = cellcolor.solve(built).solution
     assert solution.status == "optimal"
     (note,) = solution.notes
