@@ -6,7 +6,7 @@ const degrees = (angle) => `${((180 / Math.PI) * angle).toFixed(1)}°`;
 
 // What is drawn of a joint: limits that are far away would flatten the curve.
 function within(least, most, low, high) {
-  const near = Math.max(most - least, 0.2);
+  const near = Math.max(0.15 * (most - least), 0.1);
   return { low: Math.max(low ?? -Infinity, least - near), high: Math.min(high ?? Infinity, most + near) };
 }
 
