@@ -341,6 +341,7 @@ def _with_schemes(
     One more than the limit is looked for: only so is it known whether the limit cut any off.
     """
     from cellcolor.solvers.checked import enumerate_schemes
+    from cellcolor.solvers.interface import Start
 
     if solution.status != "optimal" or solution.segments is None:
         return replace(solution, schemes=0, complete=False)
@@ -349,9 +350,13 @@ def _with_schemes(
     # How many there are, and where the last of them ends: changed together, so that a signal in
     # between leaves no scheme uncounted and none in half.
     found = (0, 0)
+    counted: list[int] = []
+    known = None if solution.cells is None else Start(solution.cells, solution.seams)
     try:
         options, most = request.options(deadline), request.limit or _SCHEMES
-        for division in enumerate_schemes(instance, options, request.solver, solution.segments):
+        for division in enumerate_schemes(
+            instance, options, request.solver, solution.segments, known, counted.append
+        ):
             if found[0] == most:
                 complete = False
                 break
@@ -367,5 +372,7 @@ def _with_schemes(
     count, end = found
     if spool is not None:
         spool.truncate(end)
+    if not complete and counted:
+        notes = (*notes, f"There are {counted[0]:,} optimal schemes; {count:,} of them are listed.")
     seconds = solution.seconds + time.monotonic() - started
     return replace(solution, schemes=count, complete=complete, seconds=seconds, notes=notes)

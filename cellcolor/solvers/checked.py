@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from cellcolor.checker.certificates import verify_bound
@@ -18,7 +18,7 @@ from cellcolor.data.solution import Division, InstanceReference, Solution, Statu
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
-from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver
+from cellcolor.solvers.interface import Answer, OnProgress, Options, SchemeSolver, Start
 from cellcolor.solvers.registry import DEFAULT, make_solver
 from cellcolor.solvers.seamed import Seamed
 
@@ -153,7 +153,12 @@ def _solution(
 
 
 def enumerate_schemes(
-    instance: Instance, options: Options, solver: str, segments: int
+    instance: Instance,
+    options: Options,
+    solver: str,
+    segments: int,
+    known: Start | None = None,
+    counted: Callable[[int], None] | None = None,
 ) -> Iterator[Division]:
     """Every optimal scheme (docs/semantics.md, section 3), each once, as they are found.
 
@@ -162,6 +167,8 @@ def enumerate_schemes(
         options: time limit and seed; the search space is ``paper``.
         solver: a name that the registry has.
         segments: the minimum.
+        known: a division with so many segments, for solvers that can start from one.
+        counted: told how many schemes there are as soon as the solver knows that.
 
     Raises:
         InputError: there is no such solver, or it lists no schemes, or none of this instance.
@@ -175,9 +182,15 @@ def enumerate_schemes(
     if not isinstance(chosen, SchemeSolver):
         message = f"{solver} declares that it lists optimal schemes, but cannot do so"
         raise InputError(None, "solver", message)
+    if known is not None and chosen.abilities.start:
+        options = replace(options, start=known)
     found = False
-    for division in chosen.optimal_schemes(instance, options, segments):
+    schemes = chosen.optimal_schemes(instance, options, segments)
+    for division in schemes:
         found = True
+        if counted is not None and (count := getattr(schemes, "count", None)) is not None:
+            counted(count)
+            counted = None
         report = check_scheme(instance, division)
         _insist(report, solver)
         if report.segments != segments or not report.is_scheme:

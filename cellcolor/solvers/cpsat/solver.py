@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from importlib.metadata import version
@@ -11,7 +11,7 @@ from importlib.metadata import version
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, Seam, count_segments
+from cellcolor.data.solution import Seam, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
@@ -29,7 +29,7 @@ from cellcolor.solvers.cpsat.model.painting import (
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.part_search import PartSearch
 from cellcolor.solvers.cpsat.parts import seam_places, split
-from cellcolor.solvers.cpsat.schemes.enumeration import optimal_schemes
+from cellcolor.solvers.cpsat.schemes.enumeration import OptimalSchemes
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
 RESERVES = 4
@@ -76,9 +76,9 @@ class CpSatSolver:
 
     def optimal_schemes(
         self, instance: Instance, options: Options, segments: int
-    ) -> Iterator[Division]:
+    ) -> OptimalSchemes:
         """Every scheme with the given minimum, once."""
-        return optimal_schemes(instance, options, segments)
+        return OptimalSchemes(instance, options, segments)
 
 
 def model_alone() -> CpSatSolver:

@@ -131,10 +131,13 @@ class SeamWriter:
             OutOfTime: there was no time to see.
             TooLarge: the model that is to decide would not fit into memory.
         """
-        return all(
-            _forest(self.graph.loops[number], blocks) or self._written(number, blocks) is not None
-            for number, blocks in enumerate(painting)
-        )
+        return all(map(self.cell_can_be_drawn, range(len(painting)), painting))
+
+    def cell_can_be_drawn(self, number: int, blocks: Sequence[Block]) -> bool:
+        """The same of one cell's sub-cells."""
+        if _forest(self.graph.loops[number], blocks):
+            return True
+        return self._written(number, blocks) is not None
 
     def _written(self, number: int, blocks: Sequence[Block]) -> _Written | None:
         names = tuple(

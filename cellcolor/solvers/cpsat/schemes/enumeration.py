@@ -1,45 +1,69 @@
-"""All optimal schemes: the solutions of a model, found in a thread and tested one by one.
+"""All optimal schemes: counted and listed, or else found one by one.
 
-Every scheme is a solution of the model (``scheme_model``), but so are some other divisions.
+Every scheme is a solution of CP-SAT's model (``scheme_model``), but so are some other divisions.
 Conditions that concern more than one dart are tested on each solution.
 """
 
 from __future__ import annotations
 
-from collections.abc import Generator, Iterator
+from collections.abc import Generator, Iterator, Mapping
 from contextlib import closing
+from hashlib import blake2b
 from math import isfinite
 from queue import SimpleQueue
+from random import Random
 from threading import Semaphore, Thread
 
 from ortools.sat.python import cp_model
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
-from cellcolor.deadline import OutOfTime
-from cellcolor.errors import CellcolorError, InputError
-from cellcolor.solvers.cpsat.model.painting import Painting, division_of
+from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.errors import CellcolorError, InputError, TooLarge
+from cellcolor.solvers.bounds.cover import color_regions
+from cellcolor.solvers.cpsat.cuts import unseamed
+from cellcolor.solvers.cpsat.model.dart_graph import dart_graph
+from cellcolor.solvers.cpsat.model.painting import (
+    Block,
+    Painting,
+    canonical,
+    division_of,
+    painting_of,
+)
 from cellcolor.solvers.cpsat.model.seams import SeamWriter
 from cellcolor.solvers.cpsat.model_runs import Runner
+from cellcolor.solvers.cpsat.schemes.frontier import Blocks, Frontier
 from cellcolor.solvers.cpsat.schemes.scheme_model import SchemeModel, check_size, unconnected_differ
 from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
 from cellcolor.solvers.interface import Options
 
 _AHEAD = 100
 """Schemes that are found ahead of whoever takes them. With so many waiting the search pauses."""
+_COUNTING = 1 / 4
+"""Share of the time that is left for counting; the search needs the rest if that is given up."""
+_NEARBY = 0.3
+"""Seconds for all the schemes around a known one."""
+_KNOWN = 1000
+"""Schemes around which others are looked for."""
+_NO_MORE = object()
 _READING = 5e-6
 """Seconds a constraint that CP-SAT takes to read a model, before it first looks at the clock."""
 
 
-def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iterator[Division]:
+class OptimalSchemes(Iterator[Division]):
     """Every scheme with the fewest segments, each once (semantics, section 3).
 
-    The search runs in a thread that is never far ahead of the consumer.
+    Dynamic programming over the cells (``frontier``) counts and lists them where it has few enough
+    fronts. Else CP-SAT searches in a thread that is never far ahead of the consumer. While that
+    finds nothing, schemes are looked for that differ from a known one in a few cells.
 
     Args:
         instance: the topological graph.
-        options: deadline and seed.
+        options: deadline, seed, and a division to start from.
         segments: the minimum.
+
+    Attributes:
+        count: how many there are; None as long as that is not known.
 
     Raises:
         InputError: the search space is ``surface``, for which schemes are not defined.
@@ -47,35 +71,158 @@ def optimal_schemes(instance: Instance, options: Options, segments: int) -> Iter
         TooLarge: the model would not fit into memory.
         CellcolorError: CP-SAT considered the model invalid.
     """
-    if options.search_space != "paper":
-        raise InputError(None, "search_space", "schemes are defined in search space 'paper' only")
-    if not instance.cells:
-        yield ()
-        return
-    runner = Runner(options)
 
-    def solve(
-        small: cp_model.CpModel,
-    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = runner.single()
-        return solver, runner.solve(solver, small)
+    def __init__(self, instance: Instance, options: Options, segments: int) -> None:
+        self.count: int | None = None
+        self._instance, self._options, self._segments = instance, options, segments
+        self._frontier: Frontier | None = None
+        self._found = self._all()
 
-    writer = SeamWriter(instance, dict.fromkeys((e.id for e in instance.edges), 1), solve)
-    graph = writer.graph
-    check_size(graph, options.deadline)
-    model = SchemeModel(graph, segments, options.deadline)
-    with closing(_paintings(model, options)) as paintings:
-        for painting in paintings:
-            if (
-                unconnected_differ(graph, painting)
-                and zeros_can_differ(graph, painting, options.deadline)
-                and writer.can_be_drawn(painting)
-            ):
-                yield division_of(graph, painting)
+    def __next__(self) -> Division:
+        return next(self._found)
+
+    def close(self) -> None:
+        """End the search."""
+        self._found.close()
+
+    def drawn(self, number: int) -> Iterator[Division]:
+        """So many schemes, each of them any with equal chance; nothing if they are not counted."""
+        rng = Random(self._options.seed)
+        if self._frontier is not None and self.count:
+            for _ in range(number):
+                self._options.deadline.check()
+                yield division_of(self._writer.graph, self._frontier.drawn(rng))
+
+    def _all(self) -> Generator[Division, None, None]:
+        instance, options = self._instance, self._options
+        if options.search_space != "paper":
+            message = "schemes are defined in search space 'paper' only"
+            raise InputError(None, "search_space", message)
+        if not instance.cells:
+            self.count = 1
+            yield ()
+            return
+        runner = Runner(options)
+
+        def solve(
+            small: cp_model.CpModel,
+        ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+            solver = runner.single()
+            return solver, runner.solve(solver, small)
+
+        self._writer = SeamWriter(instance, dict.fromkeys((e.id for e in instance.edges), 1), solve)
+        graph = self._writer.graph
+        start = self._start()
+        if start is not None:
+            yield division_of(graph, start)
+        try:
+            self._frontier = self._counted(options.deadline.share(_COUNTING))
+        except (OutOfTime, TooLarge) as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
+            options.deadline.check()
+        else:
+            self.count = self._frontier.count
+            for painting in self._frontier.paintings():
+                options.deadline.check()
+                if painting != start:
+                    yield division_of(graph, painting)
+            return
+        check_size(graph, options.deadline)
+        model = SchemeModel(graph, self._segments, options.deadline)
+        seen = set() if start is None else {_key(division_of(graph, start))}
+        with closing(_paintings(model, options, self._nearby(start))) as paintings:
+            for painting in paintings:
+                division = division_of(graph, painting)
+                if (key := _key(division)) not in seen and self._is_scheme(painting):
+                    seen.add(key)
+                    yield division
+        self.count = len(seen)
+
+    def _is_scheme(self, painting: Painting) -> bool:
+        """Whether a painting with the fewest segments keeps the rules that the model leaves out."""
+        graph = self._writer.graph
+        return (
+            unconnected_differ(graph, painting)
+            and zeros_can_differ(graph, painting, self._options.deadline)
+            and self._writer.can_be_drawn(painting)
+        )
+
+    def _start(self) -> Painting | None:
+        """The scheme of the division to start from."""
+        start, graph = self._options.start, self._writer.graph
+        if start is None:
+            return None
+        strands = dict.fromkeys(self._instance.live_edges, 1)
+        seamed = dart_graph(self._instance, graph.colors, strands, start.seams)
+        index = {dart.name: number for number, dart in enumerate(graph.darts)}
+        painting = [
+            [
+                Block(block.color, {index[seamed.darts[dart].name] for dart in block.darts})
+                for block in unseamed(seamed, blocks)
+            ]
+            for blocks in painting_of(seamed, start.division)
+        ]
+        settled = canonical(graph, painting)
+        return settled if self._is_scheme(settled) else None
+
+    def _counted(self, deadline: Deadline, given: Mapping[int, Blocks] | None = None) -> Frontier:
+        regions = color_regions(self._instance)
+        draw = self._writer.cell_can_be_drawn
+        return Frontier(self._writer.graph, regions, self._segments, draw, deadline, given)
+
+    def _nearby(self, start: Painting | None) -> Iterator[Painting | None]:
+        """Schemes that differ from a known one in a few cells only; None after each try."""
+        if start is None:
+            return
+        graph, rng, known = self._writer.graph, Random(self._options.seed), [start]
+        around = [
+            sorted({graph.darts[graph.darts[dart].twin].cell for dart in own})
+            for own in graph.lists
+        ]
+        size = 2
+        while True:
+            free = [rng.randrange(len(around))]
+            for cell in free:
+                beside = [other for other in around[cell] if other not in free]
+                free += rng.sample(beside, len(beside))
+                if len(free) >= size:
+                    break
+            given = {
+                cell: tuple((block.color, tuple(sorted(block.darts))) for block in blocks)
+                for cell, blocks in enumerate(rng.choice(known))
+                if cell not in free[:size]
+            }
+            try:
+                deadline = Deadline.after(min(_NEARBY, self._options.deadline.left))
+                yield from self._new(self._counted(deadline, given), known, rng)
+                size = min(size + 1, len(around))
+            except (OutOfTime, TooLarge) as error:
+                if isinstance(error, KeyboardInterrupt):
+                    raise
+                size = max(size - 2, 1)
+            yield None
+
+    def _new(self, frontier: Frontier, known: list[Painting], rng: Random) -> Iterator[Painting]:
+        """The schemes around a known one; a few of them are known from now on."""
+        for painting in frontier.paintings():
+            if len(known) < _KNOWN:
+                known.append(painting)
+            elif rng.random() < 0.01:
+                known[rng.randrange(_KNOWN)] = painting
+            yield painting
 
 
-def _paintings(model: SchemeModel, options: Options) -> Generator[Painting, None, None]:
-    """The paintings of all solutions of the model, as they are found.
+def _key(division: Division) -> bytes:
+    """What tells schemes apart, in 16 bytes."""
+    blocks = [sorted((s.color, sorted(s.darts)) for s in cell.subcells) for cell in division]
+    return blake2b(repr(blocks).encode(), digest_size=16).digest()
+
+
+def _paintings(
+    model: SchemeModel, options: Options, beside: Iterator[Painting | None]
+) -> Generator[Painting, None, None]:
+    """The paintings of all solutions of the model as they are found, and while none is, others.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -102,7 +249,14 @@ def _paintings(model: SchemeModel, options: Options) -> Generator[Painting, None
     thread = Thread(target=search)
     thread.start()
     try:
-        while isinstance(painting := found.get(), list):
+        while True:
+            if found.empty() and (other := next(beside, _NO_MORE)) is not _NO_MORE:
+                options.deadline.check()
+                if isinstance(other, list):
+                    yield other
+                continue
+            if not isinstance(painting := found.get(), list):
+                break
             options.deadline.check()
             collector.room.release()
             yield painting
