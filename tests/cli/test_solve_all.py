@@ -153,12 +153,13 @@ class TestAllSchemes:
     def test_too_large(
         self, tmp_path: Path, capsys: Capture, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        """The minimum is found all the same, and the solution says why there are no schemes."""
+        """The minimum is found all the same, and the solution says why it has one scheme only."""
+        monkeypatch.setattr(cellcolor.solvers.cpsat.schemes.frontier, "MOST_STEPS", -1)
         monkeypatch.setattr(cellcolor.solvers.cpsat.schemes.scheme_model, "MOST_SCHEME_LITERALS", 1)
         out = tmp_path / "none.jsonl"
         assert run("solve", ZEROS, "--all", "-o", out) == 3
         solution = Solution.read(out)
-        assert (solution.status, solution.schemes, solution.complete) == ("optimal", 0, False)
+        assert (solution.status, solution.schemes, solution.complete) == ("optimal", 1, False)
         (note,) = solution.notes
         assert note.startswith("The model of all schemes was not built")
         assert note in capsys.readouterr().out

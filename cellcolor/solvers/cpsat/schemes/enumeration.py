@@ -62,9 +62,6 @@ class OptimalSchemes(Iterator[Division]):
         options: deadline, seed, and a division to start from.
         segments: the minimum.
 
-    Attributes:
-        count: how many there are; None as long as that is not known.
-
     Raises:
         InputError: the search space is ``surface``, for which schemes are not defined.
         OutOfTime: the deadline came first.
@@ -73,10 +70,13 @@ class OptimalSchemes(Iterator[Division]):
     """
 
     def __init__(self, instance: Instance, options: Options, segments: int) -> None:
-        self.count: int | None = None
-        self._instance, self._options, self._segments = instance, options, segments
-        self._frontier: Frontier | None = None
-        self._found = self._all()
+        self._search = _Search(instance, options, segments)
+        self._found = self._search.all()
+
+    @property
+    def count(self) -> int | None:
+        """How many there are; None as long as that is not known."""
+        return self._search.count
 
     def __next__(self) -> Division:
         return next(self._found)
@@ -87,14 +87,25 @@ class OptimalSchemes(Iterator[Division]):
 
     def drawn(self, number: int) -> Iterator[Division]:
         """So many schemes, each of them any with equal chance; nothing if they are not counted."""
-        rng = Random(self._options.seed)
-        if self._frontier is not None and self.count:
+        rng, frontier = Random(self._search.options.seed), self._search.frontier
+        if frontier is not None and frontier.count:
             for _ in range(number):
-                self._options.deadline.check()
-                yield division_of(self._writer.graph, self._frontier.drawn(rng))
+                self._search.options.deadline.check()
+                yield division_of(self._search.writer.graph, frontier.drawn(rng))
 
-    def _all(self) -> Generator[Division, None, None]:
-        instance, options = self._instance, self._options
+
+class _Search:
+    """The search of :class:`OptimalSchemes`. It does not hold them: to drop them ends it."""
+
+    def __init__(self, instance: Instance, options: Options, segments: int) -> None:
+        self.options = options
+        self.count: int | None = None
+        self.frontier: Frontier | None = None
+        self.writer: SeamWriter
+        self._instance, self._segments = instance, segments
+
+    def all(self) -> Generator[Division, None, None]:
+        instance, options = self._instance, self.options
         if options.search_space != "paper":
             message = "schemes are defined in search space 'paper' only"
             raise InputError(None, "search_space", message)
@@ -110,20 +121,20 @@ class OptimalSchemes(Iterator[Division]):
             solver = runner.single()
             return solver, runner.solve(solver, small)
 
-        self._writer = SeamWriter(instance, dict.fromkeys((e.id for e in instance.edges), 1), solve)
-        graph = self._writer.graph
+        self.writer = SeamWriter(instance, dict.fromkeys((e.id for e in instance.edges), 1), solve)
+        graph = self.writer.graph
         start = self._start()
         if start is not None:
             yield division_of(graph, start)
         try:
-            self._frontier = self._counted(options.deadline.share(_COUNTING))
+            self.frontier = self._counted(options.deadline.share(_COUNTING))
         except (OutOfTime, TooLarge) as error:
             if isinstance(error, KeyboardInterrupt):
                 raise
             options.deadline.check()
         else:
-            self.count = self._frontier.count
-            for painting in self._frontier.paintings():
+            self.count = self.frontier.count
+            for painting in self.frontier.paintings():
                 options.deadline.check()
                 if painting != start:
                     yield division_of(graph, painting)
@@ -141,16 +152,16 @@ class OptimalSchemes(Iterator[Division]):
 
     def _is_scheme(self, painting: Painting) -> bool:
         """Whether a painting with the fewest segments keeps the rules that the model leaves out."""
-        graph = self._writer.graph
+        graph = self.writer.graph
         return (
             unconnected_differ(graph, painting)
-            and zeros_can_differ(graph, painting, self._options.deadline)
-            and self._writer.can_be_drawn(painting)
+            and zeros_can_differ(graph, painting, self.options.deadline)
+            and self.writer.can_be_drawn(painting)
         )
 
     def _start(self) -> Painting | None:
         """The scheme of the division to start from."""
-        start, graph = self._options.start, self._writer.graph
+        start, graph = self.options.start, self.writer.graph
         if start is None:
             return None
         strands = dict.fromkeys(self._instance.live_edges, 1)
@@ -168,14 +179,14 @@ class OptimalSchemes(Iterator[Division]):
 
     def _counted(self, deadline: Deadline, given: Mapping[int, Blocks] | None = None) -> Frontier:
         regions = color_regions(self._instance)
-        draw = self._writer.cell_can_be_drawn
-        return Frontier(self._writer.graph, regions, self._segments, draw, deadline, given)
+        draw = self.writer.cell_can_be_drawn
+        return Frontier(self.writer.graph, regions, self._segments, draw, deadline, given)
 
     def _nearby(self, start: Painting | None) -> Iterator[Painting | None]:
         """Schemes that differ from a known one in a few cells only; None after each try."""
         if start is None:
             return
-        graph, rng, known = self._writer.graph, Random(self._options.seed), [start]
+        graph, rng, known = self.writer.graph, Random(self.options.seed), [start]
         around = [
             sorted({graph.darts[graph.darts[dart].twin].cell for dart in own})
             for own in graph.lists
@@ -194,7 +205,7 @@ class OptimalSchemes(Iterator[Division]):
                 if cell not in free[:size]
             }
             try:
-                deadline = Deadline.after(min(_NEARBY, self._options.deadline.left))
+                deadline = Deadline.after(min(_NEARBY, self.options.deadline.left))
                 yield from self._new(self._counted(deadline, given), known, rng)
                 size = min(size + 1, len(around))
             except (OutOfTime, TooLarge) as error:
