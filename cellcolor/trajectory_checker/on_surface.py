@@ -198,12 +198,19 @@ def judge_cracks(
 
 def _torn(built: BuildResult) -> Index:
     """The cracks (t, 3), sorted: both vertices, the smaller first, and the branch."""
-    cleaned = built.stages.cleaned  # cracks modulo full circles: joint limits are judged apart
-    branch = cleaned.coloring.branch
+    cleaned, limits = built.stages.cleaned, built.limits
+    # Joint limits are judged apart: of a color that they divide, cracks modulo full circles count.
+    divided = {limits.color[color] for color in limits.positions}
+    whole, modulo = built.color_branch, cleaned.coloring.branch
     torn = {
         (min(crack.i, crack.j), max(crack.i, crack.j), branch[color])
-        for crack in cleaned.cracks
+        for cracks, branch, colors in (
+            (built.surface.cracks, whole, set(range(len(whole))) - limits.positions.keys()),
+            (cleaned.cracks, modulo, divided),
+        )
+        for crack in cracks
         for color in crack.colors
+        if color in colors
     }
     return np.array(sorted(torn), dtype=np.int64).reshape(-1, 3)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import networkx as nx
 import numpy as np
 import pytest
@@ -27,7 +29,7 @@ def test_a_path_without_walls_overruns_the_first_joint(ring: Planned) -> None:
     assert motion is not None
     (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}
     covered = cover(
-        ring.painted.surface,
+        replace(ring.painted.surface, cracks=()),
         ring.painted.segment_of,
         [color],
         ring.normals,
@@ -35,7 +37,7 @@ def test_a_path_without_walls_overruns_the_first_joint(ring: Planned) -> None:
         tool_radius_m=motion.tool_radius_m,
     )
     (path,) = covered.paths.paths
-    branch = ring.built.stages.cleaned.coloring.branch[color]
+    branch = ring.built.color_branch[color]
     followed = follow(ring.prepared, sampled(path), branch)
     assert followed.good
     assert not joint_space(ring.prepared).fits(followed.joints)
@@ -54,11 +56,12 @@ def test_the_chosen_path_stays_in_the_limits_without_a_lift_off(ring: Planned) -
     assert ring.plan.in_all.covered_wide > 0.99
 
 
-def test_walls_open_the_ring_and_do_not_part_it(ring: Planned) -> None:
+def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> None:
     surface = ring.painted.surface
     graph = nx.Graph(edge for edge in surface.left_of)
-    assert ring.plan.walls
-    graph.remove_edges_from(ring.plan.walls)
+    (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}
+    assert ring.built.limits.winding and color in ring.built.limits.positions
+    graph.remove_edges_from([(c.i, c.j) for c in surface.cracks if color in c.colors])
     assert nx.is_connected(graph)
     # The first joint follows the polar angle: no closed walk may go round the base any more.
     polar = np.arctan2(surface.vertices[:, 1], surface.vertices[:, 0])
