@@ -9,6 +9,7 @@ from cellcolor.exports import (
     joint_trajectory,
     painted_mesh,
     programs,
+    recording,
     strokes,
     tool_poses,
 )
@@ -22,6 +23,7 @@ EXPORTS = {
     "cellcolor.script": Export(programs.URSCRIPT, programs.urscript),
     "cellcolor.mod": Export(programs.RAPID, programs.rapid),
     "cellcolor.src": Export(programs.KRL, programs.krl),
+    "motion.mcap": Export(recording.KIND, recording.recording),
     "painted.ply": Export(painted_mesh.PLY, painted_mesh.ply),
     "painted.glb": Export(painted_mesh.GLB, painted_mesh.glb),
 }

@@ -210,8 +210,7 @@ OWN = {"irb120": "cellcolor.mod", "kr6": "cellcolor.src"}
 @pytest.mark.parametrize("name", [*ARMS, "cobra600", "kr6_r700_z200"])
 def test_an_arm_gets_the_program_of_its_controller_and_no_other(name: str) -> None:
     wanted = OWN.get(name, "cellcolor.script" if name.startswith("ur") else None)
-    planned = driven("ur5")
-    planned = replace(planned, axes=axes_of(arm(name)))
+    planned = driven(name)
     assert {program for program in PROGRAMS if program in exported(planned)} == {wanted} - {None}
 
 
@@ -333,3 +332,38 @@ def test_only_own_files_are_overwritten(name: str, tmp_path: Path) -> None:
         if export.kind.name != EXPORTS[name].kind.name:
             with pytest.raises(InputError, match="not overwritten"):
                 check_output(path, export.kind)
+
+
+@pytest.mark.parametrize("robot", ["ur5", "kr6"])
+def test_a_recording_is_read_back_by_another_reader(robot: str, tmp_path: Path) -> None:
+    rosbags = pytest.importorskip("rosbags.highlevel")
+    planned = driven(robot, unplanned=(40,))
+    (tmp_path / "motion.mcap").write_bytes(exported(planned)["motion.mcap"])
+    model, trajectory = arm(robot).model, planned.trajectory
+    data, topics, states = model.createData(), set(), []
+    with rosbags.AnyReader([tmp_path / "motion.mcap"]) as reader:
+        for connection, moment, raw in reader.messages():
+            topics.add(connection.topic)
+            message = reader.deserialize(raw, connection.msgtype)
+            if connection.topic == "/markers":
+                triangles = np.array([[p.x, p.y, p.z] for p in message.markers[0].points])
+                assert np.allclose(
+                    triangles, planned.surface.vertices[planned.surface.faces.ravel()]
+                )
+                assert len(message.markers) == 1 + len(planned.paths.paths)
+            elif connection.topic == "/joint_states":
+                states.append((moment * 1e-9, np.array(message.position)))
+                assert tuple(message.name) == trajectory.joint_names
+            else:
+                pin.forwardKinematics(model, data, states[-1][1])
+                *links, tip = message.transforms
+                assert moment * 1e-9 == states[-1][0] and tip.child_frame_id == "tool_tip"
+                for number, link in enumerate(links, start=1):
+                    place = link.transform.translation
+                    found = np.array([place.x, place.y, place.z])
+                    assert np.allclose(found, data.oMi[number].translation, atol=1e-9)
+    assert topics == {"/markers", "/joint_states", "/tf"}
+    times, joints = np.array([t for t, _ in states]), np.array([q for _, q in states])
+    own = stretches(trajectory, 0.1)
+    assert np.allclose(joints, np.concatenate([part.joints for part in own]))
+    assert np.allclose(times[0], 0) and (np.diff(times) > 0).all()
