@@ -28,10 +28,21 @@ _EXTRAS = {
     "ompl": "motion",
     "potpourri3d": "motion",
     "toppra": "motion",
+    "mcap_ros2": "motion",
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
-    *("pin", "python-fcl", "scipy", "trimesh", "EAIK", "ompl", "potpourri3d", "toppra"),
+    *(
+        "pin",
+        "python-fcl",
+        "scipy",
+        "trimesh",
+        "EAIK",
+        "ompl",
+        "potpourri3d",
+        "toppra",
+        "mcap-ros2-support",
+    ),
     *("gpytoolbox", "matplotlib", "plotly"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),
 )

@@ -1,4 +1,4 @@
-"""Programs for controllers: URScript, RAPID and KRL (docs/formats/controllers.md).
+"""Programs for controllers: URScript, RAPID and KRL (docs/formats/other-programs.md).
 
 A program is written only for arms whose axes are those that the maker's own joint angles refer to:
 degrees, zero and sense of rotation are compared on the axes in space, not by the arm's name. Each

@@ -159,6 +159,9 @@ def first_fault(error: ValidationError) -> tuple[tuple[int | str, ...], str]:
     unknown = (fault for fault in faults if fault["type"] in _UNKNOWN)
     first = next(unknown, faults[0])
     place = first["loc"]
+    if first["type"] not in _UNKNOWN:
+        # What pydantic calls the kind that it tried, of several that a member may have, is no key.
+        place = tuple(part for part in place if isinstance(part, int) or "[" not in part)
     if first["type"] == "missing":
         return place, "is missing"
     if first["type"] not in _UNKNOWN:

@@ -184,7 +184,7 @@ class TestSolve:
         ("instance", "options"),
         [
             # What is found first has more segments than the proof will leave.
-            (INSTANCES / "hard" / "hub_grid_5x5x3.json", []),
+            (INSTANCES / "hard" / "patches_disc_3.json", []),
             (INSTANCES / "random" / "hub_24.json", ["--solver", "dfs"]),
         ],
         ids=["cp-sat", "dfs"],

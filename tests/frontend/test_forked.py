@@ -170,9 +170,9 @@ os.sched_getaffinity = lambda _process: {0, 1, 2}
 from cellcolor import memory
 from cellcolor.frontend.reach import validity
 memory.CACHE, validity._PAYS, judged = 300_000, 1, validity.Judge._judged
-def slowly(judge, configurations):
+def slowly(judge, *given):
     time.sleep(1)
-    return judged(judge, configurations)
+    return judged(judge, *given)
 validity.Judge._judged = slowly
 from cellcolor.cli import main
 sys.exit(main())

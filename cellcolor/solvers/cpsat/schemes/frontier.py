@@ -23,6 +23,7 @@ from cellcolor.solvers.cpsat.schemes.scheme_model import unconnected_differ
 from cellcolor.union_find import UnionFind
 
 MOST_STEPS = 1_000_000
+MOST_DARTS = 200  # of one cell, whose divisions are listed by recursion over its darts
 """Steps from front to front that are kept; they take some hundred megabytes."""
 
 Blocks = tuple[tuple[int, tuple[int, ...]], ...]
@@ -68,7 +69,7 @@ class Frontier:
         count: of all schemes.
 
     Raises:
-        TooLarge: there are too many fronts.
+        TooLarge: there are too many fronts, or darts of one cell.
         OutOfTime: the deadline came first.
     """
 
@@ -89,6 +90,8 @@ class Frontier:
             for cell, blocks in self._given.items()
             for dart in graph.lists[cell]
         }
+        if max(map(len, graph.lists), default=0) > MOST_DARTS:
+            raise TooLarge("a cell has too many darts for its divisions to be counted")
         self._can_be_drawn = can_be_drawn
         self._region = {(cell, c): n for n, (c, cells) in enumerate(regions) for cell in cells}
         self._order = _order(graph, self._given)
