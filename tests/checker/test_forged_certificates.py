@@ -11,6 +11,8 @@ from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.data.bounds import Bound
 
+pytestmark = pytest.mark.second
+
 TIMES = 60
 BUDGET = 2_000
 

@@ -184,7 +184,9 @@ class TestSolve:
         ("instance", "options"),
         [
             # What is found first has more segments than the proof will leave.
-            (INSTANCES / "hard" / "patches_disc_3.json", []),
+            pytest.param(
+                INSTANCES / "hard" / "patches_disc_3.json", [], marks=pytest.mark.second
+            ),
             (INSTANCES / "random" / "hub_24.json", ["--solver", "dfs"]),
         ],
         ids=["cp-sat", "dfs"],

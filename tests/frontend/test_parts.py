@@ -24,6 +24,8 @@ from cellcolor.motion.free_space import FreeSpace
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
+pytestmark = pytest.mark.second
+
 PARTS = INSTANCES / "parts"
 # Euler's characteristic: 2 of a ball; two less for each of the bracket's bores through it, and none
 # of a torus; 1 of a disc, one less for each hole.

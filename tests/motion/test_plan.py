@@ -19,6 +19,8 @@ from cellcolor.frontend.prepared import prepare
 from cellcolor.motion.limits import motion_of
 from cellcolor.motion.plan import plan_motion
 
+pytestmark = pytest.mark.second
+
 NAMES = ("wok", "half_pipe", "square", "hemisphere_flat", "hemisphere_tilted", "wok_obstacle")
 
 

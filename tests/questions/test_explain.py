@@ -40,6 +40,8 @@ from cellcolor.frontend.stages import Stages, judged, judged_again
 from cellcolor.questions.explanation import Explanation
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 
 def scene_of(name: str, vertices: int = 80) -> Scene:
     """A shipped scene, coarse, and narrow in joint 4 so that every kind of thing holds it back."""

@@ -42,6 +42,8 @@ from cellcolor.questions.placing import (
 )
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 RANGES = {"x": (0.3, 0.6), "y": (-0.3, 0.1)}
 NUMBERS = st.floats(-2, 2, allow_nan=False)
 SHARES = st.integers(0, 1000).map(lambda mill: mill / 1000)

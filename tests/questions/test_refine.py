@@ -27,6 +27,8 @@ from cellcolor.questions.refinement import RefinedStep, Refinement, refined_unti
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
+pytestmark = pytest.mark.second
+
 
 @pytest.fixture(scope="module")
 def refined() -> cellcolor.Result:

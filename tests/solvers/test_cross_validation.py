@@ -21,6 +21,8 @@ from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Options, Solver
 
+pytestmark = pytest.mark.second
+
 SOLVERS: tuple[Solver, ...] = (ReferenceSolver(), CpSatSolver(), CpSatSolver(plans=False))
 LISTING = SOLVERS[:2]  # plans have no part in the schemes that CP-SAT lists
 KNOWN = sorted(p for p in PAPER.glob("*.json") if not p.name.endswith(".surface.json"))

@@ -28,6 +28,8 @@ from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.joint_motion import corners
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 NOT_HERE = (
     "begins in motion",  # the raster has no way to the part
     "ends in motion",

@@ -13,6 +13,8 @@ from planted_faults import PLANTERS, found
 
 from cellcolor.trajectory_checker.check import check_trajectory
 
+pytestmark = pytest.mark.second
+
 
 @pytest.mark.parametrize("make", [rasters.cap, rasters.square])
 def test_the_untouched_ones_have_none(make: rasters.Maker) -> None:

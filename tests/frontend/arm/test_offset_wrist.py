@@ -20,6 +20,8 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.offset_wrist import OffsetWrist
 from cellcolor.frontend.setup import RobotFiles
 
+pytestmark = pytest.mark.second
+
 FILES = RobotFiles(
     arm_urdf="<",
     flange_link="flange",

@@ -22,6 +22,8 @@ from cellcolor.frontend.parts.repaired import repair_mesh
 from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.mesh.remesher import remesh
 
+pytestmark = pytest.mark.second
+
 
 def lengths(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return np.linalg.norm(vertices[faces] - np.roll(vertices[faces], 1, axis=1), axis=2)

@@ -38,6 +38,8 @@ from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Stages, run_stages
 from cellcolor.memory import MEMORY
 
+pytestmark = pytest.mark.second
+
 
 class Unnamed(InverseKinematics):
     """A family of arms without its names, its solutions in another order at every point."""
