@@ -122,7 +122,7 @@ class Robot:
         stand_ins: what collides in the place of meshes.
         tool_links: the links of the tool that have a body.
         followers: frames beside the chain that move with its joints; bodies hang on them too.
-        task: what it is asked to do with the tool; :func:`load_robot` leaves the turn free.
+        task: what it is asked to do with the tool; ``load_robot`` leaves the turn free.
     """
 
     files: tuple[Path, Path]
