@@ -56,7 +56,10 @@ nitpick_ignore_regex = [
     (r"py:.*", rf"({'|'.join([*_OTHERS.split(), *sys.stdlib_module_names])})(\..*)?"),
     # Type variables, names for type checkers only, what annotated_types says of numbers, and
     # halves of a signature that Sphinx cannot read because of a dataclass's default factory.
-    (r"py:class", r"(.*\.)?(T|Kind|_\w+|FieldInfo|TypeForm|ConfigDict|NoneType|Handler|DataclassInstance)"),
+    (
+        r"py:class",
+        r"(.*\.)?(T|Kind|_\w+|FieldInfo|TypeForm|ConfigDict|NoneType|Handler|DataclassInstance)",
+    ),
     (r"py:class", r"Ge|Gt|Le|Lt|MinLen|[\d.e-]+|dict\[str|tuple\[~pathlib\.Path"),
     # Signatures of the front door that Sphinx takes as they are written: they name classes that
     # only type checkers import there.

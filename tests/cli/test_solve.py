@@ -184,9 +184,7 @@ class TestSolve:
         ("instance", "options"),
         [
             # What is found first has more segments than the proof will leave.
-            pytest.param(
-                INSTANCES / "hard" / "patches_disc_3.json", [], marks=pytest.mark.second
-            ),
+            pytest.param(INSTANCES / "hard" / "patches_disc_3.json", [], marks=pytest.mark.second),
             (INSTANCES / "random" / "hub_24.json", ["--solver", "dfs"]),
         ],
         ids=["cp-sat", "dfs"],
