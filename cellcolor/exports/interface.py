@@ -1,4 +1,4 @@
-"""What every export is made of, and what an export is."""
+"""The input of every export, and the description of an export."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ class NotForThisArm(Exception):
 
 @dataclass(frozen=True, eq=False)
 class ArmAxes:
-    """Where an arm's joints turn when all of them are at zero, in the frame of its base.
+    """An arm's joint axes with all joints at zero, in the frame of its base.
 
     Attributes:
         names: of the joints, base first.
@@ -38,8 +38,13 @@ class ArmAxes:
     def of(
         cls, names: tuple[str, ...], placement: Array, axis: Array, slides: bool = False
     ) -> ArmAxes:
-        """Of joints with a fixed pose (joints, 4, 4) in the frame before, and an axis (joints, 3)
-        in their own frame.
+        """The axes of a chain of joints.
+
+        Args:
+            names: of the joints, base first.
+            placement: (joints, 4, 4) pose of each joint in the frame of the joint before it.
+            axis: (joints, 3) each joint's axis in its own frame.
+            slides: whether some joint is prismatic.
         """
         frames, frame = [], np.eye(4)
         for pose in placement:
@@ -53,17 +58,17 @@ class ArmAxes:
 
 @dataclass(frozen=True)
 class PlannedMotion:
-    """A painted surface, and how an arm covers it.
+    """A painted surface and the motion that covers it.
 
     Attributes:
         surface: the painted labelled surface.
         segment_of: (n,) the segment of each vertex, -1 where it has no color.
         fills: the color of each segment in pictures, like ``#77AADD``.
-        paths: where the tool goes.
-        trajectory: how the arm moves.
-        axes: the arm's; None where it is not known, so that there is no program for a controller.
-        step_s: the fixed time step, s; None takes the samples of the trajectory.
-        force_n: what the tool is to press with along its axis, N, as the setup has it.
+        paths: the tool paths.
+        trajectory: joint angles over time.
+        axes: of the arm; None if unknown, and then no program for a controller can be written.
+        step_s: fixed time step of the exported samples, s; None keeps those of the trajectory.
+        force_n: the force along the tool's axis that the setup asks for, N.
     """
 
     surface: LabelledSurface
@@ -81,8 +86,8 @@ class Export:
     """A file that another program reads.
 
     Attributes:
-        kind: how it is distinguished from files of other programs, which are not overwritten.
-        content: makes its bytes; raises :class:`NotForThisArm` where there is no such file.
+        kind: recognizes files written by cellcolor; only these are overwritten.
+        content: makes the bytes; raises :class:`NotForThisArm` if it has no program for the arm.
     """
 
     kind: FileKind

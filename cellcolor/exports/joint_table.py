@@ -22,7 +22,8 @@ KIND = FileKind(
 def joints_csv(planned: PlannedMotion) -> bytes:
     """Times (s), segment (-1 between), contact (0 or 1), tip (m), normal, joints (rad).
 
-    After these comes what the trajectory states of samples, so that a table is judged as the plan.
+    The last columns hold what the trajectory states about its samples (repeated, not planned, extra
+    lift-off after it), so that the table is judged like the trajectory.
     """
     trajectory = planned.trajectory
     text = io.StringIO(newline="")
@@ -43,7 +44,7 @@ def joints_csv(planned: PlannedMotion) -> bytes:
         stated.tolist(),
         strict=True,
     )
-    # Nine digits behind the point are a nanosecond, a nanometer and a nanoradian.
+    # Nine decimals: a nanosecond, a nanometer, a nanoradian.
     writer.writerows(
         [f"{time:.9f}", segment, contact, *(f"{number:.9f}" for number in row), *said]
         for time, segment, contact, row, said in rows

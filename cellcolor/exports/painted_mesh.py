@@ -1,7 +1,7 @@
 """The painted surface as PLY and as GLB (binary glTF), each vertex in the color of its segment.
 
-Vertices and faces are those of the painted surface, in its order. Between two segments the colors
-run into each other over one row of triangles, because both formats interpolate colors.
+Vertices and faces are those of the painted surface, in the same order. Both formats interpolate the
+colors of vertices, so between two segments there is a row of triangles with mixed colors.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Proofs kept on disk, by what they depend on; nothing that stands in a file is believed."""
+"""Solutions kept on disk for each surface; what they prove is checked again when they are read."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ from cellcolor.solvers.interface import STRANDS
 class ProofCache:
     """A folder with a file for each surface, named by a fingerprint.
 
-    The fingerprint is that of the surface's content, of cellcolor's own source and of the search
-    space, so whatever changes one of them is proved anew. A file holds solutions, and how many
-    seconds there were for them. What they prove is computed when they are read.
+    The fingerprint covers the surface's content, cellcolor's own source and the search space. If
+    any of them changes, the surface is proved again. A file holds solutions and the time limit
+    under which they were found. It holds no bounds: those are computed when it is read.
 
     Attributes:
         folder: where the files are.
@@ -38,25 +38,30 @@ class ProofCache:
     folder: Path
 
     def get(self, surface: LabelledSurface, seconds: float, deadline: Deadline) -> Proof | None:
-        """What the kept solutions prove, if there is any reason to be content with it.
+        """What the kept solutions prove, or None if the surface has to be proved again.
 
-        The upper end of the range is counted by the checker, the lower end is the best bound whose
-        certificate it verifies. Bounds that nothing verifies stand in ``kept_lower``. A range that
-        is not exact was ended by a time limit: with more time than it had the surface is proved
-        anew. So it is where the file cannot be read, or the checker refuses a solution in it.
+        The checker counts the upper end of the range. The lower end is the best bound whose
+        certificate the checker verifies; a larger bound without one goes into ``kept_lower``.
+
+        The surface has to be proved again if
+
+        - there is no file, the file cannot be read, or the checker rejects one of its solutions;
+        - a verified bound exceeds the upper end, so that one of the two is wrong;
+        - lower and upper end differ, and the time limit is longer than the one of that proof;
+        - the deadline comes first.
 
         Args:
             surface: the labelled surface.
-            seconds: the time limit of now.
-            deadline: when there has to be an answer.
+            seconds: the time limit that a new proof would have.
+            deadline: when to give up reading and checking.
         """
         file = self._file(surface)
-        if not file.is_file():  # a pipe would be waited for
+        if not file.is_file():  # opening a pipe would block
             return None
         try:
             kept = read_document(file)
-            solutions, had = kept.get("solutions"), kept.get("seconds")
-            if type(had) is not float or not isinstance(solutions, list) or not solutions:
+            solutions, earlier = kept.get("solutions"), kept.get("seconds")
+            if type(earlier) is not float or not isinstance(solutions, list) or not solutions:
                 return None
             found = [_solution(document) for document in solutions]
             decomposition = decomposition_of(surface, None, deadline)
@@ -77,14 +82,14 @@ class ProofCache:
                     best, upper = solution, min(upper, report.segments)
         except (InputError, OutOfTime):
             return None
-        if verified > upper or (max(verified, claimed) < upper and seconds > had):
+        if verified > upper or (max(verified, claimed) < upper and seconds > earlier):
             return None
         bounds = ProvenRange(verified, upper)
         kept_lower = min(claimed, upper) if claimed > verified else None
         return Proof(bounds, decomposition, best, tuple(found), kept_lower)
 
     def put(self, surface: LabelledSurface, seconds: float, proof: Proof) -> None:
-        """Keep what was found within a time limit; the folder is made if there is none.
+        """Write what was found within a time limit; creates the folder.
 
         Raises:
             InputError: the folder cannot be written to, or something else has the file's name.
@@ -92,14 +97,14 @@ class ProofCache:
         if not proof.found:
             return
         kept = {
-            # JSON has no infinity; no clock goes on for longer than that.
+            # JSON has no infinity; 1e300 is longer than any time limit.
             "seconds": min(float(seconds), 1e300),
             "solutions": [solution.to_document() for solution in proof.found],
         }
         place, written = self.folder, None
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
-            # Several processes may write at once: each file is whole whoever is last.
+            # Several processes may write at once. Renaming keeps the file whole, whoever is last.
             handle, name = tempfile.mkstemp(dir=self.folder)
             place, written = self._file(surface), Path(name)
             with os.fdopen(handle, "w", encoding="utf-8") as file:
@@ -130,7 +135,7 @@ def _solution(document: object) -> Solution:
 
 @cache
 def _code() -> str:
-    """The fingerprint of the package's source, which takes hundredths of a second."""
+    """The fingerprint of the package's source; computing it takes some hundredths of a second."""
     folder, digest = Path(cellcolor.__file__).parent, hashlib.sha256()
     for file in sorted(folder.rglob("*.py")):
         content = file.read_bytes()

@@ -1,15 +1,19 @@
-"""Borders moved to where they should be (docs/painting.md, "Moving the borders").
+"""Moves the borders between segments of a painting (docs/painting.md, "Moving the borders").
 
-What comes first, in this order:
+The aims, most important first:
 
-1. The segments stay what they are: a vertex changes its segment only if no segment falls apart.
-2. Corridors are as wide as the tool, where that is possible.
-3. The arm is well conditioned: the caller says what a color costs at each vertex.
+1. The segments stay the same: a vertex changes its segment only if no segment falls apart.
+2. Corridors are as wide as the tool, if possible.
+3. The arm is well conditioned: the caller gives the cost of each color at each vertex.
 4. Borders are short.
 
-The last two are one sum, the length of the borders in m + the integral of the cost over the surface
-in m² / the tool's radius in m. So a difference in cost of 1 on both sides of a border is worth
-bending it as sharply as the tool's rim.
+Aims 3 and 4 are one sum: the length of the borders in m + the integral of the cost over the surface
+in m² / the tool's radius in m. If the cost differs by 1 between the two sides of a border, the
+border bends as sharply as the tool's rim.
+
+The algorithm alternates two steps: single vertices change their segment as long as that makes the
+sum smaller; then each corridor that is too narrow is widened, and its vertices are held in their
+segment from then on. The best state on the way is kept.
 """
 
 from __future__ import annotations
@@ -31,7 +35,7 @@ from cellcolor.painting.paint import Painted
 from cellcolor.painting.relabelling import Relabelling
 
 _ROUNDS = 12
-"""So often are corridors widened, and borders shortened again."""
+"""The most times that borders are shortened and corridors widened."""
 
 
 def move_borders(
@@ -44,18 +48,18 @@ def move_borders(
 
     Args:
         painted: any painting.
-        tool_radius_m: of the footprint; None for one mean mesh edge, so that a corridor has a row
-            of vertices inside.
-        cost: (n, colors) from 0, best, to 1, what a vertex of that color costs; None for nothing.
+        tool_radius_m: radius of the footprint, m. None takes the mean length of a mesh edge: then
+            a corridor of that width has a row of vertices inside.
+        cost: (n, colors) cost of painting a vertex in a color, from 0 (best) to 1; None for 0.
         deadline: when to give up.
 
     Returns:
-        The painting with the same segments elsewhere; ``borders`` says what has changed.
+        The painting with moved borders; its ``borders`` reports what has changed.
 
     Raises:
         InputError: the radius is not positive, or the cost has another shape or is not finite.
         OutOfTime: the deadline came first.
-        RefusedResult: the checker counts other segments than before.
+        RefusedResult: the checker counts another number of segments than before.
     """
     surface = painted.surface
     nearby = Nearby(surface)
@@ -88,16 +92,16 @@ def move_borders(
 
 @dataclass(frozen=True)
 class _State:
-    """Where borders are at one time.
+    """One position of the borders, and its measures.
 
     Attributes:
-        segment: of each vertex.
-        room: that they leave.
+        segment: of each vertex, -1 without color.
+        room: the room that the segments leave to the tool.
         corridors: narrowest first.
-        narrow: those that the tool is too wide for.
-        lacking: of the widths of these, in sum, m.
-        length: of the borders, m.
-        cost: its integral over the surface, m².
+        narrow: the corridors that are narrower than the tool.
+        lacking: how much they are narrower, summed up, m.
+        length: of all borders, m.
+        cost: integral of the cost over the surface, m².
     """
 
     segment: list[int]
@@ -110,6 +114,8 @@ class _State:
 
 
 class _Moving:
+    """The search for better borders: ``labels`` is changed in place, a state is a snapshot."""
+
     def __init__(
         self,
         nearby: Nearby,
@@ -122,18 +128,16 @@ class _Moving:
         self._radius, self._deadline = radius, deadline
 
     def improved(self, first: _State) -> _State:
-        """The best state on the way: the one that lacks least width, then the one of least sum."""
-        best, held = first, set[int]()
-        labels = self._labels
+        """The best state found: least missing width first, then the least sum of aims 3 and 4."""
+        best, labels = first, self._labels
         for _ in range(_ROUNDS):
             labels.shorten(self._deadline)
             state = self.state()
             best = min(best, state, key=self._rank)
-            before = set(held)
+            before = set(labels.held)
             for corridor in state.narrow:
                 self._widen(corridor)
-            held = set(labels.held)
-            if held == before:
+            if labels.held == before:
                 break
         return best
 
@@ -142,7 +146,11 @@ class _Moving:
         return lacking, state.length + state.cost / self._radius
 
     def _widen(self, corridor: Corridor) -> None:
-        """Give all within the tool's radius of a corridor's middle to it, and hold it there."""
+        """Widen a corridor to the tool, as far as the segments allow, and hold its vertices.
+
+        Its segment gets the vertices within the tool's radius of the way through the corridor,
+        nearest first. A vertex may become free to move once others have, so this is repeated.
+        """
         labels, own = self._labels, corridor.segment
         far = within(self._nearby, [(0.0, v) for v in corridor.way], self._radius, self._deadline)
         left = [v for v in sorted(far, key=far.__getitem__) if labels.segment[v] not in (own, -1)]
@@ -155,7 +163,7 @@ class _Moving:
         labels.held.update(v for v in far if labels.segment[v] == own)
 
     def state(self) -> _State:
-        """Where borders are now."""
+        """The present position of the borders."""
         labels, nearby = self._labels, self._nearby
         segment, surface = list(labels.segment), nearby.surface
 
@@ -176,7 +184,7 @@ class _Moving:
         return _State(segment, room, corridors, narrow, lacking, length, cost)
 
     def borders(self, state: _State) -> Borders:
-        """A state in numbers."""
+        """The measures of a state for the report."""
         area = float(self._nearby.areas[np.array(state.segment) >= 0].sum())
         narrowest = state.corridors[0] if state.corridors else None
         repeated = state.room.repeated(state.narrow)
@@ -187,8 +195,8 @@ class _Moving:
 def border_length(surface: LabelledSurface, segment_of: Index) -> float:
     """The length in m of all borders between segments (n,), -1 for none.
 
-    They are drawn straight through triangles, from the middle of one mesh edge to that of another;
-    in a triangle with three segments to its center.
+    In a triangle with two segments a border is a straight line between the middles of two mesh
+    edges. In a triangle with three, it consists of lines from the middles to the center.
     """
     places = surface.vertices[surface.faces]
     own = segment_of[surface.faces]
@@ -198,7 +206,7 @@ def border_length(surface: LabelledSurface, segment_of: Index) -> float:
     count = crossed.sum(axis=1)
     three = np.linalg.norm(middles - places.mean(axis=1, keepdims=True), axis=2)
     total = three[count == 3].sum()
-    # Two middles, or one and the center where the third vertex has no segment.
+    # One border edge: the third vertex has no segment, so the line ends at the center.
     for row in np.flatnonzero(count == 1).tolist():
         total += three[row][crossed[row]].sum()
     ends = middles[count == 2][crossed[count == 2]].reshape(-1, 2, 3)

@@ -1,8 +1,8 @@
-"""A labelled surface by cell, by one color's domain, by segment, and by reason.
+"""Pictures of a labelled surface: by cell, by one color's domain, by segment, by reason.
 
-A solution says which borders the sub-cells of a divided cell own, not where the cutting path
-runs. What is drawn is its painting (:mod:`cellcolor.painting.paint`): one of the ways in which the
-cut can run, on a mesh that is refined where it has to be.
+A solution does not say where a cutting path runs inside a divided cell. So the picture by segment
+shows a painting of it (:mod:`cellcolor.painting.paint`), that is, one possible cut, on a mesh that
+is refined where necessary.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ _CUT = "#666666"
 
 
 def draw_cells(surface: LabelledSurface, decomposition: Decomposition) -> Picture3D:
-    """Every cell in a fill of its own, or at least in another one than its neighbors."""
+    """Every cell in its own fill; with many cells, fills repeat but never between neighbors."""
     instance = decomposition.instance
     cells = np.array(decomposition.vertex_cell, dtype=np.int64)
     number = len(instance.cells)
@@ -58,7 +58,7 @@ def draw_cells(surface: LabelledSurface, decomposition: Decomposition) -> Pictur
 
 
 def draw_color(surface: LabelledSurface, color: int) -> Picture3D:
-    """Where one color is available, and where others are."""
+    """Where one color is available, and where only others are."""
     covered = np.array(
         [0 if color in own else 1 if own else 2 for own in surface.vertex_colors], dtype=np.int64
     )
@@ -79,19 +79,19 @@ def draw_color(surface: LabelledSurface, color: int) -> Picture3D:
 def draw_segments(
     surface: LabelledSurface, decomposition: Decomposition, solution: Solution
 ) -> Picture3D:
-    """Every segment of a valid solution in a fill of its own."""
+    """Every segment of a valid solution in its own fill."""
     return draw_surface(*by_solution(surface, decomposition, solution))
 
 
 def by_solution(
     surface: LabelledSurface, decomposition: Decomposition, solution: Solution
 ) -> tuple[LabelledSurface, SurfaceView]:
-    """Every segment in a fill of its own, and the surface to draw that on.
+    """The surface to draw a solution on, and every segment there in its own fill.
 
     Args:
         surface: the surface.
-        decomposition: its topological graph, on the mesh.
-        solution: a valid solution of the graph, one that was found.
+        decomposition: its topological graph.
+        solution: a valid solution of the graph, with a division.
 
     Raises:
         TooLarge: a painting would need too many vertices.
@@ -105,7 +105,7 @@ def by_solution(
     if decomposition.curves or not instance.edges:
         painted = paint(surface, decomposition, solution)
         fine, stands_for, segment_of = painted.surface, painted.stands_for, painted.segment_of
-    else:  # where the edges lie is not known: each cell has the first of its segments
+    else:  # the mesh does not tell where edges run: each cell gets the first of its segments
         first = np.array([cell.subcells[0].segment for cell in solution.cells or ()] + [-1])
         fine, stands_for, segment_of = surface, np.arange(len(cells)), first[cells]
     labels = np.where(segment_of >= 0, segment_of, bare_labels(fine, segments + 1))
@@ -138,7 +138,8 @@ def by_solution(
         f"{surface.name}: {count(segments, 'segment')}, {lift_offs}",
         labels,
         classes,
-        # A number for each part of a cell in one segment, so that cuts are drawn as well.
+        # Borders separate these numbers: one for each pair of cell and segment, so that cuts are
+        # drawn as well.
         borders=cells[stands_for] * (int(labels.max(initial=0)) + 1) + labels,
         cracks=fine.crack_colors,
         notes=tuple(notes),
@@ -191,29 +192,30 @@ def draw_plan(surface: LabelledSurface, plan: Plan) -> Picture3D:
 def draw_reasons(
     surface: LabelledSurface, reasons: CandidateTable, branch: int | None = None
 ) -> Picture3D:
-    """Why vertices are out of reach: see :func:`by_reason`."""
+    """Why vertices cannot be reached: see :func:`by_reason`."""
     return draw_surface(surface, by_reason(surface, reasons, branch))
 
 
 def by_reason(
     surface: LabelledSurface, reasons_of: CandidateTable, branch: int | None = None
 ) -> SurfaceView:
-    """Why vertices are not reachable.
+    """Every vertex in the fill of its reason for being out of reach.
 
     Args:
         surface: the labelled surface.
-        reasons_of: what became of its candidates.
-        branch: look at this branch alone. None: at the branch that passed the most
-            tests; a vertex is reachable if it has any color.
+        reasons_of: the verdict on every configuration that was tried.
+        branch: show this branch alone. None shows for each vertex the branch that passed the most
+            tests; then a vertex is reachable if it has any color.
     """
     rows = slice(None) if branch is None else slice(branch, branch + 1)
     codes, colors = reasons_of.reasons[:, rows], reasons_of.node_color[:, rows]
     valid = (codes == VALID).any(axis=1)
     given_up = len(reasons_of.reason_names)
-    # Codes are in the order of the tests; in old files a blocked tip came last, which is the same
-    # here, as it is blocked for all branches that reach there.
+    # Codes ascend in the order of the tests, so the largest is that of the branch that got
+    # farthest. In old files "tip blocked" is the largest code. That makes no difference, because
+    # a blocked tip is blocked in all branches that reach the vertex.
     labels = np.where(valid, VALID, codes.max(axis=1)).astype(np.int64)
-    # A sliver policy takes colors away from what is valid.
+    # Valid, but without color: the sliver policy took it away.
     labels[valid & (colors < 0).all(axis=1)] = given_up
     share = shares(surface, labels, given_up + 1)
     counts = np.bincount(labels, minlength=given_up + 1)
@@ -243,11 +245,11 @@ def segment_classes(
 
 
 def bare_labels(surface: LabelledSurface, first: int) -> Labels:
-    """The classes (n,) of vertices without colors, as if all were: see :func:`bare_classes`.
+    """For every vertex (n,) the class that it has if it has no color: see :func:`bare_classes`.
 
     Args:
         surface: the surface.
-        first: the class of what is unreachable; that of what was given up is the one after it.
+        first: the class "unreachable"; the next number is the class "given up".
     """
     labels = np.full(len(surface.vertices), first, dtype=np.int64)
     labels[list(surface.given_up)] = first + 1
@@ -255,7 +257,7 @@ def bare_labels(surface: LabelledSurface, first: int) -> Labels:
 
 
 def bare_classes(unreachable: str, given_up: str) -> list[VertexClass]:
-    """What no segment covers, with their shares as text."""
+    """The two classes of vertices without color, with their shares as text."""
     return [
         VertexClass(f"{UNREACHABLE}  {unreachable}", FAINT),
         VertexClass(f"{GIVEN_UP}  {given_up}", GREY),
@@ -271,7 +273,7 @@ def shares(surface: LabelledSurface, labels: Labels, count: int) -> list[str]:
 
 
 def neighboring(surface: LabelledSurface, labels: Labels, count: int) -> dict[int, set[int]]:
-    """The classes next to each class 0 … count - 1 over mesh edges; others are not counted."""
+    """For each class 0 … count - 1 those of them that are next to it across a mesh edge."""
     found: dict[int, set[int]] = {label: set() for label in range(count)}
     ends = labels[surface.mesh.edges]
     for a, b in sorted(set(map(tuple, np.concatenate([ends, ends[:, ::-1]]).tolist()))):

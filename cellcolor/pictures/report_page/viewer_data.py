@@ -1,4 +1,4 @@
-"""The arrays that the page's scripts draw from; no more samples than can be seen on it."""
+"""The data that the page's scripts draw, thinned to what can be seen."""
 
 from __future__ import annotations
 
@@ -37,16 +37,16 @@ from cellcolor.pictures.report_page.surface_modes import (
 from cellcolor.questions.front import Front
 
 MOST_FRAMES = 1500
-_MOST_DOTS = 40  # for parts that are left out
-_MOST_POINTS = 12_000  # of the path that is drawn
-_FINEST = 2e-4  # m; a path is drawn no truer than that
-_LINKS = ("#AEB6C2", "#7F8A9B")  # of the arm, in turn
+_MOST_DOTS = 40  # marks of left-out places, and of faults
+_MOST_POINTS = 12_000  # of the drawn path
+_FINEST = 2e-4  # m; how far the drawn path may be off, unless it would have too many points
+_LINKS = ("#AEB6C2", "#7F8A9B")  # the links of the arm, alternating
 _TOOL = "#4A5361"
 _OBSTACLE, _BODY = "#882255", "#C8C4B0"
 
 
 def viewer_data(report: MotionReport) -> dict[str, Any]:
-    """What ``viewer.js`` and ``charts.js`` draw, JSON-able; arrays as base64 (``_packed``)."""
+    """What ``viewer.js`` and ``charts.js`` draw, as JSON; arrays are base64 (see ``_packed``)."""
     prepared, painted = report.built.prepared, report.painted
     trajectory = report.trajectory or _still(report)
     surface = report.built.surface
@@ -62,9 +62,9 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
             if isinstance(answer, Front)
             for point in answer
         ]
-    if painted is not None:  # its surface may be finer
-        surface, given = painted.surface, painted.stands_for
-        modes = [replace(mode, labels=mode.labels[given]) for mode in modes]
+    if painted is not None:  # draw on its surface, which may be finer
+        surface, original = painted.surface, painted.stands_for
+        modes = [replace(mode, labels=mode.labels[original]) for mode in modes]
         modes.insert(0, segment_mode(painted))
     frames = frames_of(trajectory, MOST_FRAMES)
     faults = () if report.verdict is None else report.verdict.faults
@@ -92,7 +92,7 @@ def viewer_data(report: MotionReport) -> dict[str, Any]:
 
 
 def _packed(values: Any, kind: str) -> dict[str, str]:
-    """An array in little-endian bytes: ``f4``, ``u4``, ``i2`` or ``u1``."""
+    """An array as little-endian bytes; the kind is ``f4``, ``u4``, ``i2`` or ``u1``."""
     content = np.ascontiguousarray(values, dtype=f"<{kind}")
     return {"kind": kind, "base64": base64.b64encode(content.tobytes()).decode()}
 
@@ -115,7 +115,7 @@ def _mode(surface: LabelledSurface, mode: SurfaceMode) -> dict[str, Any]:
 
 
 def _arm(robot: Robot) -> dict[str, Any]:
-    """Joint frames and the bodies on them: the collision shapes, which are what is tested."""
+    """Joint frames and the bodies on them: the collision shapes, since these are what is tested."""
     links = list(dict.fromkeys(body.link for body in robot.bodies))
     last = max(min(body.joint, robot.joints) for body in robot.bodies)
     bodies = []
@@ -153,7 +153,7 @@ def _arm(robot: Robot) -> dict[str, Any]:
 
 
 def _solids(prepared: PreparedScene) -> list[dict[str, Any]]:
-    """What stands around, in the world."""
+    """Obstacles and the body of the part, in the world frame."""
     scene = prepared.scene
     meshes = [(_OBSTACLE, *obstacle_mesh(each, scene.folder)) for each in scene.obstacle]
     if scene.solid_object is not None:
@@ -166,10 +166,10 @@ def _solids(prepared: PreparedScene) -> list[dict[str, Any]]:
 
 
 def _trace(trajectory: Trajectory, lift: float) -> dict[str, Any]:
-    """Where the tip goes, as a polyline that is lifted off the surface to be seen, with times."""
+    """The tip's path with times, a polyline drawn ``lift`` m above the surface to be visible."""
     points = trajectory.points + lift * trajectory.normals
     contact = trajectory.contact
-    # Where contact begins or ends the drawn line changes its color: these points stay.
+    # The line changes its color where contact begins or ends, so these points are kept.
     turns = np.flatnonzero(contact[1:] != contact[:-1])
     jumps = np.array(trajectory.unplanned, dtype=np.int64)
     stays = np.concatenate([turns, turns + 1, jumps, jumps + 1])
@@ -181,13 +181,13 @@ def _trace(trajectory: Trajectory, lift: float) -> dict[str, Any]:
     return {
         "points": _packed(points[kept], "f4"),
         "times": _packed(trajectory.times[kept], "f4"),
-        # Of the piece that begins at each point: 0 between strokes, 1 in contact, 2 not planned.
+        # Of the line from each point to the next: 0 between strokes, 1 in contact, 2 not planned.
         "state": _packed(np.where(np.isin(kept, jumps), 2, touching), "u1"),
     }
 
 
 def _paths(paths: ToolPaths | None, lift: float) -> dict[str, Any]:
-    """Tool paths drawn as if driven at once, with nothing from one to the next (state 3)."""
+    """Tool paths without a motion: all times are 0, and nothing joins two paths (state 3)."""
     drawn = () if paths is None else paths.paths
     points = [path.points + lift * path.normals for path in drawn]
     states = [np.append(np.ones(len(path.points) - 1), 3) for path in drawn]
@@ -199,7 +199,7 @@ def _paths(paths: ToolPaths | None, lift: float) -> dict[str, Any]:
 
 
 def _still(report: MotionReport) -> Trajectory:
-    """The arm standing still, at home or in some valid configuration on the part."""
+    """One sample: the arm at home, or in some valid configuration on the part."""
     robot, motion = report.built.robot, report.built.scene.setup.motion
     if motion is not None and motion.home is not None:
         joints = np.array([motion.home])
@@ -234,7 +234,7 @@ def _frames(prepared: PreparedScene, trajectory: Trajectory, frames: Index) -> d
         "segment": _packed(trajectory.segment[frames], "i2"),
         "unplanned": _packed(np.isin(frames, trajectory.unplanned), "u1"),
     } | {
-        # The least value until before the next frame, so that no dip is left out.
+        # The least value from each frame to just before the next, so that no dip is lost.
         name: _packed(np.minimum.reduceat(own, frames), "f4")
         for name, own in measures.items()
     }
@@ -258,9 +258,9 @@ def _limits(prepared: PreparedScene) -> dict[str, Any]:
 def _places(
     trajectory: Trajectory, faults: Sequence[Fault], vertices: Array, normals: Array
 ) -> list[dict[str, Any]]:
-    """What is marked on the part: extra lift-offs, faults, and what is left out.
+    """Marks on the part: extra lift-offs, faults, and left-out places.
 
-    Marks that look away are hidden; a mark looks where the nearest vertex does.
+    ``outward`` is the normal of the nearest vertex: marks that face away are hidden.
     """
     marks: list[dict[str, Any]] = [
         {
@@ -284,10 +284,10 @@ def _places(
 
 
 def _eye(surface: LabelledSurface) -> Array:
-    """A unit vector from the scene to the eye: much of the part's outside, and the arm beside it.
+    """A unit vector from the scene to the eye, from where the arm stands beside the part.
 
-    Of 24 directions around the vertical, at two heights, the one that sees most of the outside;
-    from where the arm stands before the part, or behind it, only if much more is seen from there.
+    Of 24 directions around the vertical at two heights, this is the one that sees most of the
+    part's outside. Directions in which the arm hides the part, or the part the arm, lose points.
     """
     normals, middle = surface.vertex_normals, surface.vertices.mean(axis=0)
     away = middle[:2] / max(float(np.linalg.norm(middle[:2])), 1e-9)
@@ -302,13 +302,14 @@ def _eye(surface: LabelledSurface) -> Array:
 
 
 def frames_of(trajectory: Trajectory, most: int) -> Index:
-    """Samples, ascending, at about equal travel of the joints, of time where they rest.
+    """The samples to draw, ascending, evenly spread over the travel of the joints.
 
-    The ends of strokes and of moves that were not planned are always among them.
+    Time has a small weight as well, so that there are samples where the joints rest. The ends of
+    strokes and of moves that were not planned are always included.
 
     Args:
         trajectory: one sample or more.
-        most: how many, besides the ends.
+        most: the most samples, not counting these ends.
     """
     count = len(trajectory.times)
     inside = [end for first, after in trajectory.strokes for end in (first, after - 1)]
@@ -324,15 +325,15 @@ def frames_of(trajectory: Trajectory, most: int) -> Index:
 
 
 def straightened(points: Array, kept: Index, tolerance: float) -> Index:
-    """Points, ascending, whose polyline passes all points (k, 3) within a tolerance, m.
+    """Which points of a polyline to keep, ascending, so that it moves by at most a tolerance.
 
-    By halving at the farthest point (Douglas and Peucker, Algorithms for the reduction of the
-    number of points required to represent a digitized line, 1973).
+    The algorithm of Douglas and Peucker, "Algorithms for the reduction of the number of points
+    required to represent a digitized line", 1973.
 
     Args:
-        points: of a polyline, two or more.
+        points: (k, 3) of the polyline, two or more, m.
         kept: points that stay in any case.
-        tolerance: m.
+        tolerance: the largest distance of a dropped point from the new polyline, m.
     """
     chosen = np.zeros(len(points), dtype=bool)
     chosen[[0, len(points) - 1]] = True

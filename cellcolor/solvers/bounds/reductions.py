@@ -1,4 +1,4 @@
-"""What a minimum can do without: some colors of cells, and more than a few strands of an edge."""
+"""Two reductions that keep the minimum: dropping colors of cells, and limiting strands of edges."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from cellcolor.solvers.bounds.cover import color_regions
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A color region that another color can replace.
+    """A color region that is dropped, because another color can replace it.
 
     Attributes:
         color: the region's color.
@@ -27,7 +27,7 @@ class LeftOut:
 
 
 def drop_dominated(instance: Instance, dropped: Iterable[LeftOut]) -> tuple[frozenset[int], ...]:
-    """The remaining colors of each cell after some color regions are left out."""
+    """The colors that each cell keeps when some color regions are dropped."""
     allowed = [set(cell.colors) for cell in instance.cells]
     for region in dropped:
         for cell in region.cells:
@@ -36,13 +36,13 @@ def drop_dominated(instance: Instance, dropped: Iterable[LeftOut]) -> tuple[froz
 
 
 def left_out(instance: Instance, deadline: Deadline = NEVER) -> list[LeftOut]:
-    """Color regions that a minimum does not need (docs/semantics.md, section 6), in their order.
+    """Dominated color regions (docs/semantics.md, section 6), in the order they are dropped.
 
-    A color's region may be left out if some other color is available in each of its cells and
-    joinable across each edge that is joinable for it: anything painted in the one can be painted
-    in the other. Regions are left out one at a time, since one of two equal ones has to stay. This
-    keeps the minimum of both search spaces, not the set of optimal schemes. After the deadline
-    the remaining regions stay.
+    A region is dominated if some other color is available in each of its cells and joinable across
+    each edge across which the region's own color is joinable: whatever is painted in the region's
+    color can be painted in the other. Regions are dropped one at a time, because of two regions
+    that dominate each other one has to stay. This keeps the minimum of both search spaces, but not
+    the set of optimal schemes. After the deadline no more regions are dropped.
     """
     found: list[LeftOut] = []
     allowed = [set(cell.colors) for cell in instance.cells]
@@ -50,7 +50,7 @@ def left_out(instance: Instance, deadline: Deadline = NEVER) -> list[LeftOut]:
     for color, cells in sorted(color_regions(instance), key=lambda region: len(region[1])):
         if deadline.over:
             break
-        # Edges between cells of one region that are joinable for its color.
+        # The edges inside the region across which its color is joinable.
         edges = {
             abs(dart)
             for cell in cells
@@ -76,26 +76,26 @@ def enough_crossings(
     instance: Instance,
     colors: Sequence[frozenset[int]],
 ) -> dict[int, float]:
-    """Strands of each live edge that are enough for a minimum over all divisions.
+    """How many strands of each live edge suffice for a minimum over all divisions.
 
     Among all divisions of the surface with the fewest segments, take one with the fewest
     sub-cells, and a spanning tree of each segment. Then (docs/bounds.md, "Crossing an edge twice")
 
-    - successive strands of an edge that the trees cross have different colors, so an edge with a
-      single joinable color is crossed once;
-    - the sub-cells on either side of an edge that is crossed m > 1 times are m different ones,
-      each crossing some other edge of its cell too. So m is at most the sum of the crossings of
-      the other edges of the cell, on either side.
+    - Where the trees cross one edge several times, successive crossings have different colors. So
+      an edge with a single joinable color is crossed at most once.
+    - Suppose that the trees cross an edge m > 1 times. Then on either side there are m different
+      sub-cells, and each of them crosses some other edge of its cell, too. So on either side m is
+      at most the sum of the crossings of the cell's other edges.
 
-    The second point is repeated until nothing changes. Cells with several live loops bound
-    nothing, and neither do edges that have one cell on both sides.
+    The second point is applied until nothing changes. It says nothing about a side whose cell has
+    several live loops, nor about edges with the same cell on both sides.
 
     Args:
         instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
 
     Returns:
-        A number for every live edge; infinity where nothing is known.
+        A number for every live edge; infinity if no limit is known.
     """
     enough = {
         edge.id: math.inf

@@ -1,9 +1,9 @@
 """The paper's depth-first enumerative solver, to be read with sections IV and V.
 
-``cell_schemes`` enumerates the schemes of one cell (section IV), ``search`` paints the graph cell
-by cell (section V), carries the cost (section V-A), and checks what a complete painting shows
-across its edges in state 0, ``graph`` is the topological graph as all of
-them see it.
+- ``graph``: the topological graph, prepared for the search.
+- ``cell_schemes``: enumerates the schemes of one cell (section IV).
+- ``search``: paints the graph cell by cell (section V) and keeps the cost up to date (section V-A).
+  It also checks the edges in state 0 of each complete painting.
 """
 
 from cellcolor.solvers.dfs.cell_schemes import code, divisions
