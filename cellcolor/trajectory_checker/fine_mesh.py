@@ -13,14 +13,14 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import TooLarge
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.memory import chunks
 
 _MOST = 2_000_000  # small triangles; some hundred bytes each
-_NEIGHBORS = 16  # small triangles that are asked at first which of them is nearest to a point
+_NEIGHBORS = 8  # small triangles that are asked at first which of them is nearest to a point
 _PAIR = 1_024  # bytes that a point and a small triangle take
 _NEAR = 0.02  # m; for points farther off, a triangle that is nearly the nearest will do
 
@@ -155,6 +155,12 @@ class FineMesh:
         given = self.surface.normals[self.surface.faces[faces]]
         normals = _unit(_mixed(within, given))
         return Located(triangle, at, normals, self._owners(faces, within))
+
+    def may_be_near(self, points: Array, distance: float) -> Mask:
+        """Which points (k, 3) may be within a distance (m) of the surface; no other one is."""
+        # Sums are rounded, so a hair more.
+        far = self._tree.query(points, distance_upper_bound=1.001 * (self._radius + distance))[0]
+        return np.asarray(np.isfinite(far))
 
     def _nearest_of(
         self, points: Array, outward: Array, asked: int

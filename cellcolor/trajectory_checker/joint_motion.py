@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from operator import le
 
 import numpy as np
 
@@ -252,16 +253,21 @@ def corners(times: Array, joints: Array) -> Index:
     that lie between, within a rounding of angles: many samples of a slow bend keep some of them.
     """
     kept = [0]
-    low, high = np.full(joints.shape[1], -np.inf), np.full(joints.shape[1], np.inf)
-    for k in range(1, len(times)):
+    # For rows of a few numbers, plain floats are many times faster than arrays.
+    at, rows = times.tolist(), joints.tolist()
+    low, high = [-np.inf] * joints.shape[1], [np.inf] * joints.shape[1]
+    for k, row in enumerate(rows[1:], 1):
         begin = kept[-1]
-        slope = (joints[k] - joints[begin]) / (times[k] - times[begin])
-        if k > begin + 1 and ((slope < low).any() or (slope > high).any()):
+        passed = at[k] - at[begin]
+        slopes = [(there - here) / passed for here, there in zip(rows[begin], row, strict=True)]
+        fits = all(map(le, low, slopes)) and all(map(le, slopes, high))
+        if k > begin + 1 and not fits:
             kept.append(k - 1)
-            begin = k - 1
-            low, high = np.full(len(low), -np.inf), np.full(len(low), np.inf)
-        passed = times[k] - times[begin]
-        low = np.maximum(low, (joints[k] - ANGLE_ROUNDING - joints[begin]) / passed)
-        high = np.minimum(high, (joints[k] + ANGLE_ROUNDING - joints[begin]) / passed)
-    kept.append(len(times) - 1)
+            passed = at[k] - at[k - 1]
+            slopes = [(there - here) / passed for here, there in zip(rows[k - 1], row, strict=True)]
+            low, high = [-np.inf] * len(row), [np.inf] * len(row)
+        rounding = ANGLE_ROUNDING / passed
+        low = [max(least, slope - rounding) for least, slope in zip(low, slopes, strict=True)]
+        high = [min(most, slope + rounding) for most, slope in zip(high, slopes, strict=True)]
+    kept.append(len(at) - 1)
     return np.array(kept)

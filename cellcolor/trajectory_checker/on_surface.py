@@ -65,6 +65,7 @@ def judge_dragged(dense: Dense, fine: FineMesh, deadline: Deadline, faults: Faul
     come and go: there it may stay so near for a way of 3 mm.
     """
     away = np.flatnonzero(~dense.contact)
+    away = away[fine.may_be_near(dense.tips[away], OFF_SURFACE)]
     if not len(away):
         return
     touches = np.zeros(len(dense), dtype=bool)

@@ -351,6 +351,7 @@ def test_a_recording_is_read_back_by_another_reader(robot: str, tmp_path: Path) 
                     triangles, planned.surface.vertices[planned.surface.faces.ravel()]
                 )
                 assert len(message.markers) == 1 + len(planned.paths.paths)
+                assert len(message.markers[0].colors) == len(triangles)
             elif connection.topic == "/joint_states":
                 states.append((moment * 1e-9, np.array(message.position)))
                 assert tuple(message.name) == trajectory.joint_names
