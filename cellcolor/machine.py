@@ -16,12 +16,12 @@ from cellcolor.version import __version__
 
 @dataclass(frozen=True, slots=True)
 class Machine:
-    """What a measurement depends on.
+    """The machine and versions behind a measurement.
 
     Attributes:
-        cores: that this process may use.
-        memory_mb: of the whole machine, 2**20 bytes; 0 if that is not known.
-        cpu: what the processor calls itself.
+        cores: how many this process may use.
+        memory_mb: of the whole machine, in units of 2**20 bytes; 0 if unknown.
+        cpu: the processor's own name.
         python: its version.
         cellcolor: its version, as :func:`this_version` tells it.
     """
@@ -35,7 +35,7 @@ class Machine:
 
 @cache
 def this_machine() -> Machine:
-    """The one that this process runs on."""
+    """The machine that this process runs on."""
     available = getattr(os, "sched_getaffinity", None)
     cores = (os.cpu_count() or 1) if available is None else len(available(0))
     return Machine(
@@ -47,8 +47,8 @@ def this_machine() -> Machine:
 def this_version() -> str:
     """The package's version, and the commit if it is run from a clone: ``0.1.0+g382b955``.
 
-    ``.dirty`` at its end says that a file was changed after the commit. As a local version of
-    Python's version specifiers (PEP 440).
+    It ends in ``.dirty`` if a file was changed after the commit. The form is a local version
+    identifier (PEP 440).
     """
     package = Path(__file__).parent
     tracked = _git(package, "ls-files", "version.py")
@@ -60,7 +60,7 @@ def this_version() -> str:
 
 
 def _git(folder: Path, *arguments: str) -> str:
-    """What git prints there; nothing without git, or where no repository is."""
+    """What git prints in a folder; empty without git or outside a repository."""
     command = ["git", "-C", str(folder), *arguments]
     try:
         ended = subprocess.run(command, capture_output=True, check=True, timeout=10)

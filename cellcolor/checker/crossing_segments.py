@@ -1,21 +1,22 @@
-"""Two segments that would have to cross: verified on the graph, by parity.
+"""Verifies on the graph, by parity, that two segments would have to cross.
 
-Let Q be a connected set in color region B that touches the cells v and v', and P one in color
-region A that touches u and u'; v and v' are not in A, u and u' not in B, and P and Q are disjoint.
-Look at the surface that the cells of A and B make, their borders filled with discs
-(``filled_surface``).
+Suppose that two disjoint segments exist: P in color region A touches the cells u and u', which are
+not in B; Q in color region B touches v and v', which are not in A. Take the closed surface that the
+cells of A and B make when their borders are filled with discs (``filled_surface``). The **wall** is
+all of it where B cannot be.
 
-1. Let q be any curve in B from v to v'. Within Q there is one too. The two close to a curve in B,
-   which is homologous to a sum c of cycles of B: one of finitely many, on a sphere none.
-2. A closed curve in P and in what B is not does not meet Q, so that it crosses q + c evenly.
-3. So P comes in even parity to all cells of A alone that are connected with u outside B: the
-   way back to u in there crosses neither q nor c. "In even parity" is counted from u, by crossings
-   with q + c.
-4. If u' is one of these cells, and the color of A does not connect u and u' in this way for any c,
-   P and Q cannot be disjoint.
+1. Choose any curve q in B from v to v'. Q contains a curve q' from v to v' as well. Together they
+   make a closed curve in B. It is homologous to a sum c of cycles of B. There are finitely many
+   such sums; on a sphere the only one is empty.
+2. A closed curve in P and the wall does not meet Q. So it crosses q + c an even number of times.
+3. Let w be a cell of A alone in u's component of the wall. P's way from u to w closes to a curve as
+   in (2) by a way back through the wall, which crosses neither q nor c. So P's way from u to w has
+   even parity: it crosses q + c an even number of times.
+4. It is not known which sum c is. But if u' is in u's component of the wall, and for no c the color
+   of A connects u with u' in even parity, then P and Q cannot be disjoint.
 
-A walk over pairs of a cell and a parity tells what is connected. It leaves out the cells of (3) in
-odd parity.
+The test joins pairs (cell, parity) across the edges of A. By (3) it leaves out the pairs of a cell
+in u's component of the wall with odd parity.
 """
 
 from __future__ import annotations
@@ -29,8 +30,7 @@ from cellcolor.checker.groups import Groups
 from cellcolor.data.instance import Instance
 
 MOST_CIRCLES = 10
-"""With more independent closed curves in a region nothing is concluded: for n of them 2^n sums have
-to be looked at."""
+"""If a region has more independent closed curves, nothing is concluded: n of them have 2^n sums."""
 
 
 def _nothing(_choices: int) -> None:
@@ -67,30 +67,30 @@ class TwoRegions:
         return self._parted(0, one, other) or self._parted(1, other, one)
 
     def _parted(self, side: int, pair: tuple[int, int], other: tuple[int, int]) -> bool:
-        """Whether a segment of one side cannot connect two cells beside one of the other side.
+        """Whether no segment of one side connects two cells beside a segment of the other side.
 
         Args:
             side: 0 or 1.
             pair: two cells of the side's region, to be connected.
-            other: two cells of the other region, which the other segment connects.
+            other: two cells that the other region's segment connects.
         """
         own, theirs = self._domains[side], self._domains[1 - side]
         if not set(pair) <= own.tree.keys() or not set(other) <= theirs.tree.keys():
             return False
-        # A cell without loops has no place in a wall: it is a surface by itself.
+        # A cell without loops is a closed surface by itself and in no wall.
         walls = [theirs.wall.get(cell) for cell in pair]
         if None in walls or walls[0] != walls[1] or self._circles[1 - side] is None:
             return False
         key = side, other, walls[0]
         if key not in self._known:
-            # A certificate names all conflicts beside one curve in turn.
+            # A certificate lists all conflicts beside one curve in succession: keep one entry.
             self._known.clear()
             self._known[key] = self._connected(*key)
         return all(root[pair[0]] != root[pair[1]] for root in self._known[key])
 
     @cached_property
     def _known(self) -> dict[tuple[int, tuple[int, int], object], list[dict[int, int]]]:
-        """What ``_connected`` has found last."""
+        """The last result of ``_connected``."""
         return {}
 
     @cached_property
@@ -109,21 +109,22 @@ class TwoRegions:
 
     @cached_property
     def _circles(self) -> tuple[list[set[int]] | None, list[set[int]] | None]:
-        """Independent closed curves of both regions; None if they are too many."""
+        """Independent closed curves of each region; None if there are too many."""
         self.count(1 + 2 * self._surface.size // WORK)
         found = [self._surface.circles(domain, MOST_CIRCLES) for domain in self._domains]
         return found[0], found[1]
 
     def _connected(self, side: int, other: tuple[int, int], wall: object) -> list[dict[int, int]]:
-        """What a side's color connects in even parity, of the cells in one wall of the other side.
-
-        There is one answer for each sum of cycles of the other side. Cells with the same number
-        are connected.
+        """Which cells in one component of the wall a side's color connects in even parity.
 
         Args:
             side: 0 or 1.
-            other: two cells of the other region, which the other segment connects.
-            wall: a component of what the other region is not.
+            other: two cells that the other region's segment connects.
+            wall: the component.
+
+        Returns:
+            A dictionary for each sum of cycles of the other region. It maps each of the cells to a
+            number; cells with the same number are connected.
         """
         own, theirs = self._domains[side], self._domains[1 - side]
         way = self._surface.way(theirs, other[0]) ^ self._surface.way(theirs, other[1])

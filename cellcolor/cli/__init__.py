@@ -1,6 +1,7 @@
 """The command line: ``cellcolor build``, ``solve``, ``check`` and the other commands.
 
-Little is imported before the signals have their handlers: until then Ctrl-C ends in a traceback.
+Hardly anything is imported before the signal handlers are set: until then, Ctrl-C would print a
+traceback.
 """
 
 from __future__ import annotations
@@ -26,12 +27,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: what follows the program's name; None takes them from ``sys.argv``.
 
     Returns:
-        0 done, 1 found invalid, 2 bad usage or input, 3 stopped or not proved.
+        The exit code: 0 done, 1 found invalid, 2 bad usage or input, 3 stopped or not proved.
     """
     if arguments is None:
-        atexit.register(INTERRUPTS.ignore)  # the first registered is the last called
-        # What a command reads lives as long as it does. To look it through after every 700 new
-        # objects, as Python does, takes a third of the time of reading and checking.
+        atexit.register(INTERRUPTS.ignore)  # registered first, so it is called last
+        # What a command reads stays in use until it ends, so collecting garbage frees nothing. Done
+        # every 700 objects, Python's default, it takes a third of the time of reading and checking.
         gc.set_threshold(50_000)
     try:
         with INTERRUPTS.end_the_command(last=arguments is None):
@@ -39,10 +40,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
             code = run(arguments)
             if arguments is None:
-                # The work is done; a signal can only hasten the end of the process.
+                # The work is done; from now on a signal just ends the process sooner.
                 INTERRUPTS.handle_with(lambda *_: os._exit(code))
     except (KeyboardInterrupt, ImportError):
-        # In the moments before and after the command proper.
+        # A signal came just before or just after the command itself.
         if not INTERRUPTS.seen:
             raise
         print("cellcolor: interrupted", file=sys.stderr)

@@ -1,7 +1,7 @@
 """Graphs in the text format of IMCGS, the solver that the paper's authors published.
 
-docs/formats.md has the format. It gives each cell one cyclic list of edges and each edge the two
-cells beside it, so every edge appears twice, and the two have to agree.
+docs/formats/other-programs.md describes the format. A file has a cyclic list of edges for each
+cell, and the two cells beside each edge. These two statements have to agree.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ Sides = tuple[int, int]
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """The numbers of a line.
+    """One line of the file.
 
     Attributes:
-        number: of the line in the file, from 1.
-        values: what is in it.
+        number: of the line, from 1.
+        values: the numbers in it.
     """
 
     number: int
@@ -43,7 +43,7 @@ class _Line:
 
 
 def parse_correction(text: str) -> tuple[int, Sides]:
-    """``16=-1,0``: the edge 16 lies between the outside and cell 0, whatever the file says.
+    """Parse a correction: ``16=-1,0`` says that edge 16 lies between the outside and cell 0.
 
     Raises:
         InputError: it is not written like that.
@@ -57,20 +57,20 @@ def parse_correction(text: str) -> tuple[int, Sides]:
 def read_imcgs(
     path: str | PathLike[str], corrections: Sequence[str] = (), name: str | None = None
 ) -> Instance:
-    """The instance in a file of that format.
+    """Read an instance.
 
-    Edges keep their order: edge 0 of the file is edge 1 of the instance. The colors are named
-    after their numbers.
+    Edges keep their order: edge 0 of the file is edge 1 of the instance. Color 3 of the file is
+    named ``c3``.
 
     Args:
         path: the file.
-        corrections: of edges that the file has wrong, see :func:`parse_correction`. They are
-            written into ``meta``.
-        name: of the instance; None for the file's without its ending.
+        corrections: replacements for wrong lines about edges, see :func:`parse_correction`. They
+            are recorded in ``meta``.
+        name: of the instance; None for the name of the file without its suffix.
 
     Raises:
-        InputError: the file cannot be read, is not of that format, or contradicts itself; names
-            file and line.
+        InputError: the file cannot be read, has another format, or contradicts itself; names file
+            and line.
     """
     corrected = dict(map(parse_correction, corrections))
     text = read_text(path)
@@ -124,7 +124,7 @@ def _parsed(
 
 
 def _lines(text: str) -> Iterable[_Line]:
-    """The lines that are not empty."""
+    """The non-empty lines."""
     for number, line in enumerate(text.splitlines(), start=1):
         words = line.split()
         for word in words:
@@ -137,7 +137,7 @@ def _lines(text: str) -> Iterable[_Line]:
 def _sides(
     lines: Sequence[_Line], corrections: Mapping[int, Sides], cell_count: int
 ) -> list[tuple[_Line, Sides]]:
-    """The two cells beside each edge, corrected."""
+    """The line of each edge and the two cells beside it, corrected."""
     for edge in corrections:
         if edge >= len(lines):
             raise InputError(None, "correct", f"there is no edge {edge}")
@@ -156,7 +156,7 @@ def _sides(
 
 
 def _holders(loops: Sequence[_Line], edge_count: int) -> list[list[int]]:
-    """The cells in whose lists each edge stands, in their order."""
+    """For each edge the cells whose lists contain it, in the order of the cells."""
     holders: list[list[int]] = [[] for _ in range(edge_count)]
     for cell, line in enumerate(loops):
         for edge in line.values:
@@ -169,7 +169,7 @@ def _holders(loops: Sequence[_Line], edge_count: int) -> list[list[int]]:
 def _cells(
     loops: Sequence[_Line], colors: Sequence[_Line], names: Sequence[int]
 ) -> tuple[Cell, ...]:
-    """The cells: an edge's first place in the lists is on its left, the second on its right."""
+    """The cells; where an edge appears first in the lists is its left side, then its right."""
     color_of = {name: color for color, name in enumerate(names)}
     seen: Counter[int] = Counter()
     cells = []

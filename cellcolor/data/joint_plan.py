@@ -1,4 +1,4 @@
-"""Another planner's joint angles for the oracle of a scene, by vertex or in order."""
+"""Joint angles of another planner, to be judged by an oracle: one per vertex, or along a path."""
 
 from __future__ import annotations
 
@@ -47,15 +47,15 @@ class JointPlan:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class ContactPath:
-    """A tool path with the joints that drive it: samples in their order.
+    """A tool path with its joint angles, as samples in order.
 
     A run of consecutive samples in contact is a **stroke**; the tool lifts off between strokes.
 
     Attributes:
         joints: (k, joints) float64, rad, modulo full circles (m for prismatic joints).
-        points: (k, 3) float64, where the tool's tip is, in the world, m, to be compared with the
-            joints; None takes it from them.
-        contact: (k,) whether the tool is on the surface; None for always, one stroke.
+        points: (k, 3) float64, the tool's tip in the world, m, compared with the joints; None
+            computes it from the joints.
+        contact: (k,) whether the tool is on the surface; None for always: one stroke.
 
     Raises:
         InputError: these are not such arrays, or have different lengths.
@@ -84,7 +84,7 @@ class ContactPath:
 
     @classmethod
     def of(cls, trajectory: Trajectory | TrajectoryTable) -> ContactPath:
-        """The path of a trajectory, or of a table of one: without times."""
+        """The path of a trajectory or of its table, without times."""
         if isinstance(trajectory, Trajectory):
             return cls(trajectory.joints, trajectory.points, trajectory.contact)
         points = None if trajectory.poses is None else trajectory.poses[:, :3]
@@ -100,7 +100,7 @@ class ContactPath:
 
     @property
     def strokes(self) -> int:
-        """How many there are."""
+        """How many strokes there are."""
         return int(self.stroke.max(initial=-1)) + 1
 
     def __repr__(self) -> str:
@@ -110,12 +110,12 @@ class ContactPath:
 
 @dataclass(frozen=True, eq=False)
 class VertexContacts:
-    """Contacts of a path with vertices, in the order of the path, each in a color of its vertex.
+    """Where a path touches vertices in one of their colors, in the order of the path.
 
     Attributes:
-        stroke: (c,) the stroke that each is in.
-        vertex: (c,) the vertex that is touched.
-        color: (c,) the color, which the vertex has.
+        stroke: (c,) the stroke of each contact.
+        vertex: (c,) the vertex touched.
+        color: (c,) the color there, one of the vertex's.
     """
 
     stroke: NDArray[np.int64]

@@ -1,4 +1,4 @@
-"""``cellcolor.show``: pictures of any subject, the parts they need, the files they go to."""
+"""``cellcolor.show``: pictures of any subject, what they are drawn from, and their files."""
 
 from __future__ import annotations
 
@@ -32,16 +32,16 @@ _KINDS = {".html": HTML, ".png": PNG, ".svg": SVG}
 
 @dataclass(frozen=True, repr=False, eq=False)
 class Drawing:
-    """A picture, drawn but not saved; a notebook shows it, and the mouse turns it.
+    """A picture that has not been saved yet; a notebook displays it, to be turned by the mouse.
 
     Attributes:
-        picture: what it consists of.
+        picture: its contents.
     """
 
     picture: Picture2D | Picture3D
 
     def render(self, suffix: str) -> bytes:
-        """The bytes of a file that ends in ``.html``, ``.png`` or ``.svg``.
+        """The contents of a file with the suffix ``.html``, ``.png`` or ``.svg``.
 
         Raises:
             InputError: the extra ``viz`` is not installed.
@@ -59,7 +59,8 @@ class Drawing:
         """Write it to a file .html, .png or .svg; only an older picture is overwritten.
 
         Raises:
-            InputError: another ending, something else is there, or it cannot be written.
+            InputError: another suffix, the file is no picture of cellcolor's, or it cannot be
+                written.
         """
         place = path_of(path)
         kind = kind_of_picture(place)
@@ -78,15 +79,15 @@ class Drawing:
 
 @dataclass(frozen=True, slots=True)
 class View:
-    """What to look at.
+    """Which picture is wanted, and its options.
 
     Attributes:
         name: of the picture, one of :data:`cellcolor.pictures.registry.PICTURES`.
-        solution: whose segments, or its file.
-        color: whose domain, by name or number.
-        vertex: that the arm is on.
-        branch: of the arm, or of the reasons, by name or number.
-        plan: of another planner, or its file.
+        solution: the solution to draw, or its file.
+        color: the color to draw, by name or number.
+        vertex: the vertex to put the arm on.
+        branch: the branch of the arm or of the reasons, by name or number.
+        plan: the plan of another planner, or its file.
     """
 
     name: str
@@ -98,10 +99,10 @@ class View:
 
 
 def kind_of_picture(path: Path) -> FileKind:
-    """The kind of file that a picture goes to.
+    """The kind of file for a picture.
 
     Raises:
-        InputError: no picture has this ending.
+        InputError: no picture has this suffix.
     """
     kind = _KINDS.get(path.suffix)
     if kind is None:
@@ -110,10 +111,10 @@ def kind_of_picture(path: Path) -> FileKind:
 
 
 def kind_of_plot(path: Path) -> FileKind:
-    """The kind of file that curves on axes go to.
+    """The kind of file for a plot of curves.
 
     Raises:
-        InputError: no such file has this ending.
+        InputError: no plot has this suffix.
     """
     if path.suffix not in (".png", ".svg"):
         raise InputError(str(path), None, "must end in .png or .svg")
@@ -143,14 +144,14 @@ def show(
         view: the picture: ``cells``, ``color``, ``graph``, ``plan``, ``reasons`` (why points
             are out of reach), ``segments``, ``why`` (fewer are not enough) or ``arm``; None for
             what the options below ask for.
-        solution: by segment, in this solution, result or file of one.
-        color: where one color is available, by its name or number.
-        vertex: the arm on this vertex, in one ``branch``.
-        branch: an inverse-kinematic branch, by its name or number.
-        plan: by segment, in this plan of another planner or the file of one.
+        solution: draws the segments of this solution, result or file of one.
+        color: draws where this color is available, given by name or number.
+        vertex: draws the arm on this vertex, in one ``branch``.
+        branch: an inverse-kinematic branch, by name or number.
+        plan: draws the segments of this plan of another planner, or of the file of one.
 
     Raises:
-        InputError: there is nothing of that kind to be seen, or the file cannot be written.
+        InputError: the source has no such picture, or the file cannot be written.
     """
     if path is not None:
         kind_of_picture(path_of(path))
@@ -173,7 +174,7 @@ def show(
 
 
 def _usual_view(source: Solvable | Result, subject: Subject) -> str:
-    """What says most of what can be drawn."""
+    """The picture that is drawn if nothing else is asked for."""
     if not subject.names_surface:
         return "graph"
     found = isinstance(source, Result) and source.solution.cells is not None
@@ -181,10 +182,10 @@ def _usual_view(source: Solvable | Result, subject: Subject) -> str:
 
 
 def picture_of(view: View) -> Picture:
-    """The picture that a view names, if the view gives exactly what it needs.
+    """The picture that a view names, after checking the view's options.
 
     Raises:
-        InputError: there is no such picture, or an option is missing or too much.
+        InputError: there is no such picture, it needs another option, or it does not take one.
     """
     picture = make_picture(view.name)
     options: dict[str, object] = {
@@ -203,15 +204,15 @@ def picture_of(view: View) -> Picture:
 
 
 def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
-    """Draw a picture from the parts that it declares.
+    """Draw a picture from the inputs that it declares (``needs`` and ``takes``).
 
     Args:
-        picture: what :func:`picture_of` has for the view.
-        subject: what is to be seen.
-        view: what to look at.
+        picture: the picture of the view, see :func:`picture_of`.
+        subject: the source of the inputs; they are made only if the picture uses them.
+        view: the options.
 
     Raises:
-        InputError: a part is not there, or these parts cannot be drawn together.
+        InputError: an input is missing, or the inputs cannot be drawn together.
     """
     file = None if subject.path is None else str(subject.path)
 
@@ -267,7 +268,7 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
 
 
 def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, field: str) -> int:
-    """The number of something given by name or by number."""
+    """The number of an item that was asked for by name or by number."""
     if asked in names:
         return names.index(str(asked))
     if str(asked).isdecimal() and int(str(asked)) < len(names):
@@ -279,12 +280,15 @@ def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, f
 def _checked(
     subject: Subject, claim: Solution | str | PathLike[str] | None, *, on_surface: bool
 ) -> tuple[Solution, tuple[BoundVerdict, ...]]:
-    """A solution that has a division and is valid for the subject, and its bounds verified.
+    """A valid solution of the subject, with a division, and the checker's verdicts on its bounds.
 
     Args:
-        subject: what it solves.
+        subject: what the solution has to solve.
         claim: the solution or its file.
-        on_surface: whether certificates are verified by the mesh and not by the graph.
+        on_surface: whether certificates are verified on the mesh instead of the graph.
+
+    Raises:
+        InputError: the solution is not valid, or has no division.
     """
     assert claim is not None
     file = None if isinstance(claim, Solution) else str(claim)
@@ -303,10 +307,10 @@ def _checked(
 
 
 def draw_steps(result: Result) -> Drawing:
-    """The meshes that a result's ``refinement`` went through, side by side.
+    """The meshes of a result's ``refinement``, side by side.
 
     Raises:
-        InputError: it was not refined.
+        InputError: the result has no refinement.
     """
     from cellcolor.pictures.by_refinement import draw_refinement
 
@@ -316,15 +320,15 @@ def draw_steps(result: Result) -> Drawing:
 
 
 def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None:
-    """Draw curves on axes to a file .png or .svg; only an older picture is overwritten.
+    """Save a plot of curves as .png or .svg; only an older picture is overwritten.
 
     Args:
         path: the file.
-        render: the bytes of a picture, given its format, ``png`` or ``svg``.
+        render: returns the picture's bytes for a format, ``png`` or ``svg``.
 
     Raises:
-        InputError: another ending, something else is there, it cannot be written, or the extra
-            ``viz`` is not installed.
+        InputError: another suffix, the file is no picture of cellcolor's, it cannot be written, or
+            the extra ``viz`` is not installed.
     """
     file = path_of(path)
     kind = kind_of_plot(file)

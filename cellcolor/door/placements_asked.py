@@ -1,4 +1,4 @@
-"""Who is asked for the minima of many placements, and the table that keeps them."""
+"""Computes the minima of many placements, possibly in other processes; keeps them in a table."""
 
 from __future__ import annotations
 
@@ -24,19 +24,19 @@ from cellcolor.version import __version__
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
 
-_BATCH = 32  # placements a process; reading the scene takes as long as one or two of them
-_ATTEMPTS = 2  # at placements whose process broke down
+_BATCH = 32  # placements per task; reading the scene takes as long as one or two of them
+_ATTEMPTS = 2  # how often a task is tried whose process was lost
 _ENDING = 10.0  # s that a process may take beyond its time
-_ALL_DAY = 86_400.0  # s, where there is no limit
+_ALL_DAY = 86_400.0  # s, the limit of a process if there is no time limit
 
 
 @dataclass(frozen=True, slots=True)
 class PlacementRow:
-    """A placement in a table that a search goes on from.
+    """One row of a table of placements.
 
     Attributes:
-        scene: what is asked about, wherever the part stands: a fingerprint.
-        mesh: ``own``, or how many vertices were wanted of the coarse one.
+        scene: fingerprint of the scene without its placement.
+        mesh: ``own``, or the number of vertices wanted for the coarse mesh.
         x, y, z, roll, pitch, yaw: where the part stands, m and rad.
         segments, covered_share, proved_for_surface, vertices, refused: see
             :class:`~cellcolor.questions.placements.PlacedMinimum`.
@@ -58,7 +58,7 @@ class PlacementRow:
 
     @property
     def minimum(self) -> PlacedMinimum:
-        """The same as the value."""
+        """The row as a value."""
         return PlacedMinimum(
             (self.x, self.y, self.z, self.roll, self.pitch, self.yaw),
             self.segments,
@@ -70,15 +70,15 @@ class PlacementRow:
 
 
 class PlacementTable(AbstractContextManager["PlacementTable"]):
-    """What is known of placements; with a file it is kept there, row by row.
+    """The known minima of placements, kept in a file row by row if there is one.
 
     Args:
-        scene: what is asked about.
-        path: of the table; one that is there is continued. None keeps nothing.
-        base: whether its rows are places of the arm's base.
+        scene: the scene of the placements.
+        path: the file; an existing table is continued. None writes no file.
+        base: whether the placements are those of the arm's base.
 
     Raises:
-        InputError: the file is no such table, is damaged, or is of another scene.
+        InputError: the file is no such table, is damaged, or belongs to another scene.
     """
 
     def __init__(self, scene: Scene, path: Path | None, base: bool = False) -> None:
@@ -96,11 +96,11 @@ class PlacementTable(AbstractContextManager["PlacementTable"]):
             self._known[row.mesh, row.minimum.pose] = row.minimum
 
     def get(self, mesh: str, pose: Pose) -> PlacedMinimum | None:
-        """What is known of a placement on a mesh."""
+        """The known minimum of a placement on a mesh; None if unknown."""
         return self._known.get((mesh, pose))
 
     def add(self, mesh: str, row: PlacedMinimum) -> None:
-        """Keep a row; in the file only what another run could not know better."""
+        """Keep a row; write it to the file only if another run could not improve it."""
         self._known[mesh, row.pose] = row
         if self._file is not None and (row.proved_for_surface or row.refused):
             found = row.segments, row.covered_share, row.proved_for_surface, row.vertices
@@ -117,17 +117,17 @@ class PlacementTable(AbstractContextManager["PlacementTable"]):
 
 
 class AskedPlacements:
-    """Who is asked for the minima of many placements: this process, or others.
+    """Computes minima of placements, in this process or in others.
 
     Attributes:
-        complete: whether no time limit has left any out.
+        complete: whether every placement asked so far has got its row, before the deadline.
 
     Args:
-        workers: who does the work; None for this process.
-        table: what is known already, and where new rows are kept.
-        deadline: of all of it.
+        workers: the processes that compute; None for this one.
+        table: the known minima; new ones are added.
+        deadline: for everything together.
         seed: of everything random.
-        report: told how many are done.
+        report: is told how many placements are done.
         base: whether the arm's base is moved instead of the part.
     """
 
@@ -147,16 +147,16 @@ class AskedPlacements:
         self.complete = True
 
     def minima(self, scene: Scene, mesh: str, poses: Sequence[Pose]) -> list[PlacedMinimum]:
-        """A row for each placement, in their order; fewer if the time ends.
+        """A row for each placement, in order; fewer if the deadline comes first.
 
         Args:
-            scene: with any placement.
-            mesh: what the table calls the mesh of this scene.
-            poses: where the part is put.
+            scene: the scene; its own placement does not matter.
+            mesh: what the table calls this scene's mesh.
+            poses: the placements.
 
         Raises:
             OutOfTime: the deadline came before the first.
-            CellcolorError: a process could not do its work.
+            CellcolorError: a task failed, or its process was lost in every attempt.
         """
         self._deadline.check()
         slots = 1 if self._workers is None else self._workers.slots
@@ -176,7 +176,7 @@ class AskedPlacements:
     def _asked(
         self, scene: Scene, parts: Sequence[Sequence[Pose]]
     ) -> Iterator[list[PlacedMinimum]]:
-        """The rows of each part, as they come."""
+        """The rows of each part, in the order in which the parts are done."""
         from cellcolor.questions.placing import minima_at
 
         if self._workers is None:
@@ -197,17 +197,17 @@ class AskedPlacements:
                     yield ended.value or []
                 elif ended.end == "failed" or attempt == _ATTEMPTS:
                     raise CellcolorError(f"placements could not be tried: {ended.error}")
-                else:  # the process was lost, not the work
+                else:  # the process was lost; the work is repeated
                     lost.append(part)
 
 
 def _fingerprint(scene: Scene, base: bool) -> str:
-    """Of all that a scene's and its setup's file say but the placement, and of the files they name.
+    """A fingerprint of scene and setup, without the placement, and of the files that they name.
 
-    Meshes that a URDF names are not looked at.
+    Meshes named in a URDF are not included.
     """
     whole = hashlib.sha256(__version__.encode())
-    if base:  # places of the base say nothing of places of the part, and the part stays
+    if base:  # the part keeps its placement, so that belongs to the question
         whole.update(scene.placement.model_dump_json().encode())
     for table, folder in ((scene, scene.folder), (scene.setup, scene.setup.folder)):
         content = table.model_dump(mode="json", exclude={"placement"})
@@ -215,13 +215,13 @@ def _fingerprint(scene: Scene, base: bool) -> str:
         for text in _texts(content):
             try:
                 whole.update((folder / text).read_bytes())
-            except (OSError, ValueError):  # no name of a file
+            except (OSError, ValueError):  # not the name of a file
                 continue
     return whole.hexdigest()[:16]
 
 
 def _texts(content: Any) -> Iterator[str]:
-    """All texts in JSON content."""
+    """All strings in JSON content."""
     open_ = [content]
     while open_:
         value = open_.pop()

@@ -1,36 +1,35 @@
-"""Walls that keep the joints of a segment inside their limits where it winds them.
+"""Walls on a segment that keep joints inside their limits where the segment winds them.
 
-Idea. Inverse kinematics has a joint's angle only up to full circles. Along a closed walk on a
-segment, around a hole or a place that no color of the segment reaches, an angle may come back
-turned by full circles, as that of the first joint does around the robot's base. A path that goes
-around often enough leaves any limits. Along a tree the angles are single-valued. So a tree is grown
-over the segment as far as the joints stay inside their limits, and no path may step between
-neighbors that the tree reached with different turns: there is a wall. The tree crosses no wall, so
-what it has reached stays connected.
+Idea. Inverse kinematics gives a joint's angle modulo full circles. After a closed walk on a
+segment around a hole, or around a place that is out of reach, an angle may have changed by full
+circles, as that of the first joint does after a walk around the robot's base. A path that goes
+around often enough leaves any limits. Along a tree there are no closed walks, so each angle has one
+value. So a tree is grown over the segment as far as the joints stay inside their limits. Neighbors
+that the tree has reached with different turns get a **wall** between them, which no path may cross.
+The tree itself crosses no wall, so all that it has reached stays connected.
 
-Standard terms. Parts and steps are a gain graph (or voltage graph) with gains in Z^joints, the
-turns along a tree are a potential, and walls are the steps whose gain does not agree with it; what
-is left is balanced. Trees of shortest paths are Dijkstra's, their roots a farthest-point sample.
+Standard terms. Parts and steps form a gain graph (voltage graph) with gains in Z^joints; the turns
+along a tree are a potential; walls are the steps whose gain contradicts it; without them the graph
+is balanced. Trees are shortest-path trees (Dijkstra); their roots are a farthest-point sample.
 
 Steps of the algorithm.
 
-1. :func:`parts_of` divides the segment into parts about mesh vertices, with the range of the angles
-   in each, and finds the steps between them and by how much these turn the joints.
-2. One tree without limits tells which joints wind. Any other joint that fits into its limits as a
-   whole has the same turns in all trees.
-3. Trees inside the limits are grown from several roots, with every choice of turns there. The one
-   that reaches the largest area is taken, of equal ones the one with the shortest walls.
-4. The rest is done in the same way; each tree becomes a stroke of its own.
-5. There are walls where the turns of a tree disagree, and between trees.
+1. :func:`parts_of` divides the segment into parts around mesh vertices and finds the range of each
+   joint's angle in each part, and the turns of each step between two parts.
+2. A tree without limits shows which joints wind. If a joint does not wind, and all of its angles on
+   that tree fit into the limits together, its turns are fixed: they are the same in all trees.
+3. Trees inside the limits are grown from several roots, with every choice of the other turns there.
+   The tree with the largest area is taken; among equals, the one with the shortest walls.
+4. Step 3 is repeated on the parts not reached; each tree becomes a stroke of its own.
+5. Walls are put where the turns of a tree disagree, and between trees.
 
 Example. Parts A, B, C, D lie around the base, with the first joint at 0, 90, 180 and -90
 degrees. The step from C to D has 1 turn: from 180 degrees the joint goes on to 270. With limits of
 200 degrees each way the tree from A has all four with 0 turns, and the one wall is between C and D.
 With limits of 100 degrees it does not reach C; C is a tree by itself, with walls to B and D.
 
-Complexity. A tree of p parts and s steps takes O((p + s) log s) time. At most 12 roots times 2
-margins times 3 to the number of joints of which step 2 does not fix the turns are grown for each
-tree that is taken.
+Complexity. A tree of p parts and s steps takes O((p + s) log s) time. For each tree taken, at most
+12 roots × 2 margins × 3^j trees are grown, where j is the number of joints not fixed by step 2.
 """
 
 from __future__ import annotations
@@ -48,9 +47,9 @@ from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 
-_ROOTS = 12  # vertices that trees are grown from, one after the other
-_MARGIN = 0.02  # rad; what samples between corners of small triangles may reach beyond these
-_PER_JOINT = 3  # turns of one joint that are tried at a root
+_ROOTS = 12  # parts that trees are grown from, one after the other
+_MARGIN = 0.02  # rad; how far samples inside a small triangle may exceed the angles at its corners
+_PER_JOINT = 3  # how many turns of one joint are tried at a root
 
 _Limits = tuple[Array, Array]  # lower and upper, (joints,)
 
@@ -61,9 +60,9 @@ class PartSteps:
 
     Attributes:
         ends: (s, 2) the two parts.
-        turns: (s, joints) full circles between the angles that go on from the vertex of the first
-            part and those that inverse kinematics has at the vertex of the second.
-        edge: (s,) the number of the mesh edge that is followed.
+        turns: (s, joints) full circles to add in the second part: the angles continued from the
+            first part, less those that inverse kinematics gives in the second.
+        edge: (s,) the mesh edge that the step follows.
         lengths: (s,) of the side that is crossed, m.
     """
 
@@ -75,7 +74,7 @@ class PartSteps:
 
 @dataclass(frozen=True)
 class Parts:
-    """A segment as parts about mesh vertices, and the steps between them.
+    """A segment as parts around mesh vertices, and the steps between them.
 
     Attributes:
         places: (p, 3) the vertex of each part, m.
@@ -96,9 +95,10 @@ class Walls:
     """Walls of one segment.
 
     Attributes:
-        edges: mesh edges that no path may cross.
-        whole: whether the segment is still connected; if not, its limits allow no single path.
-        joint: a joint that winds, or else does not fit into its limits.
+        edges: mesh edges; no path may cross from one end's part to the other end's.
+        whole: whether walls leave each connected piece of the segment connected. If not, no single
+            tree inside the limits was found for some piece.
+        joint: a joint that winds, or else the one that moves farthest.
     """
 
     edges: tuple[tuple[int, int], ...]
@@ -136,8 +136,8 @@ def parts_of(
 def _part_of(small: SmallTriangles, kept: Mask) -> Index:
     """The part (6 m,) of each small triangle that is kept, -1 for the others.
 
-    Two of one vertex are in one part if they have a side in common: that to the centroid, or half a
-    mesh edge.
+    A part consists of small triangles of one vertex that are connected by common sides: a side to
+    the centroid, or half a mesh edge.
     """
     own = np.flatnonzero(kept)
     to_centroid = np.arange(len(kept)).reshape(-1, 2)
@@ -155,9 +155,9 @@ def _part_of(small: SmallTriangles, kept: Mask) -> Index:
 def _steps_between(
     small: SmallTriangles, states: CornerStates, part_of: Index, closed: Mask
 ) -> PartSteps:
-    """A step for each side between the middle of a mesh edge and a centroid, if it may be crossed.
+    """A step across each side between the middle of a mesh edge and a centroid, unless closed.
 
-    On one side of it is a small triangle (vertex, middle, centroid), on the other the small
+    On one side of it is the small triangle (vertex, middle, centroid), on the other the small
     triangle (next vertex, centroid, middle).
     """
     numbers = np.arange(len(part_of)).reshape(-1, 3, 2)
@@ -177,8 +177,7 @@ def _steps_between(
 def walls_of(parts: Parts, mesh: TriangleMesh, space: JointSpace, deadline: Deadline) -> Walls:
     """Walls between which the joints of a segment stay inside their limits.
 
-    Of all trees that are grown, one that reaches the largest area is taken, and of these the one
-    with the shortest walls. What it does not reach is a part of the segment by itself.
+    The module's docstring has the algorithm.
 
     Args:
         parts: of the segment.
@@ -206,7 +205,7 @@ def walls_of(parts: Parts, mesh: TriangleMesh, space: JointSpace, deadline: Dead
 
 @dataclass(frozen=True)
 class _Tree:
-    """Which parts a tree reaches (p,), and the turns (p, joints) there."""
+    """The parts (p,) that a tree reaches, and its turns (p, joints) there."""
 
     reached: Mask
     turns: Index
@@ -216,7 +215,7 @@ class _GainGraph:
     """The parts and steps of a segment, for trees to be grown on."""
 
     def __init__(self, parts: Parts, period: Array) -> None:
-        """Lists the neighbors of each part: part, distance of the vertices, turns of the step."""
+        """List for each part its neighbors: the part, distance of the vertices, turns there."""
         self._parts, self._period = parts, period
         self._neighbors: list[list[tuple[int, float, Index]]] = [[] for _ in parts.places]
         here, there = parts.places[parts.steps.ends].swapaxes(0, 1)
@@ -233,11 +232,11 @@ class _GainGraph:
             root: a part.
             start: (joints,) the turns there.
             allowed: (p,) the parts that may be reached.
-            limits: of the joints, none without it. The root is not held against them.
+            limits: of the joints; None for no limits. They are not tested at the root.
         """
         turns = np.zeros(self._parts.lowest.shape, dtype=np.int64)
         reached = np.zeros(len(allowed), dtype=bool)
-        # The running number keeps turns from being compared, and paths of equal length in order.
+        # The running number orders paths of equal length, so that arrays are never compared.
         queue, number = [(0.0, 0, root, start)], 0
         while queue:
             far, _, part, own = heappop(queue)
@@ -260,14 +259,14 @@ class _GainGraph:
         return bool(inside.all())
 
     def disagreeing(self, tree: _Tree) -> Mask:
-        """Over which steps inside a tree its turns do not go on, (s, joints)."""
+        """(s, joints) which steps between parts of a tree contradict its turns."""
         one, other = self._parts.steps.ends.T
         inside = tree.reached[one] & tree.reached[other]
         goes_on = tree.turns[one] + self._parts.steps.turns == tree.turns[other]
         return np.asarray(inside[:, None] & ~goes_on)
 
     def cost(self, tree: _Tree) -> tuple[float, float]:
-        """What makes a tree better if it is less: minus its area in m^2, then its walls in m."""
+        """The cost of a tree, compared in this order: minus its area, m^2; its walls' length, m."""
         area = round(float(self._parts.areas[tree.reached].sum()), 12)
         walls = self._parts.steps.lengths[self.disagreeing(tree).any(axis=1)]
         return -area, float(walls.sum())
@@ -278,7 +277,7 @@ class _Grower:
 
     Attributes:
         graph: what they are grown on.
-        joint: one that a closed walk turns by a full circle; otherwise that which moves farthest.
+        joint: a joint that winds; if none does, the one that moves farthest.
     """
 
     def __init__(self, parts: Parts, space: JointSpace, deadline: Deadline) -> None:
@@ -291,7 +290,7 @@ class _Grower:
         highest = (parts.highest + moved)[reached].max(axis=0)
         winds = np.asarray(self.graph.disagreeing(self._free).any(axis=0))
         self.joint = int(np.argmax(winds) if winds.any() else np.argmax(highest - lowest))
-        # For each joint by how much to turn that whole tree; None where it winds or does not fit.
+        # For each joint the turns to add to the free tree; None if it winds or does not fit.
         fitting = _fitting(lowest, highest, space.limits, space.period)
         self._fixed: list[int | None] = [
             None if wind or not turns else turns[0]
@@ -299,9 +298,9 @@ class _Grower:
         ]
 
     def best(self, left: Mask) -> _Tree:
-        """The tree that reaches most of what is left, and of these one with the shortest walls.
+        """The tree with the largest area in what is left; among equals, with the shortest walls.
 
-        If no part has turns inside the limits, it is the first one alone.
+        If no root has turns inside the limits, it is the first part alone.
         """
         alone = np.zeros(len(left), dtype=bool)
         alone[int(np.argmax(left))] = True
@@ -318,7 +317,7 @@ class _Grower:
                     yield self.graph.tree(root, start, left, limits)
 
     def _starts(self, root: int, limits: _Limits) -> list[Index]:
-        """Turns (joints,) of a root that are inside the limits."""
+        """All choices of turns (joints,) that put a root inside the limits."""
         ends = self._parts.lowest[root], self._parts.highest[root]
         choices = [turns[:_PER_JOINT] for turns in _fitting(*ends, limits, self._space.period)]
         if self._free.reached[root]:
@@ -329,7 +328,7 @@ class _Grower:
 
 
 def _fitting(lowest: Array, highest: Array, limits: _Limits, period: Array) -> list[list[int]]:
-    """For each joint the turns that bring a range of positions inside limits, middle ones first."""
+    """For each joint the turns that put a range of positions inside limits, middle ones first."""
     spans = zip(lowest, highest, *limits, period, strict=True)
     return [_fitting_turns(*span) for span in spans]
 
@@ -347,7 +346,7 @@ def _fitting_turns(
 
 
 def _spread(places: Array, members: Index) -> list[int]:
-    """Some of the members, each as far as can be from those before it."""
+    """Up to ``_ROOTS`` of the members, each the one farthest from those chosen before it."""
     chosen = [int(members[0])]
     away = np.linalg.norm(places[members] - places[chosen[0]], axis=1)
     while len(chosen) < min(_ROOTS, len(members)):

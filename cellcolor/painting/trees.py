@@ -1,14 +1,18 @@
-"""Trees in a divided cell: one for each sub-cell, connecting its darts, no two of them meeting.
+"""Disjoint trees in a divided cell: one for each sub-cell, connecting its darts.
 
-The trees grow on the vertices of the cell. Where a mesh edge at a joined border ends in the cell
-stands a *terminal* of its sub-cell. Two terminals, or what has been connected with them, are
-connected next in one of two ways, and either leaves a drawing of the whole division possible
-(docs/painting.md):
+The trees consist of vertices of the cell. Each joined border has a mesh edge as its gate; the end
+of a gate in this cell is a **terminal** of the sub-cell there. Terminals that mesh edges connect
+form a **piece**; a sub-cell is unfinished while it has several pieces. Vertices on no tree are
+**free**. A **wall** is whatever bounds the free vertices: trees, borders of the cell, cracks. A
+**walk** goes round a connected part of the wall once, with the free vertices on its left.
 
-- along the wall: on a walk round what is free, if no unfinished sub-cell is met between the two;
-- across, by a shortest way, if they are on different walks round what is free.
+Each step connects two pieces of one sub-cell in one of two ways. After either, the rest of the
+division can still be drawn (docs/painting.md has the proof):
 
-What is too narrow for that has to be refined.
+- along the wall, if the two pieces are on one walk and no unfinished sub-cell is met between them;
+- across, by a shortest way, if they are on different walks.
+
+If the mesh is too narrow for that, the caller has to refine it.
 """
 
 from __future__ import annotations
@@ -21,8 +25,9 @@ from cellcolor.decomposition.borders import Step
 from cellcolor.union_find import UnionFind
 
 _AT_A_WALL, _AT_A_PIECE = 10, 1000
-"""What a way pays for a vertex there; elsewhere it pays 1. It makes long detours round a piece of
-another sub-cell, which has to be reached later, and short ones round other walls."""
+"""Cost of a vertex beside a wall, and beside a piece of another unfinished sub-cell; of any other
+vertex it is 1. So a way across makes short detours round walls, and long ones round pieces, which
+must not be shut in because they have to be connected later."""
 
 
 class TooNarrow(Exception):
@@ -42,13 +47,14 @@ def grow_trees(
     Args:
         vertices: those of the cell.
         around: the neighbors of each vertex over mesh edges.
-        third: the triangle on the left of each directed mesh edge, of a mesh without border.
-        cracked: whether a mesh edge has a crack, given either way round.
-        terminals: the vertices that each sub-cell has to contain, non-crossing.
+        third: the third vertex of the triangle on the left of each directed mesh edge; the mesh is
+            closed.
+        cracked: whether a mesh edge has a crack, given in either direction.
+        terminals: the vertices that each sub-cell has to contain; the sub-cells do not cross.
         deadline: when to give up.
 
     Returns:
-        ``{vertex: sub-cell}`` for those that were needed.
+        ``{vertex: sub-cell}`` of the vertices on trees.
 
     Raises:
         OutOfTime: the deadline came first.
@@ -58,6 +64,18 @@ def grow_trees(
 
 
 class _Trees:
+    """Trees that grow.
+
+    Attributes:
+        free: the vertices on no tree.
+        open: the neighbors in the cell of each vertex, across edges without a crack.
+        walls: pairs (free vertex, neighbor) such that no tree can grow from the one to the other.
+        owner: the sub-cell of each vertex on a tree.
+        owned: the vertices on the tree of each sub-cell.
+        piece: the vertices of each piece, united.
+        pieces: how many pieces each sub-cell has.
+    """
+
     def __init__(
         self,
         vertices: Iterable[int],
@@ -77,11 +95,9 @@ class _Trees:
             v: [x for x in around[v] if x in inside and not cracked(v, x)]
             for v in deadline.watch(inside)
         }
-        """The neighbors in the cell to which no crack bars the way."""
         self.walls = {
             (f, x) for f in deadline.watch(self.free) for x in around[f] if self._is_wall(f, x)
         }
-        """Free vertices and what is beside them, if no tree can grow there."""
         self.owned: list[list[int]] = [[] for _ in terminals]
         self.owner: dict[int, int] = {}
         self.piece: UnionFind[int] = UnionFind()
@@ -106,7 +122,7 @@ class _Trees:
         return self.owner
 
     def _take(self, vertex: int, block: int) -> None:
-        """Give a free vertex to a sub-cell: one piece less for each piece that it touches."""
+        """Give a free vertex to a sub-cell, and unite the pieces that it connects."""
         self.free.discard(vertex)
         self.owner[vertex] = block
         self.owned[block].append(vertex)
@@ -120,7 +136,7 @@ class _Trees:
                 self.pieces[block] -= 1
 
     def _walks(self) -> list[list[Step]]:
-        """Every walk round what is free, as steps (free vertex, what is beside it)."""
+        """All walks round walls, as steps (free vertex, its neighbor in the wall)."""
         left = set(self.walls)
         walks = []
         for first in self.deadline.watch(sorted(left)):
@@ -139,6 +155,7 @@ class _Trees:
         return walks
 
     def _following(self, step: Step) -> Step:
+        """The next step of a walk, across the triangle on the left of the step."""
         f, x = step
         w = self.third[f, x]
         if self._is_wall(f, w):
@@ -148,11 +165,11 @@ class _Trees:
         return x, f  # the free end of a crack: back along its other side
 
     def _is_wall(self, f: int, x: int) -> bool:
-        """Whether no tree can grow from a free vertex to what is beside it."""
+        """Whether no tree can grow from a free vertex to its neighbor ``x``."""
         return x not in self.free or self.cracked(f, x)
 
     def _unfinished(self, step: Step) -> int | None:
-        """The sub-cell of several pieces that a step touches."""
+        """The unfinished sub-cell that a step touches, if it touches one."""
         f, x = step
         block = self.owner.get(x)
         if block is None or self.pieces[block] == 1 or self.cracked(f, x):
@@ -172,8 +189,9 @@ class _Trees:
                 if block != other or self.piece[walk[here][1]] == self.piece[walk[there][1]]:
                     continue
                 steps = walk[here : there + 1] if here < there else walk[here:] + walk[: there + 1]
-                # Round the free end of a crack two of these are no neighbors. They are the next
-                # pieces to be connected then, by the one vertex that lies ahead of the end.
+                # Two successive vertices of the way are no neighbors if the walk goes round the
+                # end of a crack between them. Then they are two pieces, connected next through the
+                # vertex ahead of that end.
                 way = list(dict.fromkeys(f for f, _ in steps))
                 if (best is None or len(way) < len(best[1])) and self._leaves_room(block, way):
                     best = block, way
@@ -198,9 +216,10 @@ class _Trees:
         return best
 
     def _shortest(self, block: int, starts: set[int], ends: set[int]) -> list[int] | None:
-        """The shortest way through what is free, away from walls and from other sub-cells' pieces.
+        """The cheapest way through free vertices from some starts to some ends (Dijkstra).
 
-        A way that ran along a wall could shut a piece in between.
+        Vertices beside walls and beside other sub-cells' pieces cost more, because a way along a
+        wall could shut a piece in.
         """
         before: dict[int, int | None] = {}
         queue: list[tuple[int, int, int | None]] = [(0, f, None) for f in sorted(starts)]
@@ -223,7 +242,7 @@ class _Trees:
         return None
 
     def _crowded(self, block: int, f: int) -> int:
-        """What a way has to pay for a free vertex: more if something is beside it."""
+        """The cost of a free vertex on a way of ``block``."""
         cost = 1
         for x in self.around[f]:
             if not self._is_wall(f, x):
@@ -233,7 +252,7 @@ class _Trees:
         return cost
 
     def _leaves_room(self, block: int, way: list[int]) -> bool:
-        """Whether every unfinished sub-cell can still be connected, seen for itself."""
+        """Whether each unfinished sub-cell, taken alone, could still be connected after the way."""
         taken = set(way)
         reached: dict[int, int] = {}
         for other, count in enumerate(self.pieces):
@@ -247,9 +266,14 @@ class _Trees:
         return True
 
     def _flood(self, start: int, block: int, taken: set[int], reached: dict[int, int]) -> None:
-        """Give ``start`` to all that is connected with it once ``block`` has taken a way.
+        """Label with ``start`` all vertices that are connected with it once ``block`` has a way.
 
-        The way is a wall to all but its own sub-cell. Everything that meets one piece is connected.
+        Vertices are connected as follows (``mine``, ``theirs``: their owners; None if free):
+
+        - two vertices of one tree, always;
+        - two free vertices, if both are on the way or neither is;
+        - a free vertex and one of an unfinished sub-cell. If the free one is on the way, only
+          if that sub-cell is ``block``: to all others the way is a wall.
         """
         owner, left, way_met = self.owner, [start], False
         reached[start] = start
@@ -257,7 +281,7 @@ class _Trees:
             self.deadline.check()
             vertex = left.pop()
             mine, on_way = owner.get(vertex), vertex in taken
-            # The way is one piece, even where it passes the free end of a crack.
+            # The way counts as connected even where it goes round the end of a crack.
             if on_way and not way_met:
                 way_met = True
                 left += [other for other in taken if other not in reached]

@@ -1,9 +1,10 @@
-"""A scene on finer and finer meshes, until minimum and graph stay the same.
+"""Solves a scene on finer and finer meshes until minimum and graph stay the same.
 
-Each step halves the mesh's edges, and quarters those where colors end: either alone makes about
-four times as many vertices. The vertices of a step are the first ones of the next. Where two
-borders cross, the mesh decides which two of four cells touch, and meshes without common vertices
-would decide anew each time. A finer mesh may still decide otherwise, which counts as no change.
+Each step halves the largest edge length of the mesh, and quarters it where colors end. Either alone
+makes about four times as many vertices. The first vertices of each mesh are those of the one
+before. Where two borders cross, the mesh decides which two of the four cells touch; with new
+vertices throughout, each mesh would decide that anew. If a finer mesh still decides differently,
+that does not count as a change.
 """
 
 from __future__ import annotations
@@ -30,13 +31,14 @@ from cellcolor.frontend.stages import with_finer_borders
 from cellcolor.memory import check_memory
 
 _ALIKE = 2
-"""So many times in a row minimum and graph have to stay the same."""
+"""How many times in a row minimum and graph have to stay the same."""
 
 _CROSSING = 2.0
-"""Edges up to so many times the length at borders may be a crossing that the mesh has parted."""
+"""Topological edges shorter than this many times ``border_m`` count as one point, a crossing of
+borders that the mesh has pulled apart."""
 
-_GROWTH = 3  # of the vertices in a step, at least
-_BYTES = 16_000  # for each vertex of a build
+_GROWTH = 3  # least factor by which a step multiplies the vertices
+_BYTES = 16_000  # memory for each vertex of a build
 _KEY = "continuity.border_length_m"
 
 
@@ -48,14 +50,14 @@ class RefinedStep:
         surface: the labelled surface. Its first vertices are those of the step before.
         instance: its topological graph.
         vertex_cell: (n,) the cell of each vertex.
-        solution: of the graph; the checker has passed it.
-        mesh_edge_m: no mesh edge is longer.
-        border_m: no mesh edge where a color ends is longer.
-        same_minimum: whether the minimum is proved, here and in the step before, and the same;
-            None for the first step.
+        solution: of the graph, accepted by the checker.
+        mesh_edge_m: length of the longest mesh edge allowed, m.
+        border_m: the same for mesh edges where a color ends, m.
+        same_minimum: whether both this step's minimum and that of the step before are proved, and
+            they are equal; None for the first step.
         same_graph: whether the graph is isomorphic to that of the step before; None for the first.
-        same_but_crossings: whether the graphs are isomorphic once edges are drawn together to
-            points that are shorter than ``_CROSSING`` times ``border_m`` of the step before.
+        same_but_crossings: whether the two graphs are isomorphic after contracting every edge that
+            is shorter than ``_CROSSING`` times ``border_m`` of the step before; None for the first.
         seconds: wall time of building, decomposing and solving.
     """
 
@@ -72,7 +74,7 @@ class RefinedStep:
 
     @property
     def same(self) -> bool:
-        """Whether nothing has changed since the step before but which cells touch at crossings."""
+        """Whether nothing changed since the step before, except which cells touch at crossings."""
         return bool(self.same_minimum and self.same_but_crossings)
 
     def __str__(self) -> str:
@@ -116,9 +118,8 @@ class Refinement:
     """Steps from the scene's own mesh to finer ones.
 
     Attributes:
-        steps: one at least.
-        ended_by: why there is no further step though minimum and graph have not stayed the same;
-            "" if they have.
+        steps: one or more.
+        ended_by: why there are no further steps although the result is not stable; "" if it is.
     """
 
     steps: tuple[RefinedStep, ...]
@@ -126,12 +127,12 @@ class Refinement:
 
     @property
     def stable(self) -> bool:
-        """Whether minimum and graph have stayed the same so often as they have to."""
+        """Whether minimum and graph stayed the same over the last ``_ALIKE`` steps."""
         return len(self.steps) > _ALIKE and all(step.same for step in self.steps[-_ALIKE:])
 
     @property
     def verdict(self) -> str:
-        """What came of it, a sentence or two."""
+        """The outcome in a sentence or two."""
         first, last = (len(self.steps[place].surface.vertices) for place in (0, -1))
         if not self.stable:
             return f"Not stable up to {last:,} vertices: {self.ended_by}."
@@ -164,13 +165,13 @@ def refined_until_stable(
     deadline: Deadline,
     progress: Callable[[str], None] | None = None,
 ) -> tuple[BuildResult, Refinement]:
-    """The scene on finer meshes.
+    """Solve the scene on finer and finer meshes.
 
     Args:
         built: the scene on its own mesh.
-        solve: solves a graph, by the deadline.
-        deadline: when to be content with the steps so far.
-        progress: told what is being done.
+        solve: solves a graph by the deadline.
+        deadline: when to return the steps so far.
+        progress: is told what is being done.
 
     Returns:
         The scene on the finest mesh that was solved, and all steps.
@@ -203,7 +204,7 @@ def refined_until_stable(
 
 
 def _finer(prepared: PreparedScene, longest: float, border: float) -> PreparedScene:
-    """The scene with no mesh edge longer than ``longest``, and shorter ones at borders wanted."""
+    """The scene with no mesh edge longer than ``longest``, and a setup that asks for ``border``."""
     surface = prepared.surface
     while (marked := surface.lengths(surface.edges()) > longest).any():
         surface = bisected(surface, marked, _KEY)
@@ -213,10 +214,10 @@ def _finer(prepared: PreparedScene, longest: float, border: float) -> PreparedSc
 
 
 def _check_room(built: BuildResult) -> None:
-    """Refuse a step that will not fit, before it is begun.
+    """Refuse a step that would be too large, before it begins.
 
     Raises:
-        TooLarge: names the numbers.
+        TooLarge: with the numbers.
     """
     vertices, tolerance = _GROWTH * len(built.surface.vertices), built.scene.tolerance
     if vertices > MOST_VERTICES:
@@ -235,7 +236,7 @@ def _step(
     before: RefinedStep | None,
     began: float,
 ) -> RefinedStep:
-    """A mesh solved, and compared with the one before."""
+    """Solve a mesh and compare it with the one before."""
     decomposition = decomposition_of(built.surface, deadline=deadline)
     instance = decomposition.instance
     solution = solve(instance)

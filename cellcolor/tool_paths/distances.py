@@ -1,4 +1,4 @@
-"""Shortest ways along the edges of a mesh."""
+"""Shortest ways along mesh edges."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from cellcolor.tool_paths.triangles import Triangles
 
 @dataclass(frozen=True, eq=False)
 class Ways:
-    """Shortest ways along edges from the nearest of several sources.
+    """The shortest way to each vertex from the nearest of several sources.
 
     Attributes:
-        lengths: (n,) by the weights that were given; infinite where no way leads.
-        before: (n,) the vertex before each on its way; negative at sources and out of reach.
-        source: (n,) where the way begins; negative out of reach.
+        lengths: (n,) in the weights of the graph; infinite if there is no way.
+        before: (n,) the vertex before each on its way; negative at sources and if there is no way.
+        source: (n,) where the way begins; negative if there is no way.
     """
 
     lengths: Array
@@ -43,13 +43,13 @@ def ways_from(graph: csr_matrix, sources: Index) -> Ways:
 
 
 def off_border(mesh: Triangles, room: float) -> Array:
-    """(e,) lengths of edges, up to three times as much where they are near the border.
+    """Weights (e,) of edges, m: their lengths, up to tripled near the border of the mesh.
 
-    Shortest ways by these lengths keep to the middle where it is narrow.
+    With these weights shortest ways stay in the middle of narrow places.
 
     Args:
         mesh: the mesh.
-        room: from which distance on a border does not matter, m.
+        room: at this distance from the border and beyond, weights are lengths, m.
     """
     if not mesh.border.any():
         return mesh.lengths

@@ -1,4 +1,4 @@
-"""In contact: tip on the surface, tool against the normal, one branch, no crack."""
+"""Judges contact: tip on the surface, tool against the normal, one branch, no crack crossed."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cellcolor.trajectory_checker.joint_steps import joint_steps
 from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT
 from cellcolor.trajectory_checker.tool_turn import nearest_turns
 
-_PARTS = 16  # of a step that seems to cross a crack, to see whether it passes by its end
+_PARTS = 16  # a step that seems to cross a crack is tested in so many parts: it may pass its end
 
 
 def judge_contact(
@@ -27,11 +27,14 @@ def judge_contact(
     """Note where the tip is off the surface or the tool is tilted.
 
     Args:
-        rows: (c,) those of ``dense`` in contact; ``located`` says where they are on the surface.
+        dense: the trajectory with all configurations that are judged.
+        rows: (c,) its rows in contact.
+        located: the nearest points of the surface to these.
         direction: whether the task holds the tool against the normal.
+        faults: where faults are noted.
 
     Returns:
-        (c,) where the tip is on the surface.
+        (c,) whether the tip is on the surface.
     """
     apart = np.linalg.norm(dense.tips[rows] - located.points, axis=1)
     _note(
@@ -59,10 +62,10 @@ def judge_contact(
 
 
 def judge_dragged(dense: Dense, fine: FineMesh, deadline: Deadline, faults: FaultList) -> None:
-    """Note where the tip touches the surface and the trajectory says that it does not.
+    """Note where the tip touches the surface although the trajectory says that it does not.
 
-    What counts as contact, up to a millimeter off, is a touch. Beside a stroke the tip has to
-    come and go: there it may stay so near for a way of 3 mm.
+    It touches where it is at most ``OFF_SURFACE`` off. Just before and after a stroke the tool has
+    to come and go: there it may stay that near for a way of ``LEAVING``.
     """
     away = np.flatnonzero(~dense.contact)
     away = away[fine.may_be_near(dense.tips[away], OFF_SURFACE)]
@@ -114,12 +117,16 @@ def _note(
 def branches_of(
     prepared: PreparedScene, dense: Dense, rows: Index, across: Array, deadline: Deadline
 ) -> Index:
-    """The branch (c,) that configurations belong to, -1 where it is none that is known.
+    """The branch (c,) of each configuration, -1 if it is near no solution of a known branch.
 
-    Joints are compared up to full circles, and without a last one that only turns the tool.
+    Joints are compared modulo full circles. A last joint that only turns the tool is ignored.
 
     Args:
-        across: (c, 3) the tool's x axis; asked for if the setup gives the tool's turn.
+        prepared: the scene.
+        dense: the trajectory with all configurations that are judged.
+        rows: (c,) the configurations.
+        across: (c, 3) the tool's x axis, which matters if the setup gives the tool's turn.
+        deadline: when to give up.
     """
     found, compared = np.full(len(rows), -1), prepared.robot.task.joints
     for part in chunks(len(rows), 64 * compared * prepared.arm.slots):
@@ -144,7 +151,8 @@ def _solutions(
 ) -> tuple[Array, Index]:
     """All solutions (k, branches, joints) of poses, and the number (k,) of their first branch.
 
-    A pose is solved with the turn that it has, and belongs to the nearest of those that are given.
+    If the setup gives turns of the tool, branches are numbered turn by turn. Then a pose is solved
+    with its own turn, and its branches are those of the nearest given turn.
     """
     kinematics = prepared.kinematics
     if not isinstance(kinematics, TurnedKinematics):
@@ -162,7 +170,7 @@ def judge_cracks(
     fine: FineMesh,
     faults: FaultList,
 ) -> None:
-    """Note where the branch changes in contact, and where a crack of its color is crossed."""
+    """Note where the branch changes in contact, and where a crack of the color is crossed."""
     together = dense.stroke[rows[1:]] == dense.stroke[rows[:-1]]
     known = together & (branches[1:] >= 0) & (branches[:-1] >= 0)
     changed = known & (branches[1:] != branches[:-1])
@@ -198,9 +206,12 @@ def judge_cracks(
 
 
 def _torn(built: BuildResult) -> Index:
-    """The cracks (t, 3), sorted: both vertices, the smaller first, and the branch."""
+    """The cracks (t, 3), sorted: both vertices, the smaller first, and the branch.
+
+    Joint limits are judged elsewhere. If they divide a branch into several colors, the cracks
+    between these are no faults here: the cracks modulo full circles are taken instead.
+    """
     cleaned, limits = built.stages.cleaned, built.limits
-    # Joint limits are judged apart: of a color that they divide, cracks modulo full circles count.
     divided = {limits.color[color] for color in limits.positions}
     whole, modulo = built.color_branch, cleaned.coloring.branch
     torn = {
@@ -217,7 +228,7 @@ def _torn(built: BuildResult) -> Index:
 
 
 def _crosses(one: Index, other: Index, branches: Index, torn: Index) -> Mask:
-    """Which steps (s,) between the parts of two vertices cross a crack of their branch."""
+    """Whether steps (s,), each from one vertex's part to another's, cross a crack of the branch."""
     vertices = int(max(torn[:, 1].max(), one.max(initial=0), other.max(initial=0))) + 1
     low, high = np.minimum(one, other), np.maximum(one, other)
     most = int(max(torn[:, 2].max(), branches.max(initial=0))) + 1

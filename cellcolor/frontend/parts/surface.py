@@ -1,4 +1,4 @@
-"""The surface to be covered: a triangle mesh with normals, refined where that is asked for."""
+"""The surface to be covered: a triangle mesh with normals at its vertices, and its refinement."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ SHARP = float(np.radians(30.0))
 
 @dataclass(frozen=True)
 class Surface:
-    """A triangle mesh with outward unit normals at its vertices; faces ccw from outside, m.
+    """A triangle mesh with outward unit normals; faces are counter-clockwise from outside.
 
     Attributes:
-        vertices: (n, 3).
-        faces: (m, 3).
-        normals: (n, 3).
-        faceted: whether the normals are means of its faces' normals, not those of a smooth shape.
+        vertices: (n, 3), m.
+        faces: (m, 3) vertices of each triangle.
+        normals: (n, 3) at the vertices.
+        faceted: whether the normals are means of face normals; else a smooth shape's own.
     """
 
     vertices: Array
@@ -44,7 +44,7 @@ class Surface:
         return replace(self, vertices=vertices, normals=self.normals @ rotation.T)
 
     def taken_along(self, before: Placement, after: Placement) -> Surface:
-        """The same surface in the world after a part on it has gone to another place."""
+        """This surface, already placed, after its part has been moved to another placement."""
         turn = rotation_from_rpy(*after.rpy_rad) @ rotation_from_rpy(*before.rpy_rad).T
         vertices = (self.vertices - np.array(before.position_m)) @ turn.T
         vertices += np.array(after.position_m)
@@ -56,7 +56,7 @@ class Surface:
         return TriangleMesh(self.vertices, self.faces)
 
     def vertex_areas(self) -> Array:
-        """A third of the adjoining faces' areas, (n,), m^2; they add up to the whole."""
+        """(n,) a third of the area of the adjoining faces, m^2; the sum is the whole area."""
         return self.mesh.vertex_areas
 
     def edges(self) -> Faces:
@@ -77,15 +77,16 @@ class Surface:
 
 
 def along_edges(surface: Surface, edges: Index, way: Array) -> tuple[Array, Array]:
-    """Points and unit tool directions (k, 3) at the parts ``way`` (k,) of mesh edges (k, 2).
+    """Points (k, 3), m, on mesh edges (k, 2), and unit tool directions (k, 3) there.
 
-    The point goes straight, on the mesh, and the normal turns with it.
+    Both are interpolated: ``way`` (k,) is 0 at an edge's first end and 1 at its second. The
+    direction is NaN where the normals of the two ends cancel.
     """
     i, j = edges.T
     at = way[:, None]
     points = (1 - at) * surface.vertices[i] + at * surface.vertices[j]
     normals = (1 - at) * surface.normals[i] + at * surface.normals[j]
-    with np.errstate(invalid="ignore"):  # between opposite normals there is none: NaN
+    with np.errstate(invalid="ignore"):
         normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return points, -normals
 
@@ -93,11 +94,11 @@ def along_edges(surface: Surface, edges: Index, way: Array) -> tuple[Array, Arra
 def refine(mesh: TriangleMesh, longest: float, deadline: Deadline = NEVER) -> TriangleMesh:
     """Halve edges until none is longer than ``longest``, in the unit of the mesh.
 
-    The mesh stays the same surface and conforming: an edge is halved for both its faces. The
-    first points are the given ones.
+    The surface stays the same and the mesh conforming, since an edge is halved for both its
+    faces. The given points come first.
 
     Raises:
-        InputError: that would be too many vertices; nothing was made yet.
+        InputError: there would be too many vertices; that is checked in advance.
         OutOfTime: the deadline came first.
     """
     check_refinement(len(mesh.points), mesh.lengths, float(mesh.areas.sum()), longest)
@@ -111,7 +112,7 @@ def refine(mesh: TriangleMesh, longest: float, deadline: Deadline = NEVER) -> Tr
 
 
 def bisected(surface: Surface, marked: Mask, field: str) -> Surface:
-    """A surface with some mesh edges bisected, and others where necessary.
+    """A surface with some mesh edges bisected, and those others that have to be as well.
 
     New vertices come after the given ones. Their normals are halfway between those of the ends.
 
@@ -119,10 +120,10 @@ def bisected(surface: Surface, marked: Mask, field: str) -> Surface:
         surface: the surface.
         marked: (k,) which of its edges, in the order of
             :meth:`~cellcolor.frontend.parts.surface.Surface.edges`.
-        field: the key that asks for it.
+        field: the key to name in the error.
 
     Raises:
-        InputError: there would be too many vertices; names the key.
+        InputError: there would be too many vertices.
     """
     mesh = surface.mesh
     marked = with_longest_sides(mesh, marked)

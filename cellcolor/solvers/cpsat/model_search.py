@@ -1,4 +1,4 @@
-"""The full model of a part, from a small one to one as wide as can be needed."""
+"""Solves full models of a part, with more and more strands up to as many as can be needed."""
 
 from __future__ import annotations
 
@@ -26,14 +26,14 @@ from cellcolor.solvers.cpsat.part_state import FEW_STRANDS, PartState
 from cellcolor.solvers.interface import PORTFOLIO
 
 TRIAL_EFFORT = 2.0
-"""Deterministic seconds a worker for a model that is not the widest: its bound proves nothing."""
+"""Deterministic seconds per worker for every model but the widest, whose bound alone is a proof."""
 
 
 class ModelSearch:
-    """Solves models of a part.
+    """Solves full models of a part, and offers it the divisions and bounds that they give.
 
     Attributes:
-        notes: what was left out and why, a sentence each.
+        notes: models that were not built, and why, a sentence each.
     """
 
     def __init__(self, part: PartState) -> None:
@@ -41,7 +41,7 @@ class ModelSearch:
         self.notes: list[str] = []
 
     def solve_small(self, deadline: Deadline) -> None:
-        """The full model in the colors of the last plan only."""
+        """Solve the narrowest model in the colors of the last segment plan only."""
         colors = tuple(
             frozenset(color for color, cells in self._part.planned if cell.id in cells)
             for cell in self._part.instance.cells
@@ -51,16 +51,16 @@ class ModelSearch:
             self._minimize(self._part.once, seams, colors, deadline, final=False)
 
     def solve(self, deadline: Deadline) -> None:
-        """The full model, with as many strands as were asked for and seams can need."""
+        """Solve the stages one after the other; the last one proves a bound."""
         stages = self._stages()
         for number, stage in enumerate(stages):
             if not self._part.done and stages.index(stage) == number:
                 self._minimize(*stage, self._part.colors, deadline, final=stage == stages[-1])
 
     def _stages(self) -> list[tuple[dict[int, int], tuple[Seam, ...]]]:
-        """Strands and seams, from narrow ones to as wide ones as can be needed."""
+        """Strands and seams, from narrow to as wide as was asked for and can be needed."""
         wanted = self._part.widest
-        # The paper's divisions are among the surface's, and usually enough for the bound.
+        # One strand an edge, as in the paper, usually suffices to meet the bound.
         widths = [self._part.once, wanted] if wanted != self._part.once else [wanted]
         return [
             (strands, self._part.seams(strands, width))
@@ -76,7 +76,7 @@ class ModelSearch:
         deadline: Deadline,
         final: bool,
     ) -> None:
-        """Solve one model; only the final one, the widest, proves a bound of its own."""
+        """Solve one model; only the final one, the widest, also proves a bound."""
         if not self._fits(seams_size(seams)):
             return
         graph = dart_graph(self._part.instance, colors, strands, seams, self._part.connected.loops)
@@ -86,7 +86,8 @@ class ModelSearch:
         if size * SECONDS_A_TERM > deadline.left:
             raise OutOfTime("building the model would take longer than the time left")
         built = full_model(graph, color_regions(self._part.instance, colors), deadline=deadline)
-        # What meets the bound ends the search; by itself the model would have to prove it first.
+        # The known bound as a constraint: a division that meets it ends the search, without the
+        # model having to prove the bound again.
         built.model.add(sum(built.variables.root) + sum(built.variables.alone) >= self._part.bound)
         self._hint(built, graph)
         solver = self._part.runner.portfolio(None if final else TRIAL_EFFORT, deadline)
@@ -104,14 +105,14 @@ class ModelSearch:
 
     def _fits(self, size: float) -> bool:
         """Whether a model of so many terms is small enough to be built; noted if it is not."""
-        # Every worker has a copy of its own.
+        # Every worker has its own copy.
         size *= max(1.0, (self._part.options.workers or PORTFOLIO) / PORTFOLIO)
         if size > LARGEST_MODEL:
             self.notes.append(not_built(size))
         return size <= LARGEST_MODEL
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
-        """Hint the best division, if it has no strands and no colors beyond the model's."""
+        """Hint the best division, if the model has all of its strands and colors."""
         known, painting = self._part.best
         fits = all(
             block.color in graph.colors[cell]

@@ -1,10 +1,9 @@
-"""The topological graph as the reference solver walks it (paper, section III-C).
+"""The topological graph, prepared for the reference solver (paper, section III-C).
 
-Dead darts are gone, edges may be several parallel strands, the loops of a cell with holes are made
-one cyclic list by seams (docs/semantics.md, sections 4 and 5), and colors are split into the
-regions that a segment cannot leave. The CP-SAT solver (``cpsat/model/dart_graph.py``) and the
-checker (``dart_lists.py``) put strands and seams in by code of their own. That is on purpose: a
-mistake made in only one of the three is found out by the others.
+Dead darts are left out, each edge is split into parallel strands, and seams connect the loops of a
+cell with holes into one cyclic list (docs/semantics.md, sections 4 and 5). The CP-SAT solver
+(``cpsat/model/dart_graph.py``) and the checker (``dart_lists.py``) have their own code for strands
+and seams, on purpose: a mistake in one of the three is found by comparing with the others.
 """
 
 from __future__ import annotations
@@ -27,9 +26,9 @@ class GraphCell:
         colors: its available colors.
         darts: its live darts in cyclic order.
         joinable: for each dart, the colors that may continue across it.
-        partner: for each dart, the place of its other side in this very cell, or -1.
-        strand_before: for each dart, whether the dart before it is a strand of the same edge,
-            met in rising (+1) or falling (-1) order; 0 if it is none.
+        partner: for each dart, the place of its twin if that is in the same cell, else -1.
+        strand_before: for each dart, 0 if the dart before it belongs to another edge. Otherwise
+            both are strands of one edge: +1 if their numbers ascend here, -1 if they descend.
     """
 
     id: int
@@ -41,11 +40,11 @@ class GraphCell:
 
 
 class Graphs:
-    """All that the search asks of an instance.
+    """The cells of an instance in search order, each as one cyclic list of darts.
 
     Args:
         instance: the instance.
-        strands: parallel strands of every live edge.
+        strands: how many parallel strands every live edge has.
     """
 
     def __init__(self, instance: Instance, strands: int) -> None:
@@ -66,11 +65,11 @@ class Graphs:
         return [cell for cell, loops in enumerate(self._live_loops) if len(loops) > 1]
 
     def parts(self) -> list[list[Cell]]:
-        """The cells in groups that no live edge connects, each in the order of the search.
+        """The connected parts of the graph, the cells of each in search order.
 
-        The paper chooses the next cell arbitrarily. Here it is the one with the fewest darts that
-        no solved neighbour decides, next to the cells solved before it: little branching, and a
-        connected painting with a short frontier.
+        The paper chooses the next cell arbitrarily. Here it is a neighbour of the cells before it
+        that leaves the fewest choices (:meth:`_freedom`), so that the search branches little and
+        its frontier stays short.
         """
         unsolved = {cell.id for cell in self._instance.cells}
         parts: list[list[Cell]] = []
@@ -91,16 +90,20 @@ class Graphs:
                 yield self._instance.across(dart)
 
     def _freedom(self, cell: int, unsolved: set[int]) -> tuple[float, int, int]:
+        """About how many bits of choice a cell has; if equal, first the one with more darts fixed.
+
+        Each dart towards an unsolved neighbour is one bit. If all are, so is the choice of color.
+        """
         sides = [neighbour in unsolved for neighbour in self._neighbours(cell)]
         free = sum(sides)
         bits = free + (log2(len(self._instance.cells[cell].colors)) if all(sides) else 0.0)
         return bits, free - len(sides), cell
 
     def sufficient_seam_strands(self, cell: int) -> list[int]:
-        """Strands for each seam of a cell with which no division is lost.
+        """How many strands each seam of a cell needs so that no division is lost.
 
-        Two loops need half their darts less one; of more loops every seam needs half the darts of
-        the whole cell, strands of earlier seams counted on both sides.
+        With two loops it is half their darts minus one. With more loops, each seam needs half the
+        darts of the whole cell, in which the strands of earlier seams count on both sides.
         """
         counts = [self._strands * len(loop) for loop in self._live_loops[cell]]
         total = sum(counts)
@@ -113,7 +116,7 @@ class Graphs:
         return strands
 
     def cell(self, cell: Cell, seam_strands: int) -> tuple[GraphCell, list[Seam]]:
-        """A cell as one cyclic list, its seams having at most that many strands."""
+        """A cell as one cyclic list, and its seams, each with at most ``seam_strands`` strands."""
         loops = sorted(self._live_loops[cell.id], key=len, reverse=True)
         joinable: dict[DartName, frozenset[int]] = {}
         for loop in loops:
@@ -124,7 +127,7 @@ class Graphs:
         seams = []
         for number, enough in enumerate(self.sufficient_seam_strands(cell.id) if loops else []):
             loop = loops[number + 1]
-            # Seams leave the longest loop, each after another dart while there are enough.
+            # All seams begin on the longest loop, each behind a different dart if there are enough.
             seam = Seam(
                 id=self._first_seam[cell.id] + number,
                 cell=cell.id,

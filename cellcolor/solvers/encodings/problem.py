@@ -1,7 +1,4 @@
-"""The problem as the encodings see it; nothing here is a formulation.
-
-Each cell has the cyclic list of its live darts. Dominated colors are dropped.
-"""
+"""The input of the encodings: the live darts of each cell in cyclic order, no dominated colors."""
 
 from __future__ import annotations
 
@@ -17,25 +14,25 @@ from cellcolor.solvers.bounds.cover import Region, color_regions
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 
 Pair = tuple[int, int]
-"""Two darts of one cell, the one that comes first in its list first."""
+"""Two darts of one cell, in the order of its list."""
 
 LARGEST_MODEL = 6e5
-"""The most terms of a model that is built; a solver may take kilobytes for each. The contour has up
-to twice as many as are estimated."""
+"""The most terms of a model that is built; a solver may take kilobytes for each. The contour model
+has up to twice as many terms as are estimated."""
 
 MANY_DARTS = 300
-"""Pairs of darts are not counted one by one in a cell with more of them."""
+"""In a cell with more darts, pairs of them are not counted one by one."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """The live graph. A dart is a signed edge, ``-dart`` the other side of the edge.
+    """The live graph. A dart is a signed edge; ``-dart`` is the other side of the edge.
 
     Attributes:
-        cells: of each cell the live darts in cyclic order, the cell on the left.
-        colors: the joinable colors of each live edge, dominated ones left out.
-        cell_colors: those of each cell, likewise.
-        regions: the color regions: what a segment in one color can reach at most.
+        cells: the live darts of each cell in cyclic order, with the cell on their left.
+        colors: the joinable colors of each live edge, without dominated ones.
+        cell_colors: the available colors of each cell, without dominated ones.
+        regions: the color regions; no segment reaches beyond one.
     """
 
     cells: tuple[tuple[int, ...], ...]
@@ -85,14 +82,14 @@ class Problem:
         return {dart: number for number, cell in enumerate(self.cells) for dart in cell}
 
     def colors_of(self, dart: int) -> frozenset[int]:
-        """The colors in which a dart's edge can be joined."""
+        """The joinable colors of a dart's edge."""
         return self.colors[abs(dart)]
 
     def may_link(self, one: int, other: int) -> bool:
-        """Whether two darts of a cell can be in one sub-cell, and both joins be counted.
+        """Whether two darts of a cell can be in one sub-cell, with both joins counted.
 
-        They need a common color. If they were the two sides of one edge, the join would lead from
-        the sub-cell back to itself.
+        They need a common color. They cannot be the two sides of one edge: that join would lead
+        from the sub-cell back to itself, and such joins are not counted.
         """
         return one != -other and not self.colors_of(one).isdisjoint(self.colors_of(other))
 
@@ -106,14 +103,14 @@ class Problem:
 
     @cached_property
     def region_of(self) -> dict[tuple[int, int], int]:
-        """The number of the region that a cell lies in with a color, by (color, cell)."""
+        """The number of the region of each (color, cell)."""
         return {(c, cell): n for n, (c, cells) in enumerate(self.regions) for cell in cells}
 
     @cached_property
     def homes(self) -> frozenset[int]:
-        """For each color region a cell that has no other color, if there is one; with many darts.
+        """For each color region the cell with most darts among those of that color alone.
 
-        Such a cell is never divided, so the segment that it belongs to may have its root there.
+        A cell with one color is never divided, so its segment may have its root there.
         """
         found = set()
         for color, cells in self.regions:
@@ -123,9 +120,10 @@ class Problem:
         return frozenset(found)
 
     def later_petal(self, one: int, other: int) -> bool:
-        """Whether two darts lead to petals, and the second need not be a root if they are linked.
+        """Whether both darts lead to petals, and linked, the second petal need not be the root.
 
-        A petal is a cell with a single live dart. A home may have to be a root.
+        A petal is a cell with a single live dart. A segment that can have its root in one of two
+        petals can have it in the other, so the first one suffices, unless the second is a home.
         """
         first, second = (self.cell_of[-dart] for dart in (one, other))
         petals = len(self.cells[first]) == len(self.cells[second]) == 1
@@ -133,7 +131,7 @@ class Problem:
 
     @property
     def size(self) -> float:
-        """About how many terms a model has; most are in the constraints against crossing."""
+        """About how many terms a model has; most are in the constraints that prevent crossing."""
         if sum(len(cell) ** 3 for cell in self.cells if len(cell) > MANY_DARTS) > 4 * LARGEST_MODEL:
             return inf  # not worth counting
         place = {dart: number for cell in self.cells for number, dart in enumerate(cell)}

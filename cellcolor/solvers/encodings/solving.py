@@ -1,4 +1,4 @@
-"""How the encodings for CP-SAT are solved, and the answer is read; no formulation is here."""
+"""Solves the encodings for CP-SAT and reads their answers; the formulations are elsewhere."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from cellcolor.solvers.interruptible import make_portfolio, solve_interruptibly
 from cellcolor.solvers.joined_chains import division_of_chains
 
 STRATEGIES = "core", "default_lp"
-"""Of one or two workers. Cores, sets of literals of which some must cost a segment, raise the
-bound; the default strategy finds divisions, as none is at hand beforehand here."""
+"""CP-SAT's strategies for one or two workers. ``core`` raises the bound by unsatisfiable cores;
+``default_lp`` finds divisions, of which none is known here beforehand."""
 
 
 class Encoding(ABC):
@@ -28,7 +28,7 @@ class Encoding(ABC):
 
     model: cp_model.CpModel
     joined: dict[tuple[int, int], cp_model.IntVar]
-    """Per edge and color: the edge is joined in that color, and the join is counted."""
+    """For each edge and color: the edge is joined in that color, and the join is counted."""
 
     @abstractmethod
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
@@ -40,18 +40,18 @@ class Encoding(ABC):
 
     @abstractmethod
     def links(self) -> Iterable[tuple[Pair, cp_model.IntVar]]:
-        """Literals that say that the second dart is next after the first in their sub-cell."""
+        """Literals of pairs of darts: the second one follows the first in their sub-cell."""
 
 
 class EncodingSolver:
-    """Fewest segments in the search space ``paper``, for cells with one live loop each."""
+    """Minimizes segments in the search space ``paper``; each cell may have one live loop."""
 
     abilities: ClassVar[Abilities] = Abilities()
     encoding: ClassVar[type[Encoding]]
 
     @property
     def version(self) -> str:
-        """Of OR-Tools."""
+        """OR-Tools and its version."""
         return f"OR-Tools {version('ortools')}"
 
     def minimize(

@@ -1,9 +1,13 @@
-"""A model for divisions in which cutting paths connect no two loops of a cell.
+"""A model of the divisions in which no cutting path connects two loops of a cell.
 
-In such a division loops and sub-cells form a forest (docs/encodings.md, "Fewest
-cutting paths"). So each loop is divided on its own, as if it were a cell's only one, and a sub-cell
-on one loop is joined to a sub-cell on another by a **bridge**, which may lie anywhere in the cell:
-bridges never cross, as long as those of a cell make no cycle of its loops. No seams are needed.
+In such a division the loops and sub-cells of a cell form a forest (docs/encodings.md, "Fewest
+cutting paths"). So each loop can be divided on its own, like a cell with one loop. A **bridge**
+says that a sub-cell on one loop and a sub-cell on another are the same sub-cell. Bridges need not
+be drawn: as long as those of a cell make no cycle of its loops, they can always be drawn without
+crossing. So the model needs no seams.
+
+With ``groups`` the model is a relaxation of all divisions: it also has divisions that cannot be
+drawn, and only its bound is of use.
 """
 
 from __future__ import annotations
@@ -31,16 +35,17 @@ from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.union_find import UnionFind
 
 GROUPS = tuple(group for group in (*DEFINING, *REDUNDANT) if group is not first_petal)
-"""Without ``first_petal``: a loop with a single live dart may be bridged to others."""
+"""Constraint groups of the model. ``first_petal`` does not hold here: it takes a loop with a single
+live dart for a whole cell, and such a loop may be bridged to others."""
 
 
 @dataclass(frozen=True, slots=True)
 class Apart:
-    """An instance in which some cells' live loops are cells of their own.
+    """An instance in which each live loop of some cells has become a cell of its own.
 
     Attributes:
         instance: that instance.
-        origin: of each of its cells, the cell that it is, or is a loop of.
+        origin: for each of its cells, the original cell.
     """
 
     instance: Instance
@@ -56,7 +61,7 @@ class ApartModel:
 
 
 def loops_apart(instance: Instance, cells: Collection[int]) -> Apart:
-    """Make a cell of each live loop of the given cells; dead darts of these are left out."""
+    """Make each live loop of the given cells a cell of its own, without its dead darts."""
     found: list[Cell] = []
     origin: list[int] = []
     side: dict[int, int] = {}
@@ -82,16 +87,17 @@ def loops_apart(instance: Instance, cells: Collection[int]) -> Apart:
 def build_apart(
     apart: Apart, graph: DartGraph, regions: Sequence[Region], segments: int, *, groups: bool
 ) -> ApartModel:
-    """The model of fewest sub-cells with so many segments.
+    """The model: among divisions with a number of segments, the fewest sub-cells.
 
     Args:
         apart: the instance with loops apart.
         graph: its dart graph.
-        regions: color regions of the instance that it was made of.
-        segments: the fewest there are.
-        groups: whether loops may be put into groups, at one cutting path for each loop beyond the
-            first, within which bridges may make cycles. Then the model has all divisions there
-            are, and others whose sub-cells would cross between the loops of a group.
+        regions: color regions of the original instance.
+        segments: how many segments a division has to have; the fewest there are.
+        groups: whether cutting paths may connect loops. Loops so connected form a group, which
+            costs one cutting path for each loop beyond its first; within a group bridges may make
+            cycles. Then the model has every division, and also some that cannot be drawn, whose
+            sub-cells would cross between the loops of a group.
     """
     model = cp_model.CpModel()
     variables = make_variables(model, graph)
@@ -120,7 +126,7 @@ def build_apart(
 
 
 def _alone(model: cp_model.CpModel, v: Variables, loops: Sequence[int]) -> cp_model.IntVar:
-    """Whether a cell has no dart in state 1 on any loop, and is a segment of its own."""
+    """A literal: the original cell has no dart in state 1 on any loop, so it is a segment."""
     if len(loops) == 1:
         return v.alone[loops[0]]
     alone = model.new_bool_var("")
@@ -133,7 +139,10 @@ def _alone(model: cp_model.CpModel, v: Variables, loops: Sequence[int]) -> cp_mo
 def _undivided_roots(
     model: cp_model.CpModel, graph: DartGraph, v: Variables, loops: Sequence[int]
 ) -> None:
-    """A root is in an undivided cell: all other blocks of the cell are bridged towards its own."""
+    """A root is in an undivided cell, so no dart of that cell points across its edge.
+
+    All other sub-cells on the cell's loops are then bridged, directly or not, to the root's.
+    """
     if len(loops) == 1:
         return
     darts = [dart for loop in loops for dart in graph.lists[loop]]
@@ -148,8 +157,8 @@ class _Groups:
     """Groups of a cell's loops that cutting paths connect.
 
     Attributes:
-        same: per two loops in rising order, whether they are in one group; none if all are apart.
-        others: the loops beyond the first of each group.
+        same: for two loops in ascending order: they are in one group. Empty if all are apart.
+        others: for each loop: it is not the first one of its group.
     """
 
     same: dict[tuple[int, int], cp_model.IntVar]
@@ -157,7 +166,7 @@ class _Groups:
 
 
 def _groups_of_loops(model: cp_model.CpModel, loops: Sequence[int], groups: bool) -> _Groups:
-    """Each group has its first loop as its leader."""
+    """Every loop has a leader: the first loop of its group."""
     if not groups:
         return _Groups({}, [])
     leader = {
@@ -189,9 +198,10 @@ def _forest_of_loops(
     loops: Sequence[int],
     groups: _Groups,
 ) -> None:
-    """At most one bridge between two groups of loops, and none that close a cycle of groups.
+    """At most one bridge between two groups of loops, and no cycle of groups.
 
-    Each such bridge points to a group of lower height, at most one from each group.
+    A loop has a height, the same in all of its group. Two loops with a bridge between their groups
+    are oriented towards the lower height, and at most one leaves each group. That makes a forest.
     """
     bridged: dict[tuple[int, int], list[cp_model.IntVar]] = defaultdict(list)
     for (dart, target), literal in v.bridges.items():
@@ -217,7 +227,7 @@ def _forest_of_loops(
 
 
 def _no_circles_of_bridges(model: cp_model.CpModel, v: Variables) -> None:
-    """Blocks that point at each other across bridges end somewhere."""
+    """Bridges point from higher to lower blocks, so that they make no circle."""
     height = {dart: model.new_int_var(0, len(v.up), "") for pair in v.bridges for dart in pair}
     for pair in v.forward:
         if pair[0] in height and pair[1] in height:
@@ -228,7 +238,7 @@ def _no_circles_of_bridges(model: cp_model.CpModel, v: Variables) -> None:
 
 
 def read_apart(apart: Apart, graph: DartGraph, v: Variables, solver: cp_model.CpSolver) -> Painting:
-    """The sub-cells of the cells that loops were taken from, in darts of the graph."""
+    """The painting of the original cells: blocks that bridges connect are united."""
     painting = read_painting(graph, v, solver)
     whole: UnionFind[int] = UnionFind()
     block_of = {d: b for blocks in painting for b in blocks for d in b.darts}

@@ -1,8 +1,8 @@
-"""Rule 5 of a scheme: can all edges in state 0 show two colors, or one that cannot join?
+"""Rule 5 of a scheme: no edge in state 0 has to show one joinable color on both sides.
 
-A dart in state 0, a zero, shows the color of the sub-cell that it is given to: the one before it or
-the one after it along the border (docs/semantics.md, section 3). The reference solver and the
-checker decide the same with their own code, so they can be compared.
+A dart in state 0 (a zero) shows the color of the sub-cell before it or after it along the border
+(docs/semantics.md, section 3). The reference solver and the checker decide this with code of their
+own, so the three can be compared.
 """
 
 from __future__ import annotations
@@ -19,18 +19,19 @@ from cellcolor.solvers.cpsat.model.painting import Block
 def zeros_can_differ(
     graph: DartGraph, painting: Sequence[Sequence[Block]], deadline: Deadline = NEVER
 ) -> bool:
-    """Whether the darts in state 0 can be assigned to the blocks before and after them.
+    """Whether every dart in state 0 can show a color so that rule 5 holds.
 
-    Within a gap the assigned colors change once, from the color before to the color after. Each
-    dart in state 0 has a choice, early or late: a 2-satisfiability problem, solved by trying and
-    propagating. The consequences of a choice are kept if they lead to no contradiction.
+    Between two successive darts in state 1 there is a run of zeros. The first ones of a run show
+    the color of the block before it ("early"), the others that of the block after it ("late"). One
+    choice for each zero is a 2-satisfiability problem. It is solved by unit propagation: try a
+    value, derive its consequences, and keep them all unless they contradict each other.
 
-    A loop without darts in state 1, in a cell that has some on another loop, lies in one of the
-    cell's blocks: each color that these have is tried.
+    If a cell has darts in state 1, a loop of it without any lies in one of the cell's blocks, so
+    each color of a block is tried for it.
 
     Args:
         graph: the dart graph.
-        painting: each cell's blocks.
+        painting: the blocks of each cell.
         deadline: when to stop.
 
     Raises:
@@ -50,7 +51,7 @@ def zeros_can_differ(
 
 
 def _colors_for(graph: DartGraph, loop: Sequence[int], colors: list[int]) -> list[int]:
-    """The colors worth trying for a loop: one that joins nowhere is as good as any."""
+    """The colors worth trying for a loop; one that is joinable nowhere on it is the best choice."""
     idle = [c for c in colors if not any(c in graph.darts[dart].colors for dart in loop)]
     return idle[:1] or colors
 
@@ -64,6 +65,7 @@ def _can_differ(
     chosen: dict[int, bool] = {}
 
     def consequences(dart: int, late: bool) -> list[tuple[int, bool]]:
+        """The choices that follow: for the next zero of the run, and for the edge's other side."""
         found = []
         follower = forced[dart, late]
         if follower is not None:
@@ -75,6 +77,7 @@ def _can_differ(
         return found
 
     def choose(dart: int, late: bool) -> bool:
+        """Make a choice with all that follows from it, unless that is a contradiction."""
         trail = {dart: late}
         queue = deque([(dart, late)])
         while queue:
@@ -96,10 +99,10 @@ def _gaps(
     painting: Sequence[Sequence[Block]],
     color_of_loop: Mapping[tuple[int, ...], int],
 ) -> tuple[dict[int, tuple[int, int]], dict[tuple[int, bool], int | None]]:
-    """The colors before and after each dart in state 0, and which dart its choice forces.
+    """For each dart in state 0 the colors (early, late), and the dart that each choice forces.
 
-    A dart that shows the later color makes the next one do so; one that shows the earlier color
-    makes the one before it do so.
+    A dart that shows the late color forces the next one of its run to do so, too. One that shows
+    the early color forces the one before it.
     """
     colors: dict[int, tuple[int, int]] = {}
     forced: dict[tuple[int, bool], int | None] = {}
