@@ -32,7 +32,8 @@ from cellcolor.solvers.cpsat.model.painting import (
 )
 from cellcolor.solvers.cpsat.model.seams import SeamWriter
 from cellcolor.solvers.cpsat.model_runs import Runner
-from cellcolor.solvers.cpsat.schemes.frontier import Blocks, Frontier
+from cellcolor.solvers.cpsat.schemes.cell_divisions import Blocks
+from cellcolor.solvers.cpsat.schemes.frontier import Frontier
 from cellcolor.solvers.cpsat.schemes.scheme_model import SchemeModel, check_size, unconnected_differ
 from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
 from cellcolor.solvers.interface import Options
@@ -154,7 +155,7 @@ class _Search:
         """Whether a painting with the fewest segments keeps the rules that the model leaves out."""
         graph = self.writer.graph
         return (
-            unconnected_differ(graph, painting)
+            all(map(unconnected_differ, graph.loops, painting))
             and zeros_can_differ(graph, painting, self.options.deadline)
             and self.writer.can_be_drawn(painting)
         )

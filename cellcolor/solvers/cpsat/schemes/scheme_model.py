@@ -337,15 +337,8 @@ def literals_on_loops(loops: Sequence[Sequence[int]]) -> int:
     return 3 * count**3 // 2 + fours
 
 
-def unconnected_differ(graph: DartGraph, painting: Painting) -> bool:
-    """Whether sub-cells that no chain of loops and sub-cells connects have different colors."""
-    return all(
-        len(loops) < 2 or _differ(loops, blocks)
-        for loops, blocks in zip(graph.loops, painting, strict=True)
-    )
-
-
-def _differ(loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> bool:
+def unconnected_differ(loops: Sequence[Sequence[int]], blocks: Sequence[Block]) -> bool:
+    """Whether sub-cells that no chain of a cell's loops and sub-cells connects differ in color."""
     holder = {dart: number for number, block in enumerate(blocks) for dart in block.darts}
     connected: UnionFind[int] = UnionFind(range(len(blocks)))
     for loop in loops:

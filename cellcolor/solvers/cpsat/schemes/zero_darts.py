@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping, Sequence
-from itertools import product
+from itertools import pairwise, product
 
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
@@ -67,9 +67,8 @@ def _can_differ(
     def consequences(dart: int, late: bool) -> list[tuple[int, bool]]:
         """The choices that follow: for the next zero of the run, and for the edge's other side."""
         found = []
-        follower = forced[dart, late]
-        if follower is not None:
-            found.append((follower, late))
+        if (dart, late) in forced:
+            found.append((forced[dart, late], late))
         twin = graph.darts[dart].twin
         color = colors[dart][late]
         if color in graph.darts[dart].colors:
@@ -98,40 +97,41 @@ def _gaps(
     graph: DartGraph,
     painting: Sequence[Sequence[Block]],
     color_of_loop: Mapping[tuple[int, ...], int],
-) -> tuple[dict[int, tuple[int, int]], dict[tuple[int, bool], int | None]]:
+) -> tuple[dict[int, tuple[int, int]], dict[tuple[int, bool], int]]:
     """For each dart in state 0 the colors (early, late), and the dart that each choice forces.
 
     A dart that shows the late color forces the next one of its run to do so, too. One that shows
     the early color forces the one before it.
     """
     colors: dict[int, tuple[int, int]] = {}
-    forced: dict[tuple[int, bool], int | None] = {}
+    forced: dict[tuple[int, bool], int] = {}
     for loops, blocks in zip(graph.loops, painting, strict=True):
         color_of = {dart: block.color for block in blocks for dart in block.darts}
         for loop in loops:
-            start = next((place for place, dart in enumerate(loop) if dart in color_of), None)
-            if start is None:
-                own = color_of_loop.get(loop, blocks[0].color)
-                _add_run(loop, (own, own), colors, forced)
-                continue
-            before = color_of[loop[start]]
-            run: list[int] = []
-            for dart in [*loop[start:], *loop[: start + 1]]:
-                if dart not in color_of:
-                    run.append(dart)
-                    continue
-                _add_run(run, (before, color_of[dart]), colors, forced)
-                before, run = color_of[dart], []
+            own = gap_colors(loop, color_of, color_of_loop.get(loop, blocks[0].color))
+            colors |= own
+            for dart, following in pairwise((*loop, loop[0])):
+                if dart in own and following in own:
+                    forced[dart, True], forced[following, False] = following, dart
     return colors, forced
 
 
-def _add_run(
-    run: Sequence[int],
-    pair: tuple[int, int],
-    colors: dict[int, tuple[int, int]],
-    forced: dict[tuple[int, bool], int | None],
-) -> None:
-    for place, dart in enumerate(run):
-        colors[dart] = pair
-        forced[dart, True] = run[place + 1] if place + 1 < len(run) else None
-        forced[dart, False] = run[place - 1] if place else None
+def gap_colors(
+    loop: Sequence[int], color_of: Mapping[int, int], otherwise: int
+) -> dict[int, tuple[int, int]]:
+    """The colors before and after each dart in state 0 of a loop.
+
+    Args:
+        loop: the darts, in cyclic order.
+        color_of: the color of each dart in state 1.
+        otherwise: the color that all of them show if the loop has no dart in state 1.
+    """
+    met = [color_of[dart] for dart in loop if dart in color_of] or [otherwise]
+    found = {}
+    passed = 0
+    for dart in loop:
+        if dart in color_of:
+            passed += 1
+        else:
+            found[dart] = met[passed - 1], met[passed % len(met)]
+    return found

@@ -1,0 +1,86 @@
+"""Rule 5 cell after cell, beside the test of whole paintings."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Mapping
+
+import holes
+from hypothesis import assume, given
+from hypothesis import strategies as st
+
+from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import NEVER
+from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.model.painting import Block
+from cellcolor.solvers.cpsat.schemes.cell_divisions import ZERO, Blocks, divisions
+from cellcolor.solvers.cpsat.schemes.shown_colors import Choices, choices_with, shown_in_cell
+from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
+from examples import examples
+
+RED, BLUE = 0, 1
+
+
+def loops_apart(instance: Instance) -> DartGraph:
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    return dart_graph(instance, colors, dict.fromkeys(instance.live_edges, 1), None)
+
+
+def some_choice_is_left(graph: DartGraph, blocks_of: Mapping[int, Blocks]) -> bool:
+    """Whether one is when the cells have been painted one after the other."""
+    left = frozenset({Choices((), frozenset())})
+    zeros: list[int] = []
+    painted: set[int] = set()
+    for cell, blocks in blocks_of.items():
+        painted.add(cell)
+        joined = {dart for own in blocks_of.values() for _, darts in own for dart in darts}
+        open_darts = [
+            number
+            for number, dart in enumerate(graph.darts)
+            if dart.cell in painted and graph.darts[dart.twin].cell not in painted
+        ]
+        before = [(dict(zip(zeros, shown, strict=True)), clauses) for shown, clauses in left]
+        ways = shown_in_cell(graph.loops[cell], blocks)
+        left = choices_with(graph, before, cell, ways, open_darts)
+        zeros = [dart for dart in open_darts if dart not in joined]
+    return bool(left)
+
+
+@examples(100)
+@given(seed=st.integers(0, 10**6), darts=st.integers(4, 7), loops=st.integers(1, 3))
+def test_choices_cell_by_cell_as_for_all_cells_at_once(seed: int, darts: int, loops: int) -> None:
+    """Cells are divided at random, in any order."""
+    graph, rng = loops_apart(holes.holed(seed, darts, loops, colors=3)), random.Random(seed)
+    state: dict[int, int] = {}
+    blocks_of: dict[int, Blocks] = {}
+    for cell in rng.sample(range(len(graph.lists)), len(graph.lists)):
+        for dart in graph.lists[cell]:
+            color = rng.choice([ZERO, *sorted(graph.darts[dart].colors)])
+            state[dart] = state.get(graph.darts[dart].twin, color)
+        known = [state[dart] for dart in graph.lists[cell]]
+        every = list(divisions(graph, cell, known, lambda *_: True, NEVER))
+        assume(every)
+        blocks_of[cell] = rng.choice(every)
+    painting = [[Block(c, set(own)) for c, own in blocks_of[n]] for n in range(len(blocks_of))]
+    assert some_choice_is_left(graph, blocks_of) == zeros_can_differ(graph, painting)
+
+
+def test_zeros_on_different_loops_are_free_of_each_other() -> None:
+    """Dart 3, the last of one loop, has to show red, and dart 4, the first of the other, blue."""
+    colors = {1: RED, 2: BLUE, 3: BLUE, 4: RED, 5: RED, 6: BLUE}
+    petals = (Cell(dart, (color,), ((-dart,),)) for dart, color in colors.items())
+    instance = Instance(
+        "two loops",
+        ("red", "blue"),
+        (Cell(0, (RED, BLUE), ((1, 2, 3), (4, 5, 6))), *petals),
+        tuple(Edge(dart, 0, dart) for dart in colors),
+    )
+    graph = loops_apart(instance)
+    number = {dart.name[0]: n for n, dart in enumerate(graph.darts)}
+    blocks_of: dict[int, Blocks] = {
+        0: ((RED, (number[1], number[5])), (BLUE, (number[2], number[6])))
+    }
+    for dart, color in colors.items():
+        blocks_of[dart] = ((color, () if dart in (3, 4) else (number[-dart],)),)
+    assert some_choice_is_left(graph, blocks_of)
