@@ -18,7 +18,7 @@ ALLOWED = {
     ("files/validation.py", "plain"): "how deeply the annotations of a dataclass nest",
     ("frontend/arm/link_mesh.py", "_below"): "the folders looked into, _DEEPEST",
     ("frontend/tables.py", "_settled"): "how deeply TOML nests, which its reader limits",
-    ("solvers/cpsat/schemes/frontier.py", "rec"): "the darts of a cell, MOST_DARTS",
+    ("solvers/cpsat/schemes/cell_divisions.py", "decide"): "the darts of a cell, MOST_DARTS",
 }
 """Functions that call themselves, and what the depth is limited by."""
 
