@@ -25,7 +25,7 @@ from forged_drives import FORGERS, HONEST, Honest, dropped_stroke
 import cellcolor
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
-from cellcolor.door.planning import PlannedScene
+from cellcolor.door.planned import PlannedScene
 from cellcolor.trajectory_checker.check import check_trajectory
 
 SCENES = ("wok", "wok_obstacle", "half_pipe", "hemisphere_tilted")

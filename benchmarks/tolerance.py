@@ -20,7 +20,7 @@ import numpy as np
 
 import cellcolor
 from cellcolor.data.candidate_table import VALID
-from cellcolor.door.planning import PlannedScene
+from cellcolor.door.planned import PlannedScene
 from cellcolor.door.shipped import find_file
 from cellcolor.frontend.parts.placement import Tolerance, rotation_from_rpy
 from cellcolor.frontend.prepared import PreparedScene, prepare

@@ -38,8 +38,8 @@ from cellcolor.door.painting import paint as paint
 from cellcolor.door.parts import inspect as inspect
 from cellcolor.door.parts import repair as repair
 from cellcolor.door.placing import place as place
-from cellcolor.door.planning import PlannedScene as PlannedScene
-from cellcolor.door.planning import PlanOutOfTime as PlanOutOfTime
+from cellcolor.door.planned import PlannedScene as PlannedScene
+from cellcolor.door.planned import PlanOutOfTime as PlanOutOfTime
 from cellcolor.door.planning import plan as plan
 from cellcolor.door.reading import read as read
 from cellcolor.door.result import Result as Result

@@ -33,7 +33,7 @@ from cellcolor.files.writing import Output, check_output, is_stream, kind_of_for
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, PATTERNS, pattern_names
 
 if TYPE_CHECKING:
-    from cellcolor.door.planning import UnfinishedPlan
+    from cellcolor.door.planned import UnfinishedPlan
     from cellcolor.door.subject import Subject
     from cellcolor.painting.border_report import BorderReport
     from cellcolor.painting.paint import Painted
@@ -275,7 +275,7 @@ def plan(
 
     from cellcolor.cli.inputs import with_tolerance
     from cellcolor.door.plan_files import KINDS, check_folder
-    from cellcolor.door.planning import NothingCovered, PlanOutOfTime
+    from cellcolor.door.planned import NothingCovered, PlanOutOfTime
     from cellcolor.door.planning import plan as planned_of
 
     check_folder(output, [scene])

@@ -12,7 +12,8 @@ import numpy as np
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import extras_for
 from cellcolor.door.painting import paint
-from cellcolor.door.planning import PlannedScene, plan
+from cellcolor.door.planned import PlannedScene
+from cellcolor.door.planning import plan
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Subject, scene_or_file
 from cellcolor.errors import InputError

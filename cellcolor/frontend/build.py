@@ -18,6 +18,7 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.stand_in_report import report_on
+from cellcolor.frontend.links import Links
 from cellcolor.frontend.parts.rounding import longest_beside_sharp
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
@@ -27,7 +28,7 @@ from cellcolor.frontend.report import BuildReport, make_report, survey
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
-from cellcolor.frontend.stages import Links, Stages, with_finer_borders
+from cellcolor.frontend.stages import Stages, with_finer_borders
 from cellcolor.frontend.tables import in_file
 from cellcolor.version import __version__
 

@@ -18,52 +18,27 @@ and then one with all its vertices and some more, what is known is taken over.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
-from cellcolor.data.candidate_table import VALID
+from cellcolor.arrays import Mask
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.contact.clearance import Clearance
-from cellcolor.frontend.forked import share_out, shared
+from cellcolor.frontend.links import Links, continuous_links, linked_along, valid_links
 from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.reach.between import (
-    at_domain_border,
-    bytes_of_point,
-    remains_valid,
-)
-from cellcolor.frontend.reach.continuity import Coloring, color_nodes, find_cracks, link, node_links
+from cellcolor.frontend.reach.continuity import Coloring, color_nodes, find_cracks, node_links
 from cellcolor.frontend.reach.slivers import SliverReport, clean
-from cellcolor.frontend.reach.smooth import bytes_of_following
 from cellcolor.frontend.reach.validity import Candidates, Verdicts
 from cellcolor.frontend.sizes import check_turns
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.tables import in_file
-from cellcolor.memory import chunks
-
-_PAYS = 3  # points near a vertex; for so many it pays to know how far all is apart there
 
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""
-
-
-@dataclass(frozen=True)
-class Links:
-    """Which branches lead along which mesh edges.
-
-    Attributes:
-        edges: (k, 2) all mesh edges, as vertex indices.
-        linked: (k, branches).
-    """
-
-    edges: Index
-    linked: Mask
 
 
 @dataclass(frozen=True)
@@ -160,11 +135,14 @@ def judged_in_place(
         verdicts = before.verdicts.followed_by(verdicts)
     candidates, tracked = _candidates(prepared, verdicts), verdicts.tracked
     with clock.timed("continuity"):
-        continuous = _continuous_links(prepared, candidates, known, deadline)
+        continuous = continuous_links(
+            prepared, candidates, None if known is None else known.continuous, deadline
+        )
     candidates, links = _with_turn(prepared, candidates), continuous
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
-            links = _valid_links(prepared, candidates, continuous, tracked, known, deadline)
+            taken = None if known is None else (known.links, known.candidates)
+            links = valid_links(prepared, candidates, continuous, tracked, taken, deadline)
     return Judged(colored_stages(prepared, names, candidates, continuous, links, clock), verdicts)
 
 
@@ -191,16 +169,16 @@ def judged_again(
         edges, linked = known.continuous.edges, known.continuous.linked.copy()
         both = candidates.valid[edges].all(axis=1)
         rows = np.flatnonzero((both & ~linked).any(axis=1))
-        linked[rows] |= _linked(prepared, edges[rows], candidates, deadline)
+        linked[rows] |= linked_along(prepared, edges[rows], candidates, deadline)
         continuous = links = Links(edges, linked)
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
-            links = _valid_links(
+            links = valid_links(
                 prepared,
                 candidates,
                 continuous,
                 verdicts.tracked,
-                known,
+                (known.links, known.candidates),
                 deadline,
                 anew=continuous.linked & ~known.links.linked,
             )
@@ -270,125 +248,6 @@ def _with_turn(prepared: PreparedScene, candidates: Candidates) -> Candidates:
     return replace(candidates, reasons=reasons, reason_names=names)
 
 
-def _continuous_links(
-    prepared: PreparedScene, candidates: Candidates, known: Stages | None, deadline: Deadline
-) -> Links:
-    """The links along which a branch moves without a jump and within the joint limits."""
-    edges = prepared.surface.edges()
-    linked = shared((len(edges), candidates.valid.shape[1]), np.bool_)
-    new = np.ones(len(edges), dtype=bool)
-    if known is not None:
-        here, there = _in_both(edges, known.continuous.edges)
-        linked[here], new[here] = known.continuous.linked[there], False
-    rows = np.flatnonzero(new)
-    linked[rows] = _linked(prepared, edges[rows], candidates, deadline)
-    return Links(edges, linked)
-
-
-def _linked(
-    prepared: PreparedScene, edges: Index, candidates: Candidates, deadline: Deadline
-) -> Mask:
-    """Whether each branch moves along mesh edges (k, 2) without a jump, (k, branches)."""
-    robot = prepared.robot
-    limits = (robot.lower, robot.upper) if prepared.setup.constraints.collision else None
-    linked = shared((len(edges), candidates.valid.shape[1]), np.bool_)
-    probe = partial(prepared.arm.probe, deadline=deadline)
-
-    def link_part(part: slice) -> None:
-        linked[part] = link(
-            prepared.surface, edges[part], candidates, prepared.arm.measure, limits, probe
-        )
-
-    each = linked.shape[1] * bytes_of_following(robot.joints)
-    _in_parts(link_part, chunks(len(edges), each), deadline)
-    return linked
-
-
-def _valid_links(
-    prepared: PreparedScene,
-    candidates: Candidates,
-    continuous: Links,
-    tracked: Array,
-    known: Stages | None,
-    deadline: Deadline,
-    anew: Mask | bool = False,
-) -> Links:
-    """The links that are valid between the vertices as well.
-
-    Args:
-        tracked: (points, n * branches, 3) of the bodies at the vertices, m.
-        known: of a surface whose vertices are the first ones of this one.
-        anew: (edges, branches) of those that are known, which are asked about again.
-    """
-    surface, edges = prepared.surface, continuous.edges
-    linked = shared(continuous.linked.shape, np.bool_)
-    linked[:] = continuous.linked
-    near_border = at_domain_border(edges, candidates.valid)
-    new = np.ones(linked.shape, dtype=bool)
-    if known is not None:
-        # Which points of an edge are tested depends on the neighbors of its ends, which may be new.
-        here, there = _in_both(edges, known.links.edges)
-        border_before = at_domain_border(known.links.edges, known.candidates.valid)
-        new[here] = near_border[here] != border_before[there]
-        new |= anew
-        linked[here] = np.where(new[here], linked[here], known.links.linked[there])
-    each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
-    asked = np.flatnonzero((linked & new).any(axis=1))
-
-    def free_part(part: slice) -> None:
-        rows = asked[part]
-        linked[rows] &= prepared.workplace.tip.free_along(surface, edges[rows])[:, None]
-
-    if prepared.setup.constraints.collision:
-        _in_parts(free_part, chunks(len(asked), each), deadline)
-    spacing = prepared.setup.continuity.validity_spacing_m
-    assert spacing is not None  # asked by who calls
-    counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
-    at_vertices = tracked.reshape(-1, *candidates.valid.shape, 3)
-    longest = prepared.judge.tracked_steps
-    all_rows, all_branches = np.nonzero(linked & new)
-
-    def test_part(part: slice) -> None:
-        rows, branches = all_rows[part], all_branches[part]
-        pieces = np.where(near_border[rows, branches], counts[rows], 1)
-
-        def test(points: Array, directions: Array, at: Index) -> tuple[Mask, Array]:
-            found = prepared.arm.follow(points, directions, branches[at])
-            near = _clearances(prepared, candidates, points, edges[rows[at]], branches[at])
-            verdicts = prepared.judge(found, deadline, near)
-            return np.asarray(verdicts.reasons == VALID), verdicts.tracked
-
-        linked[rows, branches] = remains_valid(
-            surface, edges[rows], branches, pieces, at_vertices, longest, test
-        )
-
-    _in_parts(test_part, chunks(len(all_rows), each), deadline)
-    return Links(edges, linked)
-
-
-def _clearances(
-    prepared: PreparedScene, candidates: Candidates, points: Array, edges: Index, branches: Index
-) -> tuple[Clearance, Index] | None:
-    """Distances at the vertices beside points (k, 3) on mesh edges, if it pays to know them."""
-    ends = prepared.surface.vertices[edges]
-    nearer = np.argmin(np.linalg.norm(ends - points[:, None], axis=2), axis=1)
-    vertex = edges[np.arange(len(edges)), nearer]
-    nodes, row = np.unique(vertex * candidates.valid.shape[1] + branches, return_inverse=True)
-    if len(points) < _PAYS * len(nodes):
-        return None
-    known = candidates.configurations.reshape(-1, prepared.robot.joints)[nodes]
-    return prepared.judge.clearance(known), row
-
-
-def _in_both(edges: Index, others: Index) -> tuple[Index, Index]:
-    """The rows of mesh edges (k, 2) that are among others as well, and their rows there."""
-    count = int(edges.max(initial=0)) + 1
-    _, here, there = np.intersect1d(
-        edges @ [count, 1], others @ [count, 1], assume_unique=True, return_indices=True
-    )
-    return here, there
-
-
 def _colored(names: tuple[str, ...], candidates: Candidates, nodes: Mask, links: Links) -> Coloring:
     """The colors of some of the candidates, ``nodes`` (n, branches)."""
     pairs = node_links(links.edges, links.linked)
@@ -412,17 +271,6 @@ def _cleaned(
         links = Links(edges, links.linked & kept[edges].all(axis=1))
         coloring = _colored(names, candidates, kept, links)
     return Cleaned(links, coloring, find_cracks(edges, links.linked, coloring), report)
-
-
-def _in_parts(work: Callable[[slice], None], slices: Iterable[slice], deadline: Deadline) -> None:
-    """Work on slices of a long list, as long as there is time, in several processes."""
-    parts = list(slices)
-
-    def work_on(number: int) -> None:
-        deadline.check()
-        work(parts[number])
-
-    share_out(work_on, len(parts))
 
 
 OFF = "tolerance"

@@ -320,11 +320,11 @@ def test_what_cannot_be_written_leaves_nothing(
     scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Where the last file fails, none of those before it is there, nor the folder."""
-    import cellcolor.door.planning
+    import cellcolor.door.planned
 
     def fail(_: object) -> bytes:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(cellcolor.door.planning.PlannedScene, "page", fail)
+    monkeypatch.setattr(cellcolor.door.planned.PlannedScene, "page", fail)
     assert run("plan", scene, "-o", tmp_path / "a" / "b") == 2
     assert not (tmp_path / "a").exists()

@@ -10,11 +10,11 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.errors import InputError
 from cellcolor.frontend import build_surface
 from cellcolor.frontend.build import BuildResult
+from cellcolor.frontend.links import Links
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.scene import Scene
-from cellcolor.frontend.stages import Links
 
 LONGEST = 0.012
 

@@ -106,7 +106,7 @@ def test_old_edges_that_get_to_a_border_are_asked_more_closely(
         asked.update(zip(map(tuple, keys), pieces.tolist(), strict=True))
         return remains_valid(surface, edges, branches, pieces, *rest)
 
-    monkeypatch.setattr("cellcolor.frontend.stages.remains_valid", noted)
+    monkeypatch.setattr("cellcolor.frontend.links.remains_valid", noted)
     prepared = scene("wok_obstacle")
     before = judged(prepared, StageClock(NEVER, None))
     first = dict(asked)

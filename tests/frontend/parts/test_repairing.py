@@ -21,7 +21,8 @@ from cellcolor.frontend.parts.cleaning import (
     turned,
     without_flat,
 )
-from cellcolor.frontend.parts.inspection import MOST_FACES, crossing_pairs, facts_of
+from cellcolor.frontend.parts.crossings import MOST_FACES, crossing_pairs
+from cellcolor.frontend.parts.mesh_facts import facts_of
 from cellcolor.frontend.parts.repairing import Mending, mended
 from cellcolor.frontend.parts.shapes import disc_mesh
 from cellcolor.mesh.oriented import directed_edges

@@ -1,0 +1,264 @@
+"""What ``cellcolor.plan`` gives: a planned scene, or as much of one as there was time for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from os import PathLike
+from typing import TYPE_CHECKING
+
+from cellcolor.data.instance import Instance, SurfaceReference
+from cellcolor.data.solution import Solution
+from cellcolor.data.tool_paths import ToolPaths
+from cellcolor.data.trajectory import Trajectory
+from cellcolor.data.wording import count
+from cellcolor.deadline import OutOfTime
+from cellcolor.door.plan_files import SIDE, SURFACE, save
+from cellcolor.door.result import Result
+from cellcolor.door.subject import Subject
+from cellcolor.errors import InputError
+from cellcolor.exports.registry import exported
+from cellcolor.files.paths import path_of
+from cellcolor.painting.paint import Painted
+
+if TYPE_CHECKING:
+    from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+    from cellcolor.frontend import BuildReport, BuildResult
+    from cellcolor.pictures.report_page.content import AnsweredScene, MotionReport
+    from cellcolor.tool_paths.measures import PathMeasures
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class UnfinishedPlan:
+    """A scene on its way to a motion, as far as it got within the time limit.
+
+    A trajectory is not part of it: none leaves the program without having been judged.
+
+    Attributes:
+        subject: the scene, built and decomposed.
+        result: the fewest segments that were found, and what is proved; None before the search.
+        painted: the segments on the surface, if they were painted.
+        paths: where the tool goes, if that was laid out.
+        measures: of each of these paths.
+    """
+
+    subject: Subject
+    result: Result | None
+    painted: Painted | None
+    paths: ToolPaths | None
+    measures: tuple[PathMeasures, ...]
+
+    @property
+    def built(self) -> BuildResult:
+        """Which colors reach each point."""
+        return self.subject.build()
+
+    @property
+    def instance(self) -> Instance:
+        """The topological graph."""
+        return self.subject.graph()
+
+    @property
+    def solution(self) -> Solution | None:
+        """The solver's answer, which the checker has passed."""
+        return None if self.result is None else self.result.solution
+
+    @property
+    def missing(self) -> str:
+        """What the time limit cut off, as a sentence; "" for a whole plan."""
+        if self.result is None or self.result.solution.cells is None:
+            cut = "before any division into segments was found"
+        elif self.painted is None:
+            cut = "before the segments were painted on the surface"
+        elif self.paths is None:
+            cut = "before the tool paths were laid out"
+        else:
+            cut = "before the arm's motion on the tool paths was planned and judged"
+        return f"The time limit came {cut}."
+
+    def _report(self) -> MotionReport:
+        """What the page tells of."""
+        from cellcolor.pictures.report_page.content import MotionReport
+
+        decomposition, painted = self.subject.decomposition, self.painted
+        return MotionReport(
+            self.built,
+            decomposition,
+            self.solution,
+            painted,
+            None,
+            self.measures,
+            None,
+            self.paths,
+            self.missing,
+        )
+
+    def page(self) -> bytes:
+        """``report.html``, complete in itself: what there is, and what is missing."""
+        from cellcolor.pictures.report_page.page import render_page
+
+        return render_page(self._report())
+
+    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:  # noqa: ARG002
+        """All files but the page, by name, as far as the plan came."""
+        surface, decomposition = self.subject.surface, self.subject.decomposition
+        reference = SurfaceReference(SURFACE, tuple(decomposition.vertex_cell), surface.sha256)
+        named = replace(decomposition.instance, surface=reference)
+        content = {
+            SIDE: self.built.candidates.to_bytes(),
+            SURFACE: replace(surface, meta=surface.meta | {"side_file": SIDE}).to_json().encode(),
+            "instance.json": named.to_json().encode(),
+        }
+        if self.solution is not None:
+            content["solution.json"] = self.solution.to_json().encode()
+        if self.painted is not None:
+            content["painted.plan.json"] = self.painted.plan.to_json().encode()
+            content["painted.surface.json"] = self.painted.surface.to_json().encode()
+        if self.paths is not None:
+            content["paths.json"] = self.paths.to_json().encode()
+        return content
+
+    def save(
+        self, folder: str | PathLike[str], export_step_s: float | None = None
+    ) -> tuple[str, ...]:
+        """Write all files that are ready to a folder (docs/plan.md), all of them or none.
+
+        Args:
+            folder: where; it is made if it is not there.
+            export_step_s: the fixed time step of the files for controllers, s; None keeps the
+                samples of the trajectory (docs/formats/controllers.md).
+
+        Returns:
+            Their names.
+
+        Raises:
+            InputError: a plan that got further is there, or something else that is not
+                overwritten; or it cannot be written.
+        """
+        return save(path_of(folder), self._files(export_step_s) | {"report.html": self.page()})
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.missing}>"
+
+
+@dataclass(frozen=True, repr=False, eq=False)
+class PlannedScene(UnfinishedPlan):
+    """A scene with its fewest lift-offs, a motion that has them, and the judge's verdict on it.
+
+    Attributes:
+        trajectory: how the arm moves.
+        verdict: an independent judge's.
+        seconds: wall time of each stage.
+        answered: what was asked besides, for the page; None if nothing was.
+    """
+
+    result: Result
+    painted: Painted
+    paths: ToolPaths
+    measures: tuple[PathMeasures, ...]
+    trajectory: Trajectory
+    verdict: TrajectoryVerdict
+    seconds: Mapping[str, float]
+    answered: AnsweredScene | None = None
+
+    @property
+    def solution(self) -> Solution:
+        """The solver's answer, which the checker has passed."""
+        return self.result.solution
+
+    @property
+    def missing(self) -> str:
+        """Nothing."""
+        return ""
+
+    def _report(self) -> MotionReport:
+        return replace(
+            super()._report(),
+            trajectory=self.trajectory,
+            verdict=self.verdict,
+            paths=None,
+            answered=self.answered,
+        )
+
+    def _files(self, export_step_s: float | None = None) -> dict[str, bytes]:
+        from cellcolor.exports.interface import ArmAxes, PlannedMotion
+        from cellcolor.pictures.report_page.surface_modes import segment_fills
+
+        painted, trajectory = self.painted, self.trajectory
+        fills = segment_fills(painted)
+        arm = self.built.robot
+        axes = ArmAxes.of(arm.joint_names, arm.placement, arm.axis, bool(arm.slides.any()))
+        motion = PlannedMotion(
+            painted.surface,
+            painted.segment_of,
+            fills,
+            self.paths,
+            trajectory,
+            axes,
+            export_step_s,
+            self.built.prepared.setup.task.normal_force_n,
+        )
+        return {
+            **super()._files(),
+            "trajectory.json": trajectory.to_json().encode(),
+            "verdict.json": self.verdict.to_json().encode(),
+            **exported(motion),
+        }
+
+    def __str__(self) -> str:
+        extra = len(self.trajectory.extra_lift_offs)
+        said = [f"{self.built.surface.name}: {self.result}", str(self.paths)]
+        if len(self.painted.minima) > 1:
+            earlier = ", ".join(map(str, self.painted.minima[:-1]))
+            said.insert(1, f"refined where the scene refused a painting; {earlier} segments before")
+        said += [str(self.trajectory) + (f", {extra} beyond the minimum" if extra else "")]
+        if self.trajectory.unplanned:
+            moves = count(len(self.trajectory.unplanned), "move")
+            between = "; ".join(dict.fromkeys(self.trajectory.meta.get("blocked", ())))
+            said.append(
+                f"{moves} between strokes not planned: the arm must not drive there"
+                + (f"; in the way: {between}" if between else "")
+            )
+        covered = self.verdict.covered
+        said.append(f"judge: {self.verdict}" + ("" if covered is None else f"; {covered}"))
+        said += [str(answer) for answer in (self.answered.answers if self.answered else ())]
+        coverage = self.instance.coverage
+        if coverage is not None and coverage.given_up:
+            left_out = "slivers" if self.built.left_alone is None else "left out on purpose"
+            said.append(f"{left_out}: {coverage}")
+        return "\n".join(said)
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__name__} {self.trajectory}>"
+
+
+class PlanOutOfTime(OutOfTime):
+    """The time limit came before a motion was planned and judged.
+
+    Attributes:
+        unfinished: what there is.
+    """
+
+    def __init__(self, unfinished: UnfinishedPlan) -> None:
+        self.unfinished = unfinished
+        super().__init__(unfinished.missing)
+
+    def __reduce__(self) -> tuple[type[PlanOutOfTime], tuple[UnfinishedPlan]]:
+        # Python would hand the text to __init__, which takes the plan.
+        return type(self), (self.unfinished,)
+
+
+class NothingCovered(InputError):
+    """No point of the object can be covered.
+
+    Attributes:
+        report: what the build found, reachability by reason among it.
+    """
+
+    def __init__(self, report: BuildReport, file: str | None) -> None:
+        self.report = report
+        super().__init__(file, None, report.nothing_covered or "there is nothing to cover")
+
+    def __reduce__(self) -> tuple[type[NothingCovered], tuple[BuildReport, str | None]]:
+        # As in InputError.
+        return type(self), (self.report, self.file)
