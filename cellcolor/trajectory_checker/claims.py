@@ -54,11 +54,18 @@ def judge_left_out(
 ) -> None:
     """Note stated places that could have been covered, and stated areas that are not true.
 
+    A stated place counts as rightly left out if its nearest vertex is, or one that an edge or two
+    join with it: the planner tests other points than the vertices of the fine mesh.
+
     Args:
+        trajectory: what is judged.
+        fine: the surface, refined.
         areas: (n,) reachable area of each vertex of the fine mesh, m².
-        reached: (n,) what is covered.
-        right: (n,) what is rightly left out.
-        asked: (n,) what was asked whether it is; the rest is closely covered.
+        reached: (n,) which vertices are covered.
+        right: (n,) which are rightly left out.
+        asked: (n,) of which that was asked; the others are closely covered.
+        spacing: the setup's, between passes, m.
+        faults: where they are noted.
     """
     if not trajectory.left_out:
         return
@@ -77,6 +84,12 @@ def judge_left_out(
         if apart[at] > spacing:
             text = f"segment {part.segment}: a stated left-out place is not on the surface"
             faults.add("claim", text, place=place)
-        elif asked[at] and not right[at] and not reached[at] and areas[at] > 0:
+        elif (
+            asked[at]
+            and not reached[at]
+            and areas[at] > 0
+            and not right[at]
+            and not right[fine.near[[at]].indices].any()
+        ):
             text = f"segment {part.segment}: stated as left out ({part.reason}), but reachable"
             faults.add("claim", text, place=place)
