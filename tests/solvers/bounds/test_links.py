@@ -14,7 +14,7 @@ from cellcolor.checker import hubs
 from cellcolor.deadline import NEVER
 from cellcolor.lab.families import hub_with_loops
 from cellcolor.solvers.bounds.hubs import Grouping, best_grouping, joinable_colors, links_bound
-from cellcolor.solvers.cpsat.hub_division import many_links
+from cellcolor.solvers.cpsat.hub_groups import many_links
 from examples import examples
 
 COLORS = st.frozensets(st.integers(0, 3), min_size=1, max_size=3)
