@@ -28,6 +28,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import CellDivision, Division, Seam, Solution
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import InputError
 
 
 @dataclass(frozen=True, slots=True)
@@ -176,6 +177,12 @@ def check_solution(
         OutOfTime: the deadline came first.
     """
     problems: list[str] = []
+    costs = None
+    if solution.objective is not None:
+        try:
+            costs = solution.objective.by_color(instance.colors)
+        except InputError as error:
+            return Report((str(error),), (), None)
     reference = solution.instance
     own = instance.sha256 if reference.of == "graph" else instance.sha256_of_version_1
     if reference.sha256 != own:
@@ -184,7 +191,7 @@ def check_solution(
         problems.append("strands: must be 1 in search space 'paper'")
     regions = regions_of_cells(instance) if regions is None else regions
     verdicts = tuple(
-        verify_bound(instance, bound, regions, deadline=deadline)
+        verify_bound(instance, bound, regions, deadline=deadline, costs=costs)
         for bound in deadline.watch(solution.bounds or ())
     )
     refused = [
@@ -195,12 +202,12 @@ def check_solution(
     if solution.cells is None:
         if solution.seams:
             problems.append("seams: there are none without a division")
-        problems += number_problems(instance, solution, None)
+        problems += number_problems(instance, solution, None, costs)
         return Report(tuple(problems + refused), (), None, verdicts)
     report = check_division(instance, solution.cells, solution.seams, solution.strands)
     problems += report.problems
     if report.segments is not None:
-        problems += number_problems(instance, solution, report.segments)
+        problems += number_problems(instance, solution, report.segments, costs)
     return replace(report, problems=tuple(problems + refused), bounds=verdicts)
 
 

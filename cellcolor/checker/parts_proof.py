@@ -35,7 +35,7 @@ from cellcolor.data.bound_kinds import (
 
 
 def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
-    """Verify that fewer color regions do not touch all of the cells.
+    """Verify that fewer color regions, or cheaper ones, do not touch all of the cells.
 
     Raises:
         Refused: they do.
@@ -95,15 +95,17 @@ def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
             demands = _beside_hubs(proof, part)
             pieces += _saved(proof, part)
         left = proof.budget - proof.tried
-        search = PlanSearch(demands, conflicts, left, proof.deadline, tangles)
+        search = PlanSearch(demands, conflicts, left, proof.deadline, tangles, proof.costs)
         try:
             possible = search.is_possible(pieces - 1)
         finally:
             proof.tried += search.tried
         if possible:
-            least = f"fewer than {pieces}"
             what = "segments" if part.conflicts or part.tangles else "color regions"
-            raise Refused(f"{least} {what} touch all of the cells {few(part.cells)}")
+            least = f"fewer than {pieces} {what}"
+            if proof.costs is not None:
+                least = f"{what} that cost less than {pieces}"
+            raise Refused(f"{least} touch all of the cells {few(part.cells)}")
 
 
 def _beside_hubs(proof: Proof, part: CertifiedPart) -> dict[int, frozenset[ColorRegion]]:

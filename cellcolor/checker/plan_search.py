@@ -1,4 +1,4 @@
-"""Whether so many segments can touch some cells: every way is tried.
+"""Whether so many segments, or segments that cost so much, can touch some cells: all is tried.
 
 A segment lies in one color region, and touches some of its cells. Two segments that are in
 conflict cannot both touch all that the conflict names. Those of a tangle cannot all touch what it
@@ -100,7 +100,7 @@ class _Needed:
 
 @dataclass(frozen=True, slots=True)
 class _State:
-    """Some segments, the cells that are left to be touched, and how many more segments may be."""
+    """Some segments, the cells left to be touched, and what further segments may cost together."""
 
     found: tuple[_Segment, ...]
     left: tuple[int, ...]
@@ -121,6 +121,7 @@ class PlanSearch:
         budget: int,
         deadline: Deadline = NEVER,
         tangles: Sequence[Tangle] = (),
+        costs: Sequence[int] | None = None,
     ) -> None:
         """
         Args:
@@ -129,9 +130,11 @@ class PlanSearch:
             budget: how many choices may be tried.
             deadline: when to give up.
             tangles: of segments.
+            costs: what a segment of each color costs, 1 or more; None for 1 each.
         """
         self.tried = 0
         self._regions = regions
+        self._costs = costs
         self._budget = budget
         self._deadline = deadline
         self._in_conflict = {conflict.regions for conflict in conflicts}
@@ -161,7 +164,7 @@ class PlanSearch:
             self._tangles.append(needed)
 
     def is_possible(self, segments: int) -> bool:
-        """Whether so many segments can touch all cells.
+        """Whether so many segments, or segments that cost so much, can touch all cells.
 
         Raises:
             BudgetExceeded: too many choices have been tried.
@@ -220,6 +223,10 @@ class PlanSearch:
         if not left:
             return iter([_State(found, (), more)])
         regions_of = self._regions if more > 0 else dict.fromkeys(left, frozenset[ColorRegion]())
+        if self._costs is not None:
+            regions_of = {
+                c: frozenset(r for r in regions_of[c] if self._cost(r) <= more) for c in left
+            }
         cell = min(left, key=lambda c: (len(able[c]) + len(regions_of[c]), c))
         rest = tuple([c for c in left if c != cell])
         return self._touching(cell, able[cell], sorted(regions_of[cell]), _State(found, rest, more))
@@ -283,7 +290,7 @@ class PlanSearch:
             self._count(len(rest))
             ends = self._ends.get((region, cell), (0, 0, 0, 0))
             opening = _Segment(region, ends, self._places.get((region, cell), 0))
-            yield _State((*found, opening), rest, more - 1)
+            yield _State((*found, opening), rest, more - self._cost(region))
 
     def _able_to_touch(self, state: _State) -> dict[int, list[tuple[int, _Segment]]]:
         """For each cell the numbers of the segments that can touch it, and each as it is then."""
@@ -333,11 +340,18 @@ class PlanSearch:
         return sorted(able, key=lambda choice: choice[0])
 
     def _need_segments_of_their_own(self, cells: Sequence[int]) -> int:
-        """Of cells that no segment can touch: so many are in different color regions altogether."""
+        """Of cells that no segment can touch: so many are in different color regions altogether.
+
+        Where segments have costs, it is what the cheapest of these regions cost.
+        """
         used: set[ColorRegion] = set()
         count = 0
         for cell in sorted(cells, key=lambda cell: len(self._regions[cell])):
             if used.isdisjoint(self._regions[cell]):
                 used |= self._regions[cell]
-                count += 1
+                count += 1 if self._costs is None else min(map(self._cost, self._regions[cell]))
         return count
+
+    def _cost(self, region: ColorRegion) -> int:
+        """What a segment in a color region costs."""
+        return 1 if self._costs is None else self._costs[region[0]]

@@ -24,6 +24,7 @@ class Proof:
         regions: the color regions that each cell lies in, without those that were left out.
         budget: how many choices may be tried.
         deadline: when to give up, as if the budget was used up.
+        costs: what a segment of each color costs; None for 1 each.
         tried: choices so far.
     """
 
@@ -33,11 +34,13 @@ class Proof:
         regions: Sequence[frozenset[ColorRegion]],
         budget: int,
         deadline: Deadline,
+        costs: Sequence[int] | None = None,
     ) -> None:
         self.instance = instance
         self.regions = list(regions)
         self.budget = budget
         self.deadline = deadline
+        self.costs = costs
         self.tried = 0
 
     def count(self, choices: int = 1) -> None:

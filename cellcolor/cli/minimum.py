@@ -23,6 +23,7 @@ from cellcolor.cli.options import (
     WORKERS,
     cellcolor,
     json_option,
+    objective_of,
     one_of,
 )
 from cellcolor.cli.terminal import apart_from, complain, say, say_lines
@@ -168,6 +169,15 @@ def _build_surface(source: Path, output: Path) -> Instance:
     help="Find one of the best divisions with the fewest cutting paths.",
 )
 @click.option(
+    "--color-cost",
+    "objective",
+    metavar="COLOR=N",
+    multiple=True,
+    callback=objective_of,
+    help="What a segment in a color costs, a whole number, instead of 1; can be given for several "
+    "colors. The sum is minimized.",
+)
+@click.option(
     "--warm-start",
     metavar="SOLUTION.json",
     type=PATH,
@@ -231,6 +241,11 @@ def _check_solve(
         raise click.UsageError(
             "--refine-until-stable excludes --cover, --required, --left-alone, --warm-start "
             "and --all: they are of a single mesh"
+        )
+    if given["objective"] is not None and (every or refine or given["cover"] is not None):
+        raise click.UsageError(
+            "--color-cost excludes --all, --cover and --refine-until-stable: they are about the "
+            "number of segments"
         )
     if picture is not None and not (refine and len(files) == 1):
         raise click.UsageError("--picture needs --refine-until-stable and a single scene")

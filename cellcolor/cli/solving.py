@@ -23,6 +23,7 @@ from cellcolor.cli.progress import progress_of, scheme_progress_of
 from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solution
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
 from cellcolor.data.instance import Instance
+from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.solution import SearchSpace, Solution, scheme_line
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
@@ -83,6 +84,7 @@ class Request:
     tolerance: str | None
     every: bool
     fewest_cuts: bool
+    objective: Objective | None
     warm_start: Path | None
     limit: int | None
     refine: bool
@@ -112,6 +114,7 @@ class Request:
             workers=self.workers,
             seed=self.seed,
             fewest_cuts=self.fewest_cuts,
+            objective=self.objective or FEWEST_SEGMENTS,
         )
 
 
@@ -193,7 +196,8 @@ def _check_able(request: Request) -> None:
     What every solver can do is not asked about: bad input has to import no solver.
     """
     start = request.warm_start is not None
-    if request.every or start or request.fewest_cuts or request.search_space != "paper":
+    able = request.search_space == "paper" and request.objective is None
+    if request.every or start or request.fewest_cuts or not able:
         from cellcolor.solvers.checked import check_able
 
         try:
@@ -255,6 +259,7 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
             workers=request.workers,
             seed=request.seed,
             fewest_cuts=request.fewest_cuts,
+            objective=request.options().objective,
             start=request.warm_start,
             cover=request.cover,
             required=request.required,

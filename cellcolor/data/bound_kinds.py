@@ -56,6 +56,7 @@ COVER = BoundKind(
     "It holds for the number of segments, also where only the cells of its certificate have to be "
     "covered.",
     CertifiedCells,
+    "cheaper color regions cannot touch every cell",
 )
 
 
@@ -205,7 +206,10 @@ _STRANDS = (
 )
 
 
-_UNKNOWN = BoundKind()
+_NOTHING_BETTER = "the full model has nothing better, and more strands would be of no use"
+
+
+_UNKNOWN = BoundKind(because_of_cost="")
 
 
 KINDS = {
@@ -213,11 +217,9 @@ KINDS = {
     "cover": COVER,
     "conflicts": CONFLICTS,
     "hubs": HUBS,
-    "crossings": BoundKind(
-        "the full model has nothing better, and more strands would be of no use", EVERY_CELL
-    ),
-    "model": BoundKind("", _STRANDS),
-    "search": BoundKind("", _STRANDS),
+    "crossings": BoundKind(_NOTHING_BETTER, EVERY_CELL, because_of_cost=_NOTHING_BETTER),
+    "model": BoundKind("", _STRANDS, because_of_cost=""),
+    "search": BoundKind("", _STRANDS, because_of_cost=""),
 }
 """What cellcolor writes. A bound may be of another kind: it is kept, and taken on trust."""
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from cellcolor.checker.division import check_solution
 from cellcolor.data.instance import Instance
+from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
@@ -87,6 +88,7 @@ def solve(
     workers: int | None = None,
     seed: int = 0,
     fewest_cuts: bool = False,
+    objective: Objective = FEWEST_SEGMENTS,
     start: Solution | Result | str | PathLike[str] | None = None,
     cover: float | None = None,
     required: Place | None = None,
@@ -94,7 +96,7 @@ def solve(
     refine_until_stable: bool = False,
     progress: Callable[[int | None, int], None] | None = None,
 ) -> Result:
-    """Find the fewest segments of a scene, a labelled surface or an instance.
+    """Find the fewest segments of a scene, a labelled surface or an instance, or the cheapest ones.
 
     A scene is built and a surface decomposed on the way; the checker sees every result. Where a
     scene's slivers were given up, a note says how many segments there are with them. Where
@@ -111,6 +113,7 @@ def solve(
         seed: for all random choices.
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
             paths.
+        objective: what segments cost by color, where their number is not what matters.
         start: a solution to start from, or its file.
         cover: the share of the area that can be covered and is not left alone which has to be, 0
             to 1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
@@ -132,6 +135,9 @@ def solve(
     if refine_until_stable and not (wanted.everything and start is None):
         message = "goes without cover, left_alone and start: they are of a single mesh"
         raise InputError(None, "refine_until_stable", message)
+    if not objective.is_default and (cover is not None or refine_until_stable):
+        message = "other than the number of segments goes without cover and refine_until_stable"
+        raise InputError(None, "objective", message)
     deadline = Deadline.of(time_limit)
     subject = open_subject(source, deadline)
     choosing = Options(deadline=deadline, workers=workers, seed=seed)
@@ -146,6 +152,7 @@ def solve(
         seed=seed,
         start=None if start is None else start_from(start, instance, strands),
         fewest_cuts=fewest_cuts,
+        objective=objective,
     )
     refinement = None
     if refine_until_stable:
@@ -257,7 +264,9 @@ def _with_minimum_modulo(solution: Solution, subject: Subject, options: Options)
 def _solved_beside(surface: LabelledSurface, options: Options) -> Solution | str:
     """The minimum of another surface, in at most ten seconds; or why there is none."""
     deadline = Deadline(min(options.deadline.moment, Deadline.after(_BESIDE_SECONDS).moment))
-    asked = replace(options, deadline=deadline, start=None, fewest_cuts=False)
+    asked = replace(
+        options, deadline=deadline, start=None, fewest_cuts=False, objective=FEWEST_SEGMENTS
+    )
     try:
         graph = decomposition_of(surface, deadline=deadline).instance
         return checked.solve(graph, asked, DEFAULT)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from typing import Any
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
@@ -12,9 +13,16 @@ from cellcolor.checker.cutting_paths import cutting_paths
 from cellcolor.checker.dart_lists import MOST_DARTS
 from cellcolor.checker.division import Report, check_scheme, check_solution
 from cellcolor.data.bound_kinds import CertifiedCells, kind_of
-from cellcolor.data.bounds import Bound, greatest
+from cellcolor.data.bounds import Bound, Bounded, greatest
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, InstanceReference, Solution, Status, count_segments
+from cellcolor.data.solution import (
+    Division,
+    InstanceReference,
+    Solution,
+    Status,
+    cost_of,
+    count_segments,
+)
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
@@ -43,9 +51,13 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
         ("start", start or options.start is not None, able.start),
         ("fewest_cuts", options.fewest_cuts, able.fewest_cuts),
         ("schemes", schemes, able.optimal_schemes),
+        ("objective", not options.objective.is_default, able.objective),
     ):
         if asked and not can:
             raise InputError(None, field, f"is more than the solver {name} can do")
+    if not options.objective.is_default and (schemes or options.fewest_cuts):
+        field = "schemes" if schemes else "fewest_cuts"
+        raise InputError(None, field, "goes with the fewest segments, not with another objective")
     if options.search_space not in able.search_spaces:
         spaces = " and ".join(able.search_spaces)
         message = f"is {options.search_space}, the solver {name} searches {spaces}"
@@ -70,11 +82,11 @@ def solve(
     solver: str = DEFAULT,
     progress: OnProgress | None = None,
 ) -> Solution:
-    """Color an instance with the fewest segments.
+    """Color an instance with the fewest segments, or those that cost least.
 
     Args:
         instance: the topological graph.
-        options: search space, limits, seed.
+        options: search space, limits, seed, objective.
         solver: a name that the registry has.
         progress: called with the best so far and the lower bound.
 
@@ -82,13 +94,14 @@ def solve(
         The solution, checked against the instance.
 
     Raises:
-        InputError: there is no such solver, or it is not able to do what is asked; or there are
-            too many strands.
+        InputError: there is no such solver, or it is not able to do what is asked; there are too
+            many strands; or the objective names a color that the instance does not have.
         TooLarge: the seams of cells with several loops would need too many strands.
         RefusedResult: the checker refuses what the solver found.
     """
     check_able(solver, options)
     chosen = make_solver(solver)
+    costs = options.costs(instance)
     live = len(instance.live_edges)
     if 2 * live * options.strands > MOST_DARTS:
         raise InputError(
@@ -110,7 +123,7 @@ def solve(
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
-    solution = _solution(instance, options, solver, answer, time.monotonic() - start)
+    solution = _solution(instance, options, solver, answer, time.monotonic() - start, costs)
     # Its certificates have been verified just now.
     bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
     _insist(check_solution(instance, replace(solution, bounds=bare)), solver)
@@ -118,17 +131,30 @@ def solve(
 
 
 def _solution(
-    instance: Instance, options: Options, solver: str, answer: Answer, seconds: float
+    instance: Instance,
+    options: Options,
+    solver: str,
+    answer: Answer,
+    seconds: float,
+    costs: tuple[int, ...] | None,
 ) -> Solution:
     """What follows from an answer: its segments are counted, its status is what it has proved."""
-    bounds = tuple(_certified(instance, b, options.deadline) for b in _needed(answer.bounds))
+    needed = _needed(answer.bounds, "segments")
+    if costs is not None:
+        needed += _needed(answer.bounds, "cost")
+    bounds = tuple(_certified(instance, b, options.deadline, costs) for b in needed)
     surface_bound, lower_bound = greatest(bounds, "surface"), greatest(bounds, "strands")
     segments = None if answer.division is None else count_segments(answer.division)
-    proved_for_surface = segments == surface_bound
+    weighed: dict[str, Any] = {}
+    value, proved = segments, (surface_bound, lower_bound)
+    if costs is not None:
+        value = None if answer.division is None else cost_of(answer.division, costs)
+        proved = greatest(bounds, "surface", "cost"), greatest(bounds, "strands", "cost")
+        weighed = {"objective": options.objective, "cost": value, "cost_lower_bound": proved[1]}
     status: Status = "feasible"
-    if segments is None:
+    if value is None:
         status = "unknown"
-    elif proved_for_surface or (options.search_space == "paper" and segments == lower_bound):
+    elif value == proved[0] or (options.search_space == "paper" and value == proved[1]):
         status = "optimal"
     return Solution(
         instance=InstanceReference(instance.name, instance.sha256),
@@ -140,7 +166,7 @@ def _solution(
         lift_offs=None if segments is None else max(0, segments - 1),
         lower_bound=lower_bound,
         surface_lower_bound=surface_bound,
-        proved_for_surface=proved_for_surface,
+        proved_for_surface=segments == surface_bound,
         seams=answer.seams,
         cells=answer.division,
         seconds=seconds,
@@ -149,6 +175,7 @@ def _solution(
         bounds=bounds,
         coverage=instance.coverage,
         notes=answer.notes,
+        **weighed,
     )
 
 
@@ -211,23 +238,27 @@ def _check_loops(name: str, instance: Instance, does: str) -> None:
             )
 
 
-def _needed(bounds: tuple[Bound, ...]) -> tuple[Bound, ...]:
-    """The bounds without those that an earlier or a more general one makes pointless.
+def _needed(bounds: tuple[Bound, ...], of: Bounded) -> tuple[Bound, ...]:
+    """The bounds of one thing without those that an earlier or a more general one makes pointless.
 
     Those for any division of the surface come first, each kind of bound in the order given.
     """
     kept: list[Bound] = []
     for extent in ("surface", "strands"):
         for bound in bounds:
-            if bound.holds_for == extent and bound.value > max((b.value for b in kept), default=0):
+            least = max((b.value for b in kept), default=0)
+            if (bound.holds_for, bound.of) == (extent, of) and bound.value > least:
                 kept.append(bound)
     return tuple(kept)
 
 
-def _certified(instance: Instance, bound: Bound, deadline: Deadline) -> Bound:
+def _certified(
+    instance: Instance, bound: Bound, deadline: Deadline, costs: tuple[int, ...] | None
+) -> Bound:
     """The bound with what a checker without a solver can verify, where that is known in time."""
     if kind_of(bound).certificate is CertifiedCells and bound.holds_for == "surface":
-        cells = hard_cells(instance, bound.value, deadline)
+        own = costs if bound.of == "cost" else None
+        cells = hard_cells(instance, bound.value, deadline, own)
         if cells is not None:
             bound = replace(bound, certificate=CertifiedCells(tuple(cells)).to_document())
     if bound.certificate is None:
@@ -235,7 +266,7 @@ def _certified(instance: Instance, bound: Bound, deadline: Deadline) -> Bound:
     # What a solver hands in may be true and yet not prove it: conflicts on handles, say. And what
     # could not be verified here would make the solution invalid if `check` refused it.
     regions = regions_of_cells(instance)
-    verdict = verify_bound(instance, bound, regions, FEW_STEPS, deadline)
+    verdict = verify_bound(instance, bound, regions, FEW_STEPS, deadline, costs)
     return bound if verdict.outcome == "verified" else replace(bound, certificate=None)
 
 

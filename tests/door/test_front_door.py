@@ -40,6 +40,7 @@ PUBLIC = [
     "JointPlan",
     "LabelledSurface",
     "Leeway",
+    "Objective",
     "Oracle",
     "OutOfTime",
     "Painted",

@@ -18,7 +18,7 @@ from meshes import drawn, surfaces
 from shipped import ROBOTS, SCENES
 
 import cellcolor
-from cellcolor import InputError, Instance, LabelledSurface, Plan, Solution
+from cellcolor import InputError, Instance, LabelledSurface, Objective, Plan, Solution
 from cellcolor.cli import main
 from examples import examples
 
@@ -206,6 +206,8 @@ def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> Non
         ({"search_space": "all"}, "search_space: "),
         ({"strands": 2}, "strands: must be 1 in search space 'paper'"),
         ({"solver": "dfs", "fewest_cuts": True}, "fewest_cuts"),
+        ({"objective": Objective({"pink": 2})}, "objective.segments: names the color 'pink'"),
+        ({"objective": Objective({"red": 2}), "cover": 0.5}, "objective: other than the number"),
     ],
     ids=str,
 )
@@ -236,6 +238,8 @@ def test_options_reach_the_solver() -> None:
     assert (found.solution.strands, found.segments) == (3, 2)
     assert cellcolor.solve("ring", solver="dfs").solution.solver == "dfs"
     assert cellcolor.solve("ring", fewest_cuts=True).solution.cutting_paths is not None
+    red = cellcolor.decompose("ring").colors[0]
+    assert cellcolor.solve("ring", objective=Objective({red: 2})).solution.cost is not None
     seen: list[tuple[int | None, int]] = []
     cellcolor.solve("hub_24", progress=lambda best, least: seen.append((best, least)))
     assert seen and seen[-1][0] == 15

@@ -13,6 +13,7 @@ from guides import install
 from library import PAPER
 
 from cellcolor.data.instance import Instance
+from cellcolor.data.objective import Objective
 from cellcolor.errors import InputError, SolverMissing
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.interface import Options, SchemeSolver, Start
@@ -92,6 +93,14 @@ class TestAbilities:
             assert solve(INSTANCE, options, name).cutting_paths_lower_bound == 0
             return
         with pytest.raises(InputError, match=f"fewest_cuts: is more than the solver {name} can do"):
+            self.found(name, options)
+
+    def test_objective(self, name: str) -> None:
+        options = Options(objective=Objective({INSTANCE.colors[0]: 2}))
+        if make_solver(name).abilities.objective:
+            assert solve(INSTANCE, options, name).status == "optimal"
+            return
+        with pytest.raises(InputError, match=f"objective: is more than the solver {name} can do"):
             self.found(name, options)
 
     def test_optimal_schemes(self, name: str) -> None:

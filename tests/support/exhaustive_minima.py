@@ -92,8 +92,12 @@ def live_darts(instance: Instance, cell: Cell) -> list[int]:
 # --- every division, literally ------------------------------------------------------------------
 
 
-def literal_minimum(instance: Instance) -> int:
-    """The minimum over the product of all partitions and all colorings: for tiny graphs only."""
+def literal_minimum(instance: Instance, costs: Sequence[int] | None = None) -> int:
+    """The minimum over the product of all partitions and all colorings: for tiny graphs only.
+
+    With costs by color it is the least that segments cost together.
+    """
+    price = [1] * len(instance.colors) if costs is None else costs
     options = []
     for cell in instance.cells:
         darts = live_darts(instance, cell)
@@ -106,13 +110,13 @@ def literal_minimum(instance: Instance) -> int:
                     for number, block in enumerate(blocks)
                     for i in block
                 }
-                found.append((len(blocks), holder))
+                found.append((sum(price[color] for color in colors), holder))
         options.append(found)
-    best = len(instance.cells) * 1000
+    best = len(instance.cells) * 1000 * max(price)
     for chosen in itertools.product(*options):
         holder = {dart: where for _, painted in chosen for dart, where in painted.items()}
         joins = [
-            (one[:2], holder[-dart][:2])
+            (one[:2], holder[-dart][:2], price[one[2]])
             for dart, one in holder.items()
             if dart > 0 and one[2] == holder[-dart][2] and one[2] in instance.joinable(dart)
         ]
@@ -120,14 +124,14 @@ def literal_minimum(instance: Instance) -> int:
     return best
 
 
-def _forest(pairs: list[tuple[tuple[int, int], tuple[int, int]]]) -> int:
-    """The edges of a maximal forest."""
+def _forest(joins: list[tuple[tuple[int, int], tuple[int, int], int]]) -> int:
+    """The edges of a maximal forest, each counted as what it saves."""
     group: dict[tuple[int, int], set[tuple[int, int]]] = {}
     size = 0
-    for a, b in pairs:
+    for a, b, saved in joins:
         ga, gb = group.setdefault(a, {a}), group.setdefault(b, {b})
         if ga is not gb:
-            size += 1
+            size += saved
             ga |= gb
             for member in gb:
                 group[member] = ga
@@ -486,12 +490,13 @@ def front_by_vertices(surface: LabelledSurface, weights: Sequence[float]) -> dic
     return {k: max(best[fewer] for fewer in range(k + 1)) for k in range(1, max(best) + 1)}
 
 
-def vertex_minimum(surface: LabelledSurface) -> int:
+def vertex_minimum(surface: LabelledSurface, costs: Sequence[int] | None = None) -> int:
     """The fewest connected components of equal color over all colorings of a mesh's vertices.
 
-    Without the topological graph: vertices one by one in their order, which should be one with a
-    short frontier.
+    With costs by color it is the least that such components cost together. Without the topological
+    graph: vertices one by one in their order, which should be one with a short frontier.
     """
+    price = [1] * len(surface.colors) if costs is None else costs
     cracks = {(c.i, c.j): c.colors for c in surface.cracks}
     neighbors: dict[int, set[int]] = defaultdict(set)
     for i, j in surface.left_of:
@@ -523,7 +528,7 @@ def vertex_minimum(surface: LabelledSurface) -> int:
                 found = tuple(
                     (painted[p][0], names.setdefault(painted[p][1], len(names))) for p in kept
                 )
-                closed = len({s for _, s in painted}) - len(names)
+                closed = sum(price[c] for c, s in set(painted) if s not in names)
                 grown[found] = min(grown.get(found, cost + closed), cost + closed)
         layer, frontier = grown, [painted_now[p] for p in kept]
     return min(layer.values())

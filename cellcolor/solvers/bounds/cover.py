@@ -85,8 +85,11 @@ def set_cover(
     instance: Instance,
     colors: Sequence[frozenset[int]] | None = None,
     deadline: Deadline = NEVER,
+    costs: Sequence[int] | None = None,
 ) -> Cover:
     """A smallest set of color regions that touches every cell; its size is a lower bound.
+
+    With costs it is a cheapest one, and what it costs is a lower bound of the cost of segments.
 
     Every cell of a division contains a sub-cell, which belongs to a segment, which lies within
     one color region. So the regions of all segments together touch every cell, and there are at
@@ -96,6 +99,7 @@ def set_cover(
         instance: the topological graph.
         colors: the colors each cell may be painted in, if not all of its own.
         deadline: when to stop with the best cover and bound so far.
+        costs: what a segment of each color costs; None for 1 each.
 
     Raises:
         KeyboardInterrupt: Ctrl-C.
@@ -103,12 +107,22 @@ def set_cover(
     regions = color_regions(instance, colors)
     touching = _touching(regions, len(instance.cells))
     greedy = _greedy(regions, touching)
-    found = _smallest(touching, EFFORT, deadline, greedy)
+    found = _smallest(touching, EFFORT, deadline, greedy, _prices(regions, costs))
     numbers = greedy if found.chosen is None else found.chosen
     return Cover([regions[number] for number in sorted(numbers)], max(found.bound, bool(regions)))
 
 
-def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> list[int] | None:
+def _prices(regions: Sequence[Region], costs: Sequence[int] | None) -> list[int] | None:
+    """What a segment in each color region costs; None for 1 each."""
+    return None if costs is None else [costs[color] for color, _ in regions]
+
+
+def hard_cells(
+    instance: Instance,
+    value: int,
+    deadline: Deadline = NEVER,
+    costs: Sequence[int] | None = None,
+) -> list[int] | None:
     """A few cells that fewer than ``value`` color regions cannot touch: why no cover is smaller.
 
     If there are as many cells as ``value``, no two of them lie in one color region: they are
@@ -117,8 +131,9 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
 
     Args:
         instance: the topological graph.
-        value: how many color regions are needed, or fewer.
+        value: how many color regions are needed, or fewer; what they cost, if they have costs.
         deadline: when to give up.
+        costs: what a segment of each color costs, 1 or more; None for 1 each.
 
     Returns:
         The cells, ascending; None if none were found in time.
@@ -126,13 +141,14 @@ def hard_cells(instance: Instance, value: int, deadline: Deadline = NEVER) -> li
     cells = greedy_strangers(instance)
     if len(cells) >= value:
         return sorted(cells)[:value]
-    touching = _touching(color_regions(instance), len(instance.cells))
+    regions = color_regions(instance)
+    touching, prices = _touching(regions, len(instance.cells)), _prices(regions, costs)
     found: list[int] = []
     for group in sorted(_groups(touching), key=len):
         if value > 0 and not deadline.over:
             demands = [touching[cell] for cell in group]
-            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline).bound)
-            hard = _hard_cells_of(group, need, touching, deadline)
+            need = min(value, _smallest(demands, CERTIFICATE_EFFORT, deadline, (), prices).bound)
+            hard = _hard_cells_of(group, need, touching, deadline, prices)
             if hard is None:
                 return None
             found += hard
@@ -145,6 +161,7 @@ def _hard_cells_of(
     value: int,
     touching: Sequence[set[int]],
     deadline: Deadline,
+    prices: Sequence[int] | None,
 ) -> list[int] | None:
     """:func:`hard_cells` of cells that no color region connects with others."""
     cells = _apart(group, touching)
@@ -154,7 +171,8 @@ def _hard_cells_of(
         return cells[:value]
     hardest_first = sorted(group, key=lambda cell: len(touching[cell]))
     while not deadline.over:
-        found = _smallest((touching[cell] for cell in cells), CERTIFICATE_EFFORT, deadline)
+        demands = [touching[cell] for cell in cells]
+        found = _smallest(demands, CERTIFICATE_EFFORT, deadline, (), prices)
         if found.bound >= value:
             return cells
         missed = (c for c in hardest_first if touching[c].isdisjoint(found.chosen or ()))
@@ -229,8 +247,12 @@ def _smallest(
     effort: float,
     deadline: Deadline,
     hint: Collection[int] = (),
+    prices: Sequence[int] | None = None,
 ) -> _Found:
-    """The fewest regions that meet all demands, sets of which one region at least is needed."""
+    """The fewest regions that meet all demands, sets of which one region at least is needed.
+
+    With prices of all regions they are the cheapest ones, and the bound is one of their sum.
+    """
     from ortools.sat.python import cp_model  # slow to import, so only where it is used
 
     chosen: set[int] | None = set()
@@ -246,7 +268,10 @@ def _smallest(
             model.add_bool_or(literal[number] for number in different[place])
         for number in own if hint else ():
             model.add_hint(literal[number], number in hint)
-        model.minimize(sum(literal.values()))
+        if prices is None:
+            model.minimize(sum(literal.values()))
+        else:
+            model.minimize(sum(prices[number] * literal[number] for number in own))
         found = _solve(model, list(literal.values()), effort, deadline)
         bound += found.bound
         if chosen is None or found.chosen is None:

@@ -85,10 +85,12 @@ class ModelSearch:
             return
         if size * SECONDS_A_TERM > deadline.left:
             raise OutOfTime("building the model would take longer than the time left")
-        built = full_model(graph, color_regions(self._part.instance, colors), deadline=deadline)
+        costs = self._part.costs
+        regions = color_regions(self._part.instance, colors)
+        built = full_model(graph, regions, deadline=deadline, costs=costs)
         # The known bound as a constraint: a division that meets it ends the search, without the
         # model having to prove the bound again.
-        built.model.add(sum(built.variables.root) + sum(built.variables.alone) >= self._part.bound)
+        built.model.add(built.cost >= self._part.bound)
         self._hint(built, graph)
         solver = self._part.runner.portfolio(None if final else TRIAL_EFFORT, deadline)
         if final:
@@ -98,7 +100,7 @@ class ModelSearch:
         if final and isfinite(solver.best_objective_bound):
             self._proved(solver.best_objective_bound)
         if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            self._part.offer(graph, read_painting(graph, built.variables, solver))
+            self._part.offer(graph, read_painting(graph, built.variables, solver, costs))
 
     def _proved(self, bound: float) -> None:
         self._part.raise_to(ceil(bound - 1e-6), for_surface=False)

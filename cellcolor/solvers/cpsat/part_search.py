@@ -64,7 +64,7 @@ class PartSearch(PartState):
 
     def cover(self, deadline: Deadline) -> None:
         """The first bound, and a division that follows from a smallest cover."""
-        found = set_cover(self.instance, None, deadline)
+        found = set_cover(self.instance, None, deadline, self.costs)
         self.cover_bound = max(self.bound, found.bound)
         self.planned = found.regions
         self.raise_to(found.bound, for_surface=True)

@@ -11,7 +11,7 @@ from importlib.metadata import version
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import Strand
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Seam, count_segments
+from cellcolor.data.solution import Division, Seam, cost_of, count_segments
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.solvers.bounds.cover import greedy_strangers
@@ -19,6 +19,7 @@ from cellcolor.solvers.bounds.reductions import LeftOut, drop_dominated, left_ou
 from cellcolor.solvers.cpsat.conflict_certificate import conflict_certificate
 from cellcolor.solvers.cpsat.cuts import FewestCuts
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
+from cellcolor.solvers.cpsat.model.full import cheapest
 from cellcolor.solvers.cpsat.model.painting import (
     Block,
     Painting,
@@ -53,6 +54,7 @@ class CpSatSolver:
         schemes_of_several_loops=True,
         start=True,
         fewest_cuts=True,
+        objective=True,
     )
 
     def __init__(self, plans: bool = True) -> None:
@@ -66,7 +68,11 @@ class CpSatSolver:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline."""
+        """A division with the fewest segments, or the best found before the deadline.
+
+        Where segments have costs, a cover and the full model do all the work: plans, routes and
+        windows count each segment as one.
+        """
         if not instance.cells:
             return Answer((), (), (), 0 if options.fewest_cuts else None)
         search = _Search(instance, options, progress, self._plans)
@@ -95,7 +101,8 @@ class _Search:
         self._instance = instance
         self._options = options
         self._progress = progress
-        self._plans = plans
+        self._costs = options.costs(instance)
+        self._plans = plans and self._costs is None
         self._runner = Runner(options)
         self._loops = instance.live_loops
         self._own = tuple(frozenset(cell.colors) for cell in instance.cells)
@@ -120,7 +127,7 @@ class _Search:
         if options.start is not None:
             self._begin_with(options.start)
         deadline.check()
-        self._left_out = left_out(self._instance, deadline)
+        self._left_out = left_out(self._instance, deadline, self._costs)
         colors = drop_dominated(self._instance, self._left_out)
         deadline.check()
         self._parts = [
@@ -140,7 +147,7 @@ class _Search:
         if self._start is not None:
             known, its = self._start
             start = division_of(known, its, self._options.strands)
-            if count_segments(start) < count_segments(division):
+            if self._counted(start) < self._counted(division):
                 graph, division = known, start
         notes = {note for part in self._parts for note in part.models.notes}
         cuts = 0 if self._options.fewest_cuts else None
@@ -151,6 +158,11 @@ class _Search:
                 graph, painting = self._fewest.best
                 division = division_of(graph, painting, self._options.strands)
         return Answer(division, graph.seams, self._bounds(), cuts, tuple(sorted(notes)))
+
+    def _counted(self, division: Division) -> int:
+        """The segments of a division, or what they cost."""
+        costs = self._costs
+        return count_segments(division) if costs is None else cost_of(division, costs)
 
     def _cut_least(self, colors: tuple[frozenset[int], ...]) -> None:
         """Of the divisions with the fewest segments, one with the fewest cutting paths."""
@@ -233,7 +245,7 @@ class _Search:
         painting = [
             [
                 Block(color, {index[name] for name in names})
-                for color, names in found.get(cell, [(min(colors), [])])
+                for color, names in found.get(cell, [(cheapest(colors, self._costs), [])])
             ]
             for cell, colors in enumerate(self._own)
         ]
@@ -247,17 +259,27 @@ class _Search:
         """What is proved of the number of segments, and how; bounds of parts add up."""
         if not self._parts:
             return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
+        cover = Bound("cover", sum(part.cover_bound for part in self._parts), "surface")
+        proved = sum(part.proved_for_surface for part in self._parts)
+        bound = sum(part.bound for part in self._parts)
+        if self._costs is not None:
+            return (
+                Bound("strangers", len(greedy_strangers(self._instance)), "surface"),
+                replace(cover, of="cost"),
+                Bound("crossings", proved, "surface", of="cost"),
+                Bound("model", bound, "strands", of="cost"),
+            )
         certificate = conflict_certificate(self._left_out, self._parts)
         return (
-            Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
+            cover,
             Bound(
                 "hubs" if any(part.hubs for part in self._parts) else "conflicts",
                 sum(part.surface_bound for part in self._parts),
                 "surface",
                 None if certificate is None else certificate.to_document(),
             ),
-            Bound("crossings", sum(part.proved_for_surface for part in self._parts), "surface"),
-            Bound("model", sum(part.bound for part in self._parts), "strands"),
+            Bound("crossings", proved, "surface"),
+            Bound("model", bound, "strands"),
         )
 
     def _report(self) -> None:
@@ -265,5 +287,5 @@ class _Search:
             return
         known = sum(part.known for part in self._parts)
         if self._start is not None:
-            known = min(known, count_segments(division_of(*self._start)))
+            known = min(known, self._counted(division_of(*self._start)))
         self._progress(known, sum(part.bound for part in self._parts))

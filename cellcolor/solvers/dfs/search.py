@@ -27,6 +27,8 @@ class Search:
         cells: the cells, in the order in which they are solved.
         region: the region of each (cell, color).
         deadline: when to stop.
+        costs: what a segment of each color costs; None for 1 each. With costs, budget, bound and
+            what is yielded are of what the segments cost.
 
     Attributes:
         budget: the most segments a painting may have; lower it while the search runs to prune.
@@ -34,12 +36,20 @@ class Search:
     """
 
     def __init__(
-        self, cells: Sequence[GraphCell], region: dict[tuple[int, int], int], deadline: Deadline
+        self,
+        cells: Sequence[GraphCell],
+        region: dict[tuple[int, int], int],
+        deadline: Deadline,
+        costs: Sequence[int] | None = None,
     ) -> None:
         self._cells = cells
+        self._price = [1] * (max(region.values(), default=-1) + 1)
+        if costs is not None:
+            for (_, color), number in region.items():
+                self._price[number] = costs[color]
         self._region = region
         self._deadline = deadline
-        self._segments = SegmentCounts()
+        self._segments = SegmentCounts(self._price)
         self._memory: list[dict[tuple[DartKnowledge, ...], list[CellScheme]]] = [{} for _ in cells]
         self._covers: list[dict[int, int]] = [{} for _ in range(len(cells) + 1)]
         self._chosen: list[CellScheme] = []
@@ -156,10 +166,11 @@ class Search:
             side = self._side[dart]
             if side is not None and side[0] == 1:
                 growing.add(segments.find(self._holder[dart]))
-        held = 0
+        held = cost = 0
         for subcell in growing:
             held |= 1 << segments.region[subcell]
-        return segments.cost - len(growing) + self._cover(depth, held)
+            cost += self._price[segments.region[subcell]]
+        return segments.cost - cost + self._cover(depth, held)
 
     def _cover(self, depth: int, held: int) -> int:
         """The fewest regions that include those held and touch every cell from a depth on."""
@@ -172,7 +183,8 @@ class Search:
                     regions |= 1 << self._region[cell.id, color]
                 if not regions & held:
                     needed.append(regions)
-            known = held.bit_count() + _hitting(frozenset(needed), self._deadline)
+            known = sum(self._price[region] for region in _bits(held))
+            known += _hitting(frozenset(needed), self._price, self._deadline)
             self._covers[depth][held] = known
         return known
 
@@ -181,46 +193,58 @@ def _preference(scheme: CellScheme) -> tuple[int, int]:
     return len(scheme.subcells), sum(side is not None and side[0] == 0 for side in scheme.sides)
 
 
-def _hitting(sets: frozenset[int], deadline: Deadline) -> int:
-    """The fewest bits that hit each of the given bit sets.
+def _bits(of: int) -> Iterator[int]:
+    """The places of the bits of a number."""
+    while of:
+        bit = of & -of
+        of ^= bit
+        yield bit.bit_length() - 1
+
+
+def _hitting(sets: frozenset[int], price: Sequence[int], deadline: Deadline) -> int:
+    """The least price of bits that hit each of the given bit sets.
 
     Raises:
         OutOfTime: the deadline has passed.
     """
-    best = len(sets)
+    best = sum(min(price[place] for place in _bits(one)) for one in sets)
     trail = [iter([(sets, 0)])]
     while trail:
         deadline.check()
-        left, bits = next(trail[-1], (None, 0))
+        left, cost = next(trail[-1], (None, 0))
         if left is None:
             trail.pop()
         elif not left:
-            best = min(best, bits)
-        elif bits + 1 < best:
-            trail.append(_hits(left, bits + 1))
+            best = min(best, cost)
+        elif cost + 1 < best:
+            trail.append(_hits(left, price, cost))
     return best
 
 
-def _hits(sets: frozenset[int], bits: int) -> Iterator[tuple[frozenset[int], int]]:
-    """What each bit of the smallest set leaves to be hit, with the number of bits by then."""
+def _hits(
+    sets: frozenset[int], price: Sequence[int], cost: int
+) -> Iterator[tuple[frozenset[int], int]]:
+    """What each bit of the smallest set leaves to be hit, with the price of all bits by then."""
     sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
     smallest = min(sets, key=lambda s: (s.bit_count(), s))
-    while smallest:
-        bit = smallest & -smallest
-        smallest ^= bit
-        yield frozenset(s for s in sets if not s & bit), bits
+    for place in _bits(smallest):
+        yield frozenset(s for s in sets if not s >> place & 1), cost + price[place]
 
 
 class SegmentCounts:
     """Sub-cells joined into segments: a union-find whose last steps can be taken back.
 
+    Args:
+        price: what a segment in each region costs.
+
     Attributes:
         cost: the paper's cost of the current painting, "the number of color segments in the
-            current portion of the graph".
+            current portion of the graph", where each costs 1.
         region: of each sub-cell, where its segment must stay.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, price: Sequence[int]) -> None:
+        self._price = price
         self.cost = 0
         self.region: list[int] = []
         self._parent: list[int] = []
@@ -229,7 +253,7 @@ class SegmentCounts:
 
     def add(self, region: int) -> int:
         """A new sub-cell, a segment of its own so far. Returns its number."""
-        self.cost += 1
+        self.cost += self._price[region]
         self.region.append(region)
         self._parent.append(len(self._parent))
         self._size.append(1)
@@ -252,7 +276,7 @@ class SegmentCounts:
         self._parent[b] = a
         self._size[a] += self._size[b]
         self._joined.append(b)
-        self.cost -= 1
+        self.cost -= self._price[self.region[b]]
 
     def mark(self) -> tuple[int, int]:
         """Where to come back to."""
@@ -265,8 +289,8 @@ class SegmentCounts:
             child = self._joined.pop()
             self._size[self._parent[child]] -= self._size[child]
             self._parent[child] = child
-            self.cost += 1
-        self.cost -= len(self._parent) - subcells
+            self.cost += self._price[self.region[child]]
+        self.cost -= sum(self._price[region] for region in self.region[subcells:])
         del self._parent[subcells:], self._size[subcells:], self.region[subcells:]
 
 

@@ -44,7 +44,7 @@ def test_literal_cost_refuses_another_instance() -> None:
 def test_segments_are_undone(joins: list[tuple[int, int]], data: st.DataObject) -> None:
     """After taking back the last joins the cost is that of the first ones alone."""
     kept = data.draw(st.integers(0, len(joins)))
-    tried = SegmentCounts()
+    tried = SegmentCounts([1] * 11)
     for region in range(10):
         tried.add(region)
     for number, (a, b) in enumerate(joins):
