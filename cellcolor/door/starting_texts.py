@@ -39,6 +39,7 @@ may_touch = $touching               # pairs of links that overlap in every postu
 [task]
 normal_force_n = 20.0               # pressed along the tool's axis
 contact_radius_m = 0.005            # obstacles and the ground stay farther off the tip than this
+# stand_off_m = 0.1                 # of a tool that sprays or scans: from its tip to the surface
 gravity_m_per_s2 = [0.0, 0.0, -9.81]
 
 [constraints]

@@ -137,11 +137,17 @@ class Turn(Table):
         return {key: value for key, value in content.items() if value is not None}
 
 
+_Tilt = Annotated[FiniteFloat, Field(ge=-1.2, le=1.2), IN_RADIANS]  # further, the tool lies flat
+
+
 class Task(Table):
     """What the tool has to do on each point, and how much room it needs there.
 
     Without ``turn`` the tool's turn about its axis is free. The normals of a mesh are rounded over
     ``edge_radius_m``; without it that is ``contact_radius_m``, the tool's footprint.
+
+    The tip link may stay off the surface by ``stand_off_m``, and the tool's axis off the normal by
+    ``tilt_rad`` and ``lead_rad`` (``docs/frontend/validity.md``, "Stand-off and tilt").
     """
 
     normal_force_n: NotNegative
@@ -149,6 +155,19 @@ class Task(Table):
     edge_radius_m: NotNegative | None = None
     gravity_m_per_s2: Vector
     turn: Turn | None = None
+    stand_off_m: Annotated[FiniteFloat, Field(ge=0, le=10)] = 0.0
+    lead_rad: _Tilt = 0.0
+    tilt_rad: _Tilt = 0.0
+
+    @model_validator(mode="after")
+    def _tilted_some_way(self) -> Self:
+        if self.turn is None and (self.lead_rad or self.tilt_rad):
+            message = (
+                "lead_rad and tilt_rad need the tool's turn (task.turn): without it nothing says "
+                "to which side the tool is tilted"
+            )
+            raise PydanticCustomError("no_turn", "{message}", {"message": message})
+        return self
 
     @property
     def rounding_m(self) -> float:
@@ -159,8 +178,8 @@ class Task(Table):
     def _newer_if_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
         """Surfaces of before there were these keys stay the same to the byte."""
         content: dict[str, Any] = whole(self)
-        for key in ("edge_radius_m", "turn"):
-            if getattr(self, key) is None:
+        for key in ("edge_radius_m", "turn", "stand_off_m", "lead_rad", "tilt_rad"):
+            if getattr(self, key) == type(self).model_fields[key].default:
                 del content[key]
         return content
 

@@ -24,8 +24,9 @@ from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot, TaskSpace, wider
 from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
+from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.reach.smooth import Measure
-from cellcolor.frontend.setup import Setup
+from cellcolor.frontend.setup import Setup, Task
 from cellcolor.frontend.tables import in_file
 from cellcolor.memory import chunks
 
@@ -222,12 +223,21 @@ def _robot(setup: Setup) -> Robot:
         force=setup.constraints.force,
         prismatic=family.prismatic,
     )
-    robot = replace(robot, task=_task(setup, family))
+    tip = robot.tip @ _contact_in_tip(setup.task)
+    robot = replace(robot, task=_task(setup, family), tip=tip)
     _check_last_joint(robot)
     unknown = set(files.may_touch_ground) - {body.link for body in robot.bodies}
     if unknown:
         raise InputError(None, "robot.may_touch_ground", f"no solid link {min(unknown)!r}")
     return robot
+
+
+def _contact_in_tip(task: Task) -> Array:
+    """(4, 4) the frame on the surface, z into it, in the tip link: ahead of it, and turned back."""
+    pose = np.eye(4)
+    pose[2, 3] = task.stand_off_m
+    pose[:3, :3] = rotation_from_rpy(task.tilt_rad, task.lead_rad, 0.0).T
+    return pose
 
 
 def _task(setup: Setup, family: type[InverseKinematics]) -> TaskSpace:
