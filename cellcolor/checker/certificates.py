@@ -56,19 +56,6 @@ class BoundVerdict:
         reason = f": {self.reason}" if self.reason else ""
         return f"{self.bound}: {self.outcome}{tried}{reason}"
 
-    def to_document(self) -> dict[str, Any]:
-        """The JSON object that ``cellcolor check --json`` has for it."""
-        return {
-            "kind": self.bound.kind,
-            "value": self.bound.value,
-            "holds_for": self.bound.holds_for,
-            **({} if self.bound.of == "segments" else {"of": self.bound.of}),
-            "outcome": self.outcome,
-            "reason": self.reason,
-            "tried": self.tried,
-            "budget": self.budget,
-        }
-
 
 VERIFIERS: dict[str, Callable[[Proof, Any, int], None]] = {
     "strangers": verify_cells,

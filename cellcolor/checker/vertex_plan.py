@@ -7,26 +7,7 @@ from dataclasses import dataclass
 from cellcolor.checker.groups import Groups
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
-
-
-@dataclass(frozen=True, slots=True)
-class Violation:
-    """Why a plan is not valid at a vertex.
-
-    Attributes:
-        vertex: the vertex.
-        color: the color that the plan has there, None for none.
-        place: where the vertex is, m.
-        reason: what is wrong, a clause.
-    """
-
-    vertex: int
-    color: int | None
-    place: tuple[float, float, float]
-    reason: str
-
-    def __str__(self) -> str:
-        return f"vertex_colors[{self.vertex}]: {self.reason}"
+from cellcolor.data.verdicts import PlanViolation
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +25,7 @@ class PlanReport:
     problems: tuple[str, ...]
     segments: int | None
     segment_of: tuple[int, ...] = ()
-    violations: tuple[Violation, ...] = ()
+    violations: tuple[PlanViolation, ...] = ()
 
     @property
     def valid(self) -> bool:
@@ -76,7 +57,7 @@ def check_plan(surface: LabelledSurface, plan: Plan) -> PlanReport:
         else:
             continue
         x, y, z = surface.vertices[vertex].tolist()
-        violations.append(Violation(vertex, color, (x, y, z), reason))
+        violations.append(PlanViolation(vertex, color, (x, y, z), reason))
     if violations:
         return PlanReport(tuple(map(str, violations)), None, violations=tuple(violations))
     segments: Groups[int] = Groups()

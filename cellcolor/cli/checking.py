@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from cellcolor.checker.certificates import BoundVerdict
 from cellcolor.checker.claimed_numbers import claims
 from cellcolor.checker.division import check_scheme
 from cellcolor.cli.ending import Exit
@@ -176,11 +177,17 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
         lift_offs=None if report.segments is None else max(0, report.segments - 1),
         status=solution.status,
         solver=solution.solver,
-        bounds=tuple(CheckedBound(**checked.to_document()) for checked in report.bounds),
+        bounds=tuple(map(_checked, report.bounds)),
         bounds_by_solver=sum(checked.trusted for checked in report.bounds),
         claimed=claimed,
         schemes=schemes or None,
     )
+
+
+def _checked(found: BoundVerdict) -> CheckedBound:
+    bound = found.bound
+    outcome = found.outcome, found.reason, found.tried, found.budget
+    return CheckedBound(bound.kind, bound.value, bound.holds_for, *outcome, bound.of)
 
 
 def _check_plan(request: Request, subject: Subject, claim: Path) -> Exit:

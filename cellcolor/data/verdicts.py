@@ -91,6 +91,9 @@ class PlanViolation(Value):
     place: tuple[float, float, float]
     reason: str
 
+    def __str__(self) -> str:
+        return f"vertex_colors[{self.vertex}]: {self.reason}"
+
 
 @dataclass(frozen=True, slots=True)
 class SegmentRange(Value):

@@ -6,9 +6,9 @@ from dataclasses import dataclass, field, fields
 from os import PathLike
 from typing import TYPE_CHECKING
 
-from cellcolor.checker.vertex_plan import Violation
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.data.verdicts import PlanViolation
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
 from cellcolor.oracle.improvement import Improvement
@@ -44,7 +44,7 @@ class Verdict:
     problems: tuple[str, ...]
     segments: int | None
     bounds: ProvenRange | None
-    violations: tuple[Violation, ...] = field(default=(), compare=False)
+    violations: tuple[PlanViolation, ...] = field(default=(), compare=False)
     improvement: Improvement | None = field(default=None, compare=False)
     why: str | None = field(default=None, compare=False)
     late: bool = field(default=False, compare=False)
@@ -143,7 +143,7 @@ class Verdict:
 
 
 @dataclass(frozen=True, slots=True)
-class JointViolation(Violation):
+class JointViolation(PlanViolation):
     """Why a configuration, or the lack of one, is wrong at a vertex.
 
     Attributes:

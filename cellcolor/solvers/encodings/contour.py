@@ -16,7 +16,6 @@ from collections.abc import Iterator, Sequence
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds.hubs import most_links
 from cellcolor.solvers.encodings.problem import Pair, Problem
 from cellcolor.solvers.encodings.solving import Encoding, EncodingSolver
 
@@ -49,8 +48,9 @@ class Contour(Encoding):
         self.first = {dart: model.new_bool_var(f"first_{dart}") for dart in problem.darts}
         self.last = {dart: model.new_bool_var(f"last_{dart}") for dart in problem.darts}
         # Per cell: its one sub-cell is the root of a tree; no join of it is counted.
-        self.root = [model.new_bool_var(f"root_{cell}") for cell in range(len(problem.cells))]
-        self.alone = [model.new_bool_var(f"alone_{cell}") for cell in range(len(problem.cells))]
+        cells = range(len(problem.cells))
+        self.root = {cell: model.new_bool_var(f"root_{cell}") for cell in cells}
+        self.alone = [model.new_bool_var(f"alone_{cell}") for cell in cells]
         for group in (
             self._one_color,
             self._tours,
@@ -65,7 +65,7 @@ class Contour(Encoding):
         ):
             deadline.check()
             group()
-        model.minimize(sum(self.root) + sum(self.alone))
+        model.minimize(sum(self.root.values()) + sum(self.alone))
 
     def links(self) -> Iterator[tuple[Pair, cp_model.IntVar]]:
         """What leads on along a sub-cell; where its circle closes nothing new is connected."""
@@ -173,30 +173,6 @@ class Contour(Encoding):
     def _at_most_one(self, some: list[cp_model.IntVar], rest: list[cp_model.IntVar]) -> None:
         if some and rest:
             self.model.add_at_most_one(some + rest)
-
-    def _cover(self) -> None:
-        """Each color region in use holds a root, and each cell touches one in use or is alone.
-
-        This is the bound by set cover (docs/bounds.md), which the search can now reason with.
-        """
-        problem = self.problem
-        used = [self.model.new_bool_var(f"used_{n}") for n in range(len(problem.regions))]
-        for (edge, color), literal in self.joined.items():
-            region = problem.region_of[color, problem.cell_of[edge]]
-            self.model.add_implication(literal, used[region])
-        for number, colors in enumerate(problem.cell_colors):
-            touched = [used[problem.region_of[color, number]] for color in sorted(colors)]
-            self.model.add_bool_or([self.alone[number], *touched])
-        self.model.add(sum(self.root) >= sum(used))
-
-    def _most_links(self) -> None:
-        """No cell has more steps than can be drawn in it between darts of common colors."""
-        steps: dict[int, list[cp_model.IntVar]] = defaultdict(list)
-        for (i, _j), arc in self.links():
-            steps[self.problem.cell_of[i]].append(arc)
-        for cell, found in steps.items():
-            darts = self.problem.cells[cell]
-            self.model.add(sum(found) <= most_links([self.problem.colors_of(d) for d in darts]))
 
     def _homes(self) -> None:
         """A segment that reaches the home of its color region has its root there."""

@@ -15,7 +15,6 @@ from collections.abc import Iterator
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds.hubs import most_links
 from cellcolor.solvers.encodings.problem import Pair, Problem
 from cellcolor.solvers.encodings.solving import Encoding, EncodingSolver
 
@@ -62,8 +61,7 @@ class Pointers(Encoding):
         ):
             deadline.check()
             group()
-        self.segments = sum(self.root.values()) + sum(self.alone)
-        model.minimize(self.segments)
+        model.minimize(sum(self.root.values()) + sum(self.alone))
 
     def links(self) -> Iterator[tuple[Pair, cp_model.IntVar]]:
         """Both pointers of each pair."""
@@ -159,30 +157,6 @@ class Pointers(Encoding):
             self.model.add(self.rank[one] >= self.rank[other]).only_enforce_if(forward)
             backward = self.backward[one, other]
             self.model.add(self.rank[other] >= self.rank[one]).only_enforce_if(backward)
-
-    def _cover(self) -> None:
-        """Each color region in use holds a root, and each cell touches one in use or is alone.
-
-        This is the bound by set cover (docs/bounds.md), which the search can now reason with.
-        """
-        problem = self.problem
-        used = [self.model.new_bool_var(f"used_{n}") for n in range(len(problem.regions))]
-        for (edge, color), literal in self.joined.items():
-            region = problem.region_of[color, problem.cell_of[edge]]
-            self.model.add_implication(literal, used[region])
-        for number, colors in enumerate(problem.cell_colors):
-            touched = [used[problem.region_of[color, number]] for color in sorted(colors)]
-            self.model.add_bool_or([self.alone[number], *touched])
-        self.model.add(sum(self.root.values()) >= sum(used))
-
-    def _most_links(self) -> None:
-        """No cell has more links than can be drawn in it between darts of common colors."""
-        by_cell: dict[int, list[cp_model.IntVar]] = defaultdict(list)
-        for one, other in self.forward:
-            by_cell[self.problem.cell_of[one]] += self._link(one, other)
-        for cell, links in by_cell.items():
-            darts = self.problem.cells[cell]
-            self.model.add(sum(links) <= most_links([self.problem.colors_of(d) for d in darts]))
 
     def _homes(self) -> None:
         """A segment that reaches the home of its color region has its root there."""

@@ -19,7 +19,6 @@ from collections.abc import Iterator
 from ortools.sat.python import cp_model
 
 from cellcolor.deadline import Deadline
-from cellcolor.solvers.bounds.hubs import most_links
 from cellcolor.solvers.encodings.problem import Pair, Problem
 from cellcolor.solvers.encodings.solving import Encoding, EncodingSolver
 
@@ -45,8 +44,9 @@ class Ranks(Encoding):
         # Per dart: it or a dart before it in its sub-cell leads up.
         self.met = {dart: model.new_bool_var(f"met_{dart}") for dart in problem.darts}
         # Per cell: its one sub-cell is the root of a tree; no join of it is counted.
-        self.root = [model.new_bool_var(f"root_{cell}") for cell in range(len(problem.cells))]
-        self.alone = [model.new_bool_var(f"alone_{cell}") for cell in range(len(problem.cells))]
+        cells = range(len(problem.cells))
+        self.root = {cell: model.new_bool_var(f"root_{cell}") for cell in cells}
+        self.alone = [model.new_bool_var(f"alone_{cell}") for cell in cells]
         # Per dart: the same in all of a sub-cell, greater than its parent's.
         most = len(problem.colors)
         self.rank = {dart: model.new_int_var(0, most, f"rank_{dart}") for dart in problem.darts}
@@ -69,7 +69,7 @@ class Ranks(Encoding):
         ):
             deadline.check()
             group()
-        model.minimize(sum(self.root) + sum(self.alone))
+        model.minimize(sum(self.root.values()) + sum(self.alone))
 
     def links(self) -> Iterator[tuple[Pair, cp_model.IntVar]]:
         """The links."""
@@ -156,28 +156,6 @@ class Ranks(Encoding):
             self.model.add(self.rank[dart] > self.rank[-dart]).only_enforce_if(literal)
         for (one, other), literal in self.link.items():
             self.model.add(self.rank[one] == self.rank[other]).only_enforce_if(literal)
-
-    def _cover(self) -> None:
-        """Each color region in use holds a root, and each cell touches one in use or is alone.
-
-        This is the bound by set cover (docs/bounds.md), which the search can now reason with.
-        """
-        problem = self.problem
-        used = [self.model.new_bool_var(f"used_{n}") for n in range(len(problem.regions))]
-        for (edge, color), literal in self.joined.items():
-            region = problem.region_of[color, problem.cell_of[edge]]
-            self.model.add_implication(literal, used[region])
-        for number, colors in enumerate(problem.cell_colors):
-            touched = [used[problem.region_of[color, number]] for color in sorted(colors)]
-            self.model.add_bool_or([self.alone[number], *touched])
-        self.model.add(sum(self.root) >= sum(used))
-
-    def _most_links(self) -> None:
-        """No cell has more links than can be drawn in it between darts of common colors."""
-        for cell, links in self.links_of.items():
-            if links:
-                darts = self.problem.cells[cell]
-                self.model.add(sum(links) <= most_links([self.problem.colors_of(d) for d in darts]))
 
     def _homes(self) -> None:
         """A segment that reaches the home of its color region has its root there."""

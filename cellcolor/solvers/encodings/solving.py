@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections import defaultdict
 from collections.abc import Iterable
 from importlib.metadata import version
 from math import ceil
@@ -13,6 +14,7 @@ from ortools.sat.python import cp_model
 from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline, OutOfTime
+from cellcolor.solvers.bounds.hubs import most_links
 from cellcolor.solvers.encodings.problem import Pair, Problem
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
 from cellcolor.solvers.interruptible import make_portfolio, solve_interruptibly
@@ -26,9 +28,14 @@ STRATEGIES = "core", "default_lp"
 class Encoding(ABC):
     """A model whose objective is the number of segments."""
 
+    problem: Problem
     model: cp_model.CpModel
     joined: dict[tuple[int, int], cp_model.IntVar]
     """For each edge and color: the edge is joined in that color, and the join is counted."""
+    root: dict[int, cp_model.IntVar]
+    """Literals one of which is true for each tree of sub-cells, by cells or by darts."""
+    alone: list[cp_model.IntVar]
+    """For each cell: no join of it is counted, so it is a segment by itself."""
 
     @abstractmethod
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
@@ -41,6 +48,32 @@ class Encoding(ABC):
     @abstractmethod
     def links(self) -> Iterable[tuple[Pair, cp_model.IntVar]]:
         """Literals of pairs of darts: the second one follows the first in their sub-cell."""
+
+    # Redundant: these two are implied by there being few segments, and make proofs quick.
+
+    def _cover(self) -> None:
+        """Each color region in use holds a root, and each cell touches one in use or is alone.
+
+        This is the bound by set cover (docs/bounds.md), which the search can now reason with.
+        """
+        problem = self.problem
+        used = [self.model.new_bool_var(f"used_{n}") for n in range(len(problem.regions))]
+        for (edge, color), literal in self.joined.items():
+            region = problem.region_of[color, problem.cell_of[edge]]
+            self.model.add_implication(literal, used[region])
+        for number, colors in enumerate(problem.cell_colors):
+            touched = [used[problem.region_of[color, number]] for color in sorted(colors)]
+            self.model.add_bool_or([self.alone[number], *touched])
+        self.model.add(sum(self.root.values()) >= sum(used))
+
+    def _most_links(self) -> None:
+        """No cell has more links than can be drawn in it between darts of common colors."""
+        links_of: dict[int, list[cp_model.IntVar]] = defaultdict(list)
+        for (one, _), link in self.links():
+            links_of[self.problem.cell_of[one]].append(link)
+        for cell, links in links_of.items():
+            darts = self.problem.cells[cell]
+            self.model.add(sum(links) <= most_links([self.problem.colors_of(d) for d in darts]))
 
 
 class EncodingSolver:
