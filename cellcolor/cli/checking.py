@@ -98,7 +98,7 @@ def _check(request: Request, claim: Path) -> Exit:
     try:
         subject = _open(request, request.deadline if is_plan else NEVER)
     except OutOfTime:
-        message = "unknown: the time limit came before there was a surface"
+        message = "unknown: the time limit came before there was a surface; see --time-limit"
         at = InputError(name_of(request.subject), None, message)
         return _no_verdict(request, at, Exit.STOPPED)
     try:
@@ -272,7 +272,7 @@ def _check_trajectory(request: Request, claim: Path) -> Exit:
     except InputError as error:
         raise error if error.file else error.in_file(name_of(request.claim)) from error
     except OutOfTime:
-        message = "unknown: the time limit came before there was a verdict"
+        message = "unknown: the time limit came before there was a verdict; see --time-limit"
         at = InputError(name_of(request.claim), None, message)
         return _no_verdict(request, at, Exit.STOPPED)
     if request.as_json:

@@ -60,7 +60,7 @@ def check(
     left_alone: Place | None = None,
     time_limit: TimeLimit = 60.0,
 ) -> Report | TrajectoryVerdict:
-    """An independent checker's opinion of a solution or of a trajectory.
+    """Check a solution or judge a trajectory, by code that is independent of solver and planner.
 
     A solution's division is checked, and every number in it. It must not contradict what the
     instance says is known (``known``). Lower bounds are verified by their certificates; a bound
@@ -77,7 +77,7 @@ def check(
         left_alone: vertices of the surface that were left out on purpose: a mask (n,), a
             :class:`~cellcolor.questions.places.WorldBox`, or what a labelled surface gives up, such
             as ``instance.surface.json`` of a plan.
-        time_limit: seconds for all of it with a trajectory; None for as long as it takes.
+        time_limit: seconds for a trajectory, including building the scene; None for no limit.
 
     Returns:
         A solution's report has what is wrong (``problems``, each naming its element), the segments

@@ -176,7 +176,7 @@ class TestCheck:
         scene = INSTANCES / "scenes" / "square.toml"
         assert run("check", scene, plan, "--time-limit", "1e-6", "--json") == 3
         out, err = capsys.readouterr()
-        assert "unknown: the time limit came before there was a surface" in err
+        assert "the time limit came before there was a surface; see --time-limit" in err
         assert "the time limit" in json_lines(out)[0]["error"]
 
 

@@ -275,7 +275,8 @@ def _refuse_xacro(text: str, file: Path) -> None:
     without = re.sub(r"<!--.*?-->", "", without, flags=re.DOTALL)
     if re.search(r"</?xacro:|=\s*[\"'][^\"']*\$[{(]", without):
         out = file.name.removesuffix(".xacro").removesuffix(".urdf") + ".urdf"
-        message = f"is a xacro file; expand it first: xacro {file.name} -o {out}"
+        command = f"xacro {file.name} -o {out}"
+        message = f"is a xacro file; expand it first: {command} (without ROS: pip install xacrodoc)"
         raise InputError(str(file), "robot", message)
 
 

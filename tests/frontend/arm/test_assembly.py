@@ -208,7 +208,9 @@ def test_any_frame_on_the_last_link_is_a_flange(name: str) -> None:
     ],
 )
 def test_xacro_is_refused_with_the_command(text: str) -> None:
-    with pytest.raises(InputError, match=r"xacro arm.urdf.xacro -o arm.urdf"):
+    with pytest.raises(
+        InputError, match=r"xacro arm.urdf.xacro -o arm.urdf .without ROS: pip install xacrodoc"
+    ):
         parse_urdf(text, Path("some/arm.urdf.xacro"))
 
 
