@@ -180,6 +180,7 @@ def check_solution(
     costs = None
     if solution.objective is not None:
         try:
+            solution.objective.allow("segments")
             costs = solution.objective.by_color(instance.colors)
         except InputError as error:
             return Report((str(error),), (), None)

@@ -1,4 +1,4 @@
-"""What is minimised: what segments cost together."""
+"""What is minimised: what segments, area left uncovered and change-overs cost together."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Annotated
 
 from annotated_types import Ge, Le
+from pydantic import NonNegativeFloat
 
 from cellcolor.data.value import Value
 from cellcolor.errors import InputError
@@ -18,19 +19,43 @@ so that a lower bound of the number of segments is one of their cost as well."""
 
 @dataclass(frozen=True, slots=True)
 class Objective(Value):
-    """The sum of what segments cost.
+    """What is minimised, a sum; by default the number of segments.
 
     Attributes:
         segments: what a segment costs, by the name of its color; 1 for a color that is not named.
-            With all of them 1, the default, the number of segments is minimised.
+        uncovered_price: what it costs to leave everything uncovered that can be covered, in
+            segments; a share of it costs that share. None if everything has to be covered.
+        change_over: what a change from one set-up to the next costs, in lift-offs, 1 or more, since
+            it takes a lift-off. None for the fewest set-ups first, whatever that costs.
     """
 
     segments: dict[str, Cost] = field(default_factory=dict, hash=False)
+    uncovered_price: NonNegativeFloat | None = None
+    change_over: Annotated[float, Ge(1)] | None = None
 
     @property
     def is_default(self) -> bool:
-        """Whether every segment costs 1."""
-        return all(cost == 1 for cost in self.segments.values())
+        """Whether it is the number of segments."""
+        return not self.asked
+
+    @property
+    def asked(self) -> tuple[str, ...]:
+        """The names of the attributes that say something else than the default."""
+        costs = any(cost != 1 for cost in self.segments.values())
+        prices = ("uncovered_price", "change_over")
+        others = tuple(name for name in prices if getattr(self, name) is not None)
+        return (("segments",) if costs else ()) + others
+
+    def allow(self, *names: str) -> None:
+        """Refuse what is asked besides some attributes.
+
+        Raises:
+            InputError: something else than these is asked for.
+        """
+        for name in self.asked:
+            if name not in names:
+                message = f"cannot be minimized here, only {' or '.join(names)}"
+                raise InputError(None, f"objective.{name}", message)
 
     def by_color(self, colors: Sequence[str]) -> tuple[int, ...]:
         """What a segment of each color costs, in the order of an instance's colors.
@@ -44,6 +69,20 @@ class Objective(Value):
                 message = f"names the color {name!r}, the instance has {known}"
                 raise InputError(None, "objective.segments", message)
         return tuple(self.segments.get(name, 1) for name in colors)
+
+    def total(self, segments: float, uncovered: float = 0.0, set_ups: int = 0) -> float:
+        """The sum.
+
+        Args:
+            segments: what they cost, or any number in their place that differs from it by a fixed
+                one, such as that of lift-offs.
+            uncovered: the share that is left uncovered, 0 to 1.
+            set_ups: how many there are. A change-over counts as what it costs beyond the lift-off
+                that it takes, and one is counted before the first set-up.
+        """
+        area = 0.0 if self.uncovered_price is None else self.uncovered_price * uncovered
+        extra = 0.0 if self.change_over is None else self.change_over - 1
+        return segments + area + extra * set_ups
 
     def __str__(self) -> str:
         if self.is_default:

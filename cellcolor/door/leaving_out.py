@@ -10,9 +10,10 @@ import numpy as np
 
 from cellcolor.data.cells_and_edges import OUTSIDE
 from cellcolor.data.instance import Instance
+from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
-from cellcolor.questions.front import Front, FrontPoint
+from cellcolor.questions.front import Front, FrontChoice, FrontPoint
 from cellcolor.questions.places import Place, chosen
 from cellcolor.solvers.interface import Options
 
@@ -32,25 +33,32 @@ class Wanted:
             all of it.
         required: what has to be covered whatever the share leaves out.
         left_alone: what must not be covered.
+        objective: without a share, its price of what is left uncovered decides.
 
     Raises:
-        InputError: the share is not from 0 to 1, or something is required without a share.
+        InputError: the share is not from 0 to 1, or something is required without share and price.
     """
 
     cover: float | None = None
     required: Place | None = None
     left_alone: Place | None = None
+    objective: Objective = FEWEST_SEGMENTS
 
     def __post_init__(self) -> None:
         if self.cover is not None and not 0 <= self.cover <= 1:
             raise InputError(None, "cover", f"must be from 0 to 1, is {self.cover:g}")
-        if self.cover is None and self.required is not None:
+        if self.whole and self.required is not None:
             raise InputError(None, "required", "goes with cover: without it everything has to be")
+
+    @property
+    def whole(self) -> bool:
+        """Whether all that is not left alone has to be covered."""
+        return self.cover is None and self.objective.uncovered_price is None
 
     @property
     def everything(self) -> bool:
         """Whether nothing is left out."""
-        return self.cover is None and self.left_alone is None
+        return self.whole and self.left_alone is None
 
 
 def rest_of(
@@ -82,12 +90,17 @@ def rest_of(
         whole = subject.surface
         subject = left_alone(subject, wanted.left_alone)
         notes = (_alone_in_words(whole, subject.surface),)
-    if wanted.cover is None or subject.graph(options.deadline).nothing_to_cover:
+    if wanted.whole or subject.graph(options.deadline).nothing_to_cover:
         return subject, notes, 1.0
     options = replace(options, deadline=options.deadline.share(_FOR_FRONT))
     front = front_on(subject, None, wanted.required, options, progress)
-    point = front.at_least(wanted.cover)
-    notes += (_share_in_words(front, point, wanted.cover),)
+    if wanted.cover is None:
+        choice = front.cheapest(wanted.objective)
+        point = choice.point
+        notes += (_price_in_words(choice, wanted.objective),)
+    else:
+        point = front.at_least(wanted.cover)
+        notes += (_share_in_words(front, point, wanted.cover),)
     return _without_cells(subject, point.left_out), notes, point.covered_share
 
 
@@ -169,6 +182,16 @@ def _share_in_words(front: Front, point: FrontPoint, cover: float) -> str:
         return f"{text}; it is not proved that fewer segments do not cover as much."
     sure = "any division of the surface" if fewer[-1].holds_for_surface else "search space paper"
     return f"{text}; with one segment fewer it is at most {most:.1%}, proved for {sure}."
+
+
+def _price_in_words(choice: FrontChoice, objective: Objective) -> str:
+    text = (
+        f"{choice.point.covered_share:.1%} of what can be covered has to be: if leaving out all of "
+        f"it costs as much as {objective.uncovered_price:g} lift-offs, this costs least"
+    )
+    if choice.proved_for_surface:
+        return f"{text}, proved for any division of the surface."
+    return f"{text}, {'proved for search space paper' if choice.proved else 'not proved'}."
 
 
 def _cells(subject: Subject) -> np.ndarray:

@@ -8,6 +8,7 @@ from dataclasses import replace
 from os import PathLike
 from typing import TYPE_CHECKING
 
+from cellcolor.data.objective import Objective
 from cellcolor.deadline import NEVER, Deadline, OutOfTime, TimeLimit
 from cellcolor.door.drawing import save_plot
 from cellcolor.door.extras import extras_for
@@ -98,9 +99,7 @@ def place(
             raise InputError(None, name, f"must be 1 or more, is {number}")
     if cover is not None and not 0 <= cover <= 1:
         raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
-    if not 0 <= uncovered_price < float("inf"):
-        message = f"must be a number from 0 on, is {uncovered_price:g}"
-        raise InputError(None, "uncovered_price", message)
+    objective = Objective(uncovered_price=uncovered_price)
     if base and leeway is not None:
         raise InputError(None, "leeway", "is asked of a part only, not of a moved base")
     if cover is None and uncovered_price:
@@ -136,7 +135,7 @@ def place(
     def best_of(found: Sequence[PlacedMinimum], count: int, enough: float) -> list[PlacedMinimum]:
         """The best ones, none of them next to a better one."""
         chosen: list[PlacedMinimum] = []
-        for row in sorted(found, key=lambda row: row.rank(enough, uncovered_price)):
+        for row in sorted(found, key=lambda row: row.rank(enough, objective)):
             apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
             if row.segments is not None and apart and len(chosen) < count:
                 chosen.append(row)
@@ -195,9 +194,7 @@ def place(
     complete &= many.complete
     rest = (*tried, *others)
     best_ones = tuple(listed)
-    return Placements(
-        own.name, asked, here, best_ones, rest, complete, tiled, base, uncovered_price
-    )
+    return Placements(own.name, asked, here, best_ones, rest, complete, tiled, base, objective)
 
 
 def save_map(found: Placements, path: str | PathLike[str]) -> None:

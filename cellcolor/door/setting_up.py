@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from cellcolor.data.objective import Objective
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import extras_for
 from cellcolor.door.painting import paint
@@ -129,9 +130,7 @@ def setups(
     """
     if not 0 <= cover <= 1:
         raise InputError(None, "cover", f"must be from 0 to 1, is {cover:g}")
-    if change_over is not None and not 1 <= change_over < float("inf"):
-        message = f"must be 1 or more, since it takes a lift-off, is {change_over:g}"
-        raise InputError(None, "change_over", message)
+    objective = Objective(change_over=change_over)
     deadline = Deadline.of(time_limit)
     poses = _poses(at)
     given = [scene_or_file(one) for one in (scene, *others)]
@@ -144,7 +143,7 @@ def setups(
     building, by_hand = deadline.share(_FOR_BUILDING), not isinstance(at, Placements)
     found = candidates_of(scenes, poses, building, progress, by_hand=by_hand)
     options = Options(deadline=deadline, workers=workers, seed=seed)
-    answer = plan_of(found, cover, change_over, options, progress)
+    answer = plan_of(found, cover, objective, options, progress)
     return ChosenSetUps(answer, tuple(found.scenes[one.number - 1] for one in answer.set_ups))
 
 

@@ -113,7 +113,9 @@ def solve(
         seed: for all random choices.
         fewest_cuts: of the divisions with the fewest segments find one with the fewest cutting
             paths.
-        objective: what segments cost by color, where their number is not what matters.
+        objective: what segments cost by color, or what it costs to leave area uncovered, where the
+            number of segments is not all that matters. What is best left out is settled first, as
+            by ``tradeoff``.
         start: a solution to start from, or its file.
         cover: the share of the area that can be covered and is not left alone which has to be, 0
             to 1; None for all of it. What is best left out is settled first, as by ``tradeoff``.
@@ -131,12 +133,14 @@ def solve(
         InputError: what is to be solved, or an option, cannot be used.
         OutOfTime: the time limit came before any division was found.
     """
-    wanted = Wanted(cover, required, left_alone)
+    objective.allow("segments", "uncovered_price")
+    wanted = Wanted(cover, required, left_alone, objective)
     if refine_until_stable and not (wanted.everything and start is None):
         message = "goes without cover, left_alone and start: they are of a single mesh"
         raise InputError(None, "refine_until_stable", message)
-    if not objective.is_default and (cover is not None or refine_until_stable):
-        message = "other than the number of segments goes without cover and refine_until_stable"
+    several = len(objective.asked) > 1
+    if several or (objective.asked and (cover is not None or refine_until_stable)):
+        message = "takes costs of colors or a price of area, without cover and refine_until_stable"
         raise InputError(None, "objective", message)
     deadline = Deadline.of(time_limit)
     subject = open_subject(source, deadline)
@@ -152,7 +156,7 @@ def solve(
         seed=seed,
         start=None if start is None else start_from(start, instance, strands),
         fewest_cuts=fewest_cuts,
-        objective=objective,
+        objective=replace(objective, uncovered_price=None),
     )
     refinement = None
     if refine_until_stable:

@@ -22,6 +22,7 @@ import numpy as np
 from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE
+from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
@@ -113,7 +114,7 @@ def side_by_side(
 def choose(
     surfaces: Sequence[LabelledSurface],
     cover: float,
-    change_over: float | None,
+    objective: Objective,
     options: Options,
     progress: Callable[[str], None] | None = None,
 ) -> Choice:
@@ -122,27 +123,27 @@ def choose(
     Args:
         surfaces: of each set-up that may be used, all on one mesh.
         cover: the share that has to be covered of the area that any of them reaches, 0 to 1.
-        change_over: what a change from one set-up to the next costs, in lift-offs, 1 or more; None
-            for the fewest set-ups first, whatever that costs in lift-offs.
+        objective: what a change-over costs.
         options: deadline, workers and seed; the search space is ``paper``.
         progress: told what is being done.
 
     Raises:
-        InputError: nothing is reached.
+        InputError: nothing is reached, or the objective asks for something else as well.
         OutOfTime: the deadline came before there was any choice.
     """
+    objective.allow("change_over")
+    in_turn = objective.change_over is None  # set-ups first, then segments
     report = progress or (lambda _: None)
     asked = _Asked(surfaces, cover, options)
     report("the fewest set-ups")
     fewest = asked.fewest_set_ups()
-    price = 1.0 if change_over is None else change_over
-    sets = None if change_over is not None else asked.sets_of(fewest)
+    sets = asked.sets_of(fewest) if in_turn else None
     if sets is None:
-        number = None if change_over is not None else fewest
-        masters = [_Master(asked, range(len(surfaces)), price, number)]
+        number = fewest if in_turn else None
+        masters = [_Master(asked, range(len(surfaces)), objective, number)]
     else:
         report(f"{len(sets)} sets of {fewest}")
-        masters = [_Master(asked, set_ups, price) for set_ups in sets]
+        masters = [_Master(asked, set_ups, objective) for set_ups in sets]
     best: Choice | None = None
     cost, tried = np.inf, 0
     queue = [(0.0, place) for place in range(len(masters))]  # by what each costs at least
@@ -167,7 +168,7 @@ def choose(
             solved, needed = asked.solved(chosen)
             masters[place].learn(chosen, needed)
             if solved is not None:
-                own = (solved.solution.segments or 0) + (price - 1) * len(solved.set_ups)
+                own = objective.total(solved.solution.segments or 0, 0.0, len(solved.set_ups))
                 if own < cost:
                     best, cost = solved, own
     except OutOfTime:
@@ -176,7 +177,7 @@ def choose(
     if best is None:
         raise OutOfTime
     proved = queue[0][0] >= cost - _SAME
-    least = queue[0][0] - (price - 1) * len(best.set_ups)
+    least = queue[0][0] - objective.total(0, 0.0, len(best.set_ups))
     return replace(
         best,
         fewest_set_ups=fewest,
@@ -319,17 +320,22 @@ class _Master:
     """A model that chooses color regions of some set-ups, so that they cover enough."""
 
     def __init__(
-        self, asked: _Asked, set_ups: Collection[int], price: float, number: int | None = None
+        self,
+        asked: _Asked,
+        set_ups: Collection[int],
+        objective: Objective,
+        number: int | None = None,
     ) -> None:
         """A model that is not built before it is asked.
 
         Args:
             asked: the regions.
             set_ups: those that may be used.
-            price: of a change-over, in lift-offs.
+            objective: what a change-over costs.
             number: of set-ups to be used; None for any.
         """
-        self._asked, self._set_ups, self._price, self._number = asked, set_ups, price, number
+        self._asked, self._set_ups, self._number = asked, set_ups, number
+        self._extra = round(objective.total(0, 0.0, 1) * _PRICE_UNIT)
         self._model: cp_model.CpModel | None = None
         self.least = 0.0
         """No choice costs less, in segments and in what change-overs cost beyond one each."""
@@ -355,8 +361,7 @@ class _Master:
         asked.cover_enough(model, self._regions, of_vertex)
         if self._number is not None:
             model.add(sum(used.values()) == self._number)
-        extra = round((self._price - 1) * _PRICE_UNIT)
-        model.minimize(_PRICE_UNIT * self._segments + extra * sum(used.values()))
+        model.minimize(_PRICE_UNIT * self._segments + self._extra * sum(used.values()))
         return model
 
     def next_choice(self) -> frozenset[int]:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from typing import Any
 
 from cellcolor.data.instance import Instance
+from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
 from cellcolor.data.wording import count
 from cellcolor.errors import InputError
@@ -153,31 +154,17 @@ class Front:
                 return point
         raise InputError(None, "share", f"no division is known that covers {100 * share:g} %")
 
-    def cheapest(self, lift_off_price: float, uncovered_price: float) -> FrontPoint:
-        """The point with the least weighted sum of lift-offs and what is left uncovered.
+    def cheapest(self, objective: Objective) -> FrontChoice:
+        """The least sum of lift-offs and of what is left uncovered, and whether none is less.
 
         Args:
-            lift_off_price: of one lift-off.
-            uncovered_price: of all that can be covered, if all of it were left out. Where it is
-                priced by the square metre, that price times ``weight``.
+            objective: its ``uncovered_price`` is of all that can be covered.
 
         Raises:
-            InputError: a price is negative or no number, or nothing is known.
+            InputError: it asks for something else as well, or nothing is known.
         """
-        for name, price in (
-            ("lift_off_price", lift_off_price),
-            ("uncovered_price", uncovered_price),
-        ):
-            if not 0 <= price < float("inf"):
-                raise InputError(None, name, f"must be a number from 0 on, is {price:g}")
-        if not self.points:
-            raise InputError(None, None, "no division is known")
-        return min(
-            self.points,
-            key=lambda point: (
-                point.lift_offs * lift_off_price + (1 - point.covered_share) * uncovered_price
-            ),
-        )
+        objective.allow("uncovered_price")
+        return self._cheapest(lambda lift_offs, share: objective.total(lift_offs, 1 - share))
 
     def fewest_for(self, share: float) -> FrontChoice:
         """The fewest lift-offs that cover a share, and whether it is proved that no fewer do.
@@ -199,19 +186,30 @@ class Front:
         Raises:
             InputError: the price is negative or no number, or the graph has no areas.
         """
+        if not 0 <= lift_off_cm2 < inf:
+            raise InputError(None, "price", f"must be a number from 0 on, is {lift_off_cm2:g}")
         if any(cell.area is None for cell in self.instance.cells):
             raise InputError(None, "price", "is one of area, and the cells of this graph have none")
         whole = _CM2 * self.weight
-        point = self.cheapest(lift_off_cm2, whole)
 
         def cost(lift_offs: int, covered: float) -> float:
             return lift_off_cm2 * lift_offs + whole * (1 - covered)
 
-        return self._choice(point, cost, cost(point.lift_offs, point.covered_share))
+        found = self._cheapest(cost)
+        return replace(found, cost_cm2=cost(found.point.lift_offs, found.point.covered_share))
 
-    def _choice(
-        self, point: FrontPoint, cost: Callable[[int, float], float], cost_cm2: float | None = None
-    ) -> FrontChoice:
+    def _cheapest(self, cost: Callable[[int, float], float]) -> FrontChoice:
+        """The point that costs least, of its lift-offs and the share that it covers.
+
+        Raises:
+            InputError: nothing is known.
+        """
+        if not self.points:
+            raise InputError(None, None, "no division is known")
+        point = min(self.points, key=lambda one: cost(one.lift_offs, one.covered_share))
+        return self._choice(point, cost)
+
+    def _choice(self, point: FrontPoint, cost: Callable[[int, float], float]) -> FrontChoice:
         """A point, and whether no division costs less: of so many lift-offs that cover a share."""
         own = cost(point.lift_offs, point.covered_share)
 
@@ -220,7 +218,7 @@ class Front:
             least = min(cost(lift_offs, share) for lift_offs, share in enumerate([*known, 1.0]))
             return own <= least + _ROUNDING * max(1.0, abs(own))
 
-        return FrontChoice(point, proved(on_surface=False), proved(on_surface=True), cost_cm2)
+        return FrontChoice(point, proved(on_surface=False), proved(on_surface=True))
 
     def __str__(self) -> str:
         return "\n".join([f"{self.instance.name}: what so many lift-offs cover", *map(str, self)])

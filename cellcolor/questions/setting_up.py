@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from cellcolor.data.objective import Objective
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
@@ -146,12 +147,12 @@ def _check_same_part(part: LabelledSurface | None, prepared: PreparedScene) -> N
 def plan_of(
     candidates: Candidates,
     cover: float,
-    change_over: float | None,
+    objective: Objective,
     options: Options,
     progress: Callable[[str], None] | None = None,
 ) -> SetUpPlan:
     """The set-ups to use; see :func:`~cellcolor.questions.choosing_set_ups.choose`."""
-    choice = choose(candidates.surfaces, cover, change_over, options, progress)
+    choice = choose(candidates.surfaces, cover, objective, options, progress)
     report = progress or (lambda _: None)
     report("one set-up alone")
     areas = choice.surface.vertex_areas

@@ -55,6 +55,7 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
     ):
         if asked and not can:
             raise InputError(None, field, f"is more than the solver {name} can do")
+    options.objective.allow("segments")
     if not options.objective.is_default and (schemes or options.fewest_cuts):
         field = "schemes" if schemes else "fewest_cuts"
         raise InputError(None, field, "goes with the fewest segments, not with another objective")

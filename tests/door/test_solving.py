@@ -207,7 +207,15 @@ def test_a_notebook_says_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> Non
         ({"strands": 2}, "strands: must be 1 in search space 'paper'"),
         ({"solver": "dfs", "fewest_cuts": True}, "fewest_cuts"),
         ({"objective": Objective({"pink": 2})}, "objective.segments: names the color 'pink'"),
-        ({"objective": Objective({"red": 2}), "cover": 0.5}, "objective: other than the number"),
+        ({"objective": Objective({"red": 2}), "cover": 0.5}, "objective: takes costs of colors or"),
+        (
+            {"objective": Objective(change_over=2.0)},
+            "objective.change_over: cannot be minimized here",
+        ),
+        (
+            {"objective": Objective({"red": 2}, uncovered_price=3.0)},
+            "objective: takes costs of colors or a price of area",
+        ),
     ],
     ids=str,
 )

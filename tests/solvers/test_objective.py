@@ -160,6 +160,7 @@ def test_what_is_false_is_refused() -> None:
         ({"cost_lower_bound": 1}, "cost_lower_bound: says 1, the greatest of bounds is 2"),
         ({"objective": Objective({"red": 3, "blue": 2})}, "cost: says 2"),
         ({"objective": Objective({"pink": 3})}, "objective.segments: names the color 'pink'"),
+        ({"objective": Objective({"red": 3}, 2.0)}, "objective.uncovered_price: cannot be min"),
         ({"bounds": bounds[:-1], "cost_lower_bound": 1}, "status: a division that costs 2 is not"),
         (
             {"bounds": (*bounds, replace(cover, value=3)), "cost_lower_bound": 3},
@@ -218,6 +219,12 @@ def test_what_does_not_go_together_is_refused() -> None:
         next(enumerate_schemes(TWO, Options(objective=objective), "cp-sat", 1))
     with pytest.raises(InputError, match="names the color 'pink', the instance has 'red', 'green'"):
         solve(TWO, Options(objective=Objective({"pink": 2})))
+    for other in (Objective(uncovered_price=2.0), Objective(change_over=1.0)):
+        with pytest.raises(InputError, match="cannot be minimized here, only segments"):
+            solve(TWO, Options(objective=other))
+    for prices in ({"uncovered_price": -1.0}, {"change_over": 0.5}, {"change_over": float("inf")}):
+        with pytest.raises(InputError, match=next(iter(prices))):
+            Objective(**prices)
     for cost in (0, -1, 1.5, True, 10**7):
         with pytest.raises(InputError, match="segments"):
             Objective({"red": cost})  # type: ignore[dict-item]
