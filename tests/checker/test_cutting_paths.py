@@ -12,9 +12,9 @@ from holes import fewest, holed
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 from relabelled import mirrored, renamed, turned
+from rooms import graph, petal_cells
 
 from cellcolor.checker.cutting_paths import cutting_paths
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SearchSpace, number_segments
 from cellcolor.deadline import Deadline
@@ -35,15 +35,7 @@ SEEDS = st.integers(0, 10**6)
 def petals(loops: Sequence[Sequence[int]], colors: Sequence[int]) -> Instance:
     """A cell of all colors, with a cell of one color across each of its darts 1, 2, …"""
     many = tuple(range(max(colors, default=0) + 1))
-    return Instance(
-        "petals",
-        tuple(f"c{color}" for color in many),
-        (
-            Cell(0, many, tuple(map(tuple, loops))),
-            *(Cell(dart, (color,), ((-dart,),)) for dart, color in enumerate(colors, start=1)),
-        ),
-        tuple(Edge(dart, 0, dart) for dart in range(1, len(colors) + 1)),
-    )
+    return graph((many, *loops), *petal_cells(*colors))
 
 
 def division(instance: Instance, blocks: Iterable[Iterable[int]]) -> Division:

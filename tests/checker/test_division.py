@@ -7,9 +7,10 @@ from collections.abc import Callable
 import pytest
 from divisions import BLUE, RED, SPLIT, divide, split_solution
 from library import PAPER
+from rooms import graph, hub, petal_cells
 
 from cellcolor.checker.division import check_division, check_solution
-from cellcolor.data.cells_and_edges import Cell, DartName, Edge
+from cellcolor.data.cells_and_edges import DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 
@@ -78,22 +79,13 @@ def test_divisions_are_checked(division: Callable[[], Division], expected: str) 
 
 
 def test_cuts_may_not_cross() -> None:
-    petals = [RED, BLUE, RED, BLUE]
-    hub = Instance(
-        "hub",
-        ("red", "blue"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2, 3, 4),)),
-            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(petals, start=1)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, 5)),
-    )
-    outer = [[(color, [-i], color)] for i, color in enumerate(petals, start=1)]
+    around = hub(RED, BLUE, RED, BLUE)
+    outer = [[(color, [-i], color)] for i, color in enumerate((RED, BLUE, RED, BLUE), start=1)]
     crossed = divide([(RED, [1, 3], 0), (BLUE, [2, 4], 1)], *outer)  # type: ignore[arg-type]
-    assert check_division(hub, crossed).problems == ("cells[0].subcells: 0 and 1 cross",)
+    assert check_division(around, crossed).problems == ("cells[0].subcells: 0 and 1 cross",)
     blue_apart = [[(RED, [-1], 0)], [(BLUE, [], 1)], [(RED, [-3], 0)], [(BLUE, [], 2)]]
     legal = divide([(RED, [1, 3], 0)], *blue_apart)  # type: ignore[arg-type]
-    assert check_division(hub, legal).segments == 3
+    assert check_division(around, legal).segments == 3
 
 
 def test_a_color_that_cannot_continue_does_not_join() -> None:
@@ -102,12 +94,7 @@ def test_a_color_that_cannot_continue_does_not_join() -> None:
     assert check_division(CRACK, right).segments == 1
     dead = divide([(RED, [1, 2], 0)], [(RED, [-1, -2], 0)])
     assert "1 is not a live dart" in check_division(CRACK, dead).problems[0]
-    partly = Instance(
-        "partly",
-        ("red", "blue"),
-        (Cell(0, (RED, BLUE), ((1,),)), Cell(1, (RED, BLUE), ((-1,),))),
-        (Edge(1, 0, 1, (RED,)),),
-    )
+    partly = graph(((RED, BLUE), (1,)), ((RED, BLUE), (-1,)), cracks={1: (RED,)})
     blue = divide([(BLUE, [1], 0)], [(BLUE, [-1], 0)])
     assert "edge 1: color 1 cannot continue across it" in check_division(partly, blue).problems
 
@@ -149,12 +136,7 @@ def test_an_edge_between_two_cells_of_one_color_has_to_be_joined() -> None:
 @pytest.mark.parametrize("colors", [(RED, BLUE), (BLUE, RED)])
 def test_sub_cells_without_darts_are_alone(colors: tuple[int, int]) -> None:
     """Which of the two would the edge show? Once that hung on their order."""
-    pair = Instance(
-        "pair",
-        ("red", "blue"),
-        (Cell(0, (RED, BLUE), ((1,),)), Cell(1, (RED, BLUE), ((-1,),))),
-        (Edge(1, 0, 1),),
-    )
+    pair = graph(((RED, BLUE), (1,)), ((RED, BLUE), (-1,)))
     both = divide([(colors[0], [], 0), (colors[1], [], 1)], [(RED, [], 2)])
     assert check_division(pair, both).problems == (
         "cells[0].subcells[0].darts: empty, though the cell has other sub-cells",
@@ -178,15 +160,7 @@ def test_superfluous_sub_cells_are_legal_but_no_scheme() -> None:
 
 
 def test_a_cut_between_equal_colors_is_legal_but_no_scheme() -> None:
-    ring = Instance(
-        "four red petals",
-        ("red",),
-        (
-            Cell(0, (RED,), ((1, 2, 3, 4),)),
-            *(Cell(i, (RED,), ((-i,),)) for i in range(1, 5)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, 5)),
-    )
+    ring = graph(((RED,), (1, 2, 3, 4)), *petal_cells(RED, RED, RED, RED))
     division = divide(
         [(RED, [1, 2], 0), (RED, [3, 4], 1)], *([(RED, [-i], (i - 1) // 2)] for i in range(1, 5))
     )

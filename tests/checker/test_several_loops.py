@@ -6,9 +6,10 @@ from dataclasses import replace
 
 from divisions import BLUE, RED, divide
 from library import PAPER
+from rooms import graph, petal_cells
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.cells_and_edges import Cell, DartName, Edge
+from cellcolor.data.cells_and_edges import DartName
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, Seam
 
@@ -58,15 +59,8 @@ def test_zeros_on_loops_are_read_without_seams() -> None:
     A cell is cut into a red part and a blue one. A red island that is not joined lies in the blue
     part; in a cell that is red all over there is no place for it.
     """
-    instance = Instance(
-        "island",
-        ("red", "blue"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2, 3, 4), (5,))),
-            *(Cell(i, (RED if i < 3 else BLUE,), ((-i,),)) for i in range(1, 5)),
-            Cell(5, (RED, BLUE), ((-5,),)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, 6)),
+    instance = graph(
+        ((RED, BLUE), (1, 2, 3, 4), (5,)), *petal_cells(RED, RED, BLUE, BLUE, (RED, BLUE))
     )
     # The seam leaves between the two red darts, so that in the cyclic list red is all around it.
     seam = Seam(6, 0, 1, 5, 1)

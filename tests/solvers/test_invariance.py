@@ -8,9 +8,9 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from relabelled import mirrored, renamed, turned
+from rooms import graph, petal_cells
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs
@@ -64,15 +64,8 @@ def test_a_closed_surface_with_several_loops(seed: int) -> None:
     """A sphere: one cell of two colors around patches, each patch a loop of its own."""
     rng = random.Random(seed)
     patches = [rng.randrange(2) for _ in range(rng.randint(1, 4))]
-    instance = Instance(
-        "sphere",
-        ("red", "blue"),
-        (
-            Cell(0, (0, 1), tuple((edge,) for edge in range(1, len(patches) + 1))),
-            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(patches, start=1)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, len(patches) + 1)),
-    )
+    loops = ((edge,) for edge in range(1, len(patches) + 1))
+    instance = graph(((0, 1), *loops), *petal_cells(*patches))
     # Discs in a sphere do not hinder each other: every color's patches can be joined.
     assert minimum_of(instance, 1) == len(set(patches))
     same_minimum(instance, seed)

@@ -13,10 +13,10 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from relabelled import turned
+from rooms import graph, petal_cells
 
 from cellcolor.checker.division import check_scheme
 from cellcolor.checker.drawable import can_be_drawn
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
 from cellcolor.decomposition import decompose
@@ -93,15 +93,7 @@ def test_what_can_be_drawn(labels: list[int], places: list[int]) -> None:
 
 def around(loops: list[list[int]], colors: list[int]) -> Instance:
     """A red and blue cell with a cell of one color across each of its darts 1, 2, …"""
-    return Instance(
-        "around",
-        ("red", "blue"),
-        (
-            Cell(0, (RED, BLUE), tuple(map(tuple, loops))),
-            *(Cell(dart, (color,), ((-dart,),)) for dart, color in enumerate(colors, start=1)),
-        ),
-        tuple(Edge(dart, 0, dart) for dart in range(1, len(colors) + 1)),
-    )
+    return graph(((RED, BLUE), *loops), *petal_cells(*colors))
 
 
 def divided(instance: Instance, *blocks: list[int]) -> Division:

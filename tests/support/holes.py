@@ -14,8 +14,9 @@ from collections.abc import Iterator, Sequence
 from functools import cache
 
 import networkx as nx
+from rooms import graph
 
-from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, number_segments, scheme_key
 
@@ -228,16 +229,5 @@ def holed(seed: int, darts: int, loops: int, colors: int) -> Instance:
             petals.append([dart])
     many = tuple(range(colors))
     sets = [tuple(sorted(rng.sample(many, 1 + (rng.random() < 0.2)))) for _ in petals]
-    cell_of = {dart: n for n, petal in enumerate(petals, start=1) for dart in petal}
-    return Instance(
-        f"holed_{seed}",
-        tuple(f"c{color}" for color in many),
-        (
-            Cell(0, many, tuple(map(tuple, borders))),
-            *(
-                Cell(n, own, (tuple(-dart for dart in petal),))
-                for n, (own, petal) in enumerate(zip(sets, petals, strict=True), start=1)
-            ),
-        ),
-        tuple(Edge(dart, 0, cell_of[dart]) for dart in range(1, darts + 1)),
-    )
+    around = [(own, [-dart for dart in petal]) for own, petal in zip(sets, petals, strict=True)]
+    return graph((many, *borders), *around)

@@ -5,13 +5,14 @@ Hubs with petals: a cell of all colors, and cells of one color or more all round
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import chain, count
 
 import networkx as nx
 from hypothesis import strategies as st
 from meshes import grid_faces, grid_points, surface
 
-from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.lab.families.meshes import make_mesh
@@ -19,19 +20,41 @@ from cellcolor.lab.families.meshes import make_mesh
 RED, BLUE, GREEN = 0, 1, 2
 
 
+def graph(
+    *cells: Sequence[Sequence[int]], cracks: Mapping[int, tuple[int, ...]] | None = None
+) -> Instance:
+    """Each cell as its colors and its loops; edges lie between the cells that have their darts.
+
+    ``cracks`` has the joinable colors of edges that are cracked in some.
+    """
+    cell_of = {dart: n for n, (_, *loops) in enumerate(cells) for loop in loops for dart in loop}
+    return Instance(
+        "graph",
+        tuple(f"color {c}" for c in range(1 + max(max(colors) for colors, *_ in cells))),
+        tuple(
+            Cell(n, tuple(colors), tuple(map(tuple, loops)))
+            for n, (colors, *loops) in enumerate(cells)
+        ),
+        tuple(
+            Edge(e, cell_of.get(e, OUTSIDE), cell_of.get(-e, OUTSIDE), (cracks or {}).get(e))
+            for e in sorted(set(map(abs, cell_of)))
+        ),
+    )
+
+
+def petal_cells(*colors: int | Sequence[int]) -> list[Sequence[Sequence[int]]]:
+    """Cells for ``graph`` in these colors, across the darts 1, 2, … of another cell."""
+    return [
+        ((own,) if isinstance(own, int) else own, (-dart,))
+        for dart, own in enumerate(colors, start=1)
+    ]
+
+
 def room(*loops: Sequence[int | tuple[int, ...]]) -> Instance:
     """A cell of all colors with petals round its loops, numbered from 1 as they come."""
-    petals = [(own,) if isinstance(own, int) else own for loop in loops for own in loop]
-    numbers = iter(range(1, len(petals) + 1))
-    return Instance(
-        "room",
-        ("red", "blue", "green"),
-        (
-            Cell(0, (RED, BLUE, GREEN), tuple(tuple(next(numbers) for _ in lp) for lp in loops)),
-            *(Cell(n, own, ((-n,),)) for n, own in enumerate(petals, start=1)),
-        ),
-        tuple(Edge(n, 0, n) for n in range(1, len(petals) + 1)),
-    )
+    numbers = count(1)
+    own = [[next(numbers) for _ in loop] for loop in loops]
+    return graph(((RED, BLUE, GREEN), *own), *petal_cells(*chain(*loops)))
 
 
 ISLAND_BETWEEN = room((RED, BLUE, RED, GREEN), (BLUE, GREEN))
@@ -127,19 +150,11 @@ def crossed_rings(draw: st.DrawFn) -> LabelledSurface:
     return LabelledSurface("rings", ("red", "blue", "green"), vertices, faces, tuple(labels))
 
 
-def hub(*petals: int | tuple[int, ...]) -> Instance:
+def hub(*colors: int | tuple[int, ...]) -> Instance:
     """A cell of all colors, two at least, with petals in these colors, each in one or more."""
-    own = [(its,) if isinstance(its, int) else its for its in petals]
-    colors = tuple(range(max(1, *map(max, own)) + 1))
-    return Instance(
-        "hub",
-        tuple(f"color {c}" for c in colors),
-        (
-            Cell(0, colors, (tuple(range(1, len(petals) + 1)),)),
-            *(Cell(i, petal, ((-i,),)) for i, petal in enumerate(own, start=1)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, len(petals) + 1)),
-    )
+    around = petal_cells(*colors)
+    every = range(max(1, *(max(own) for own, _ in around)) + 1)
+    return graph((every, range(1, len(colors) + 1)), *around)
 
 
 def four_colors_in_turn(petals: int) -> Instance:

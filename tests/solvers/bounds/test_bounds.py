@@ -10,6 +10,7 @@ from exhaustive_minima import minimum, vertex_minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
+from rooms import graph
 
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
@@ -96,23 +97,13 @@ def test_a_color_is_not_dominated_by_one_that_an_edge_keeps_out() -> None:
     There a green corridor from 3 to 4 would be in its way: red is needed for 2 segments.
     """
     green = 2
-    instance = Instance(
-        "way round",
-        ("red", "blue", "green"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2),)),
-            Cell(1, (RED, BLUE), ((-1, 3),)),
-            Cell(2, (BLUE, green), ((-2, 4, -3, 5),)),
-            Cell(3, (green,), ((-4,),)),
-            Cell(4, (green,), ((-5,),)),
-        ),
-        (
-            Edge(1, 0, 1, (RED,)),
-            Edge(2, 0, 2),
-            Edge(3, 1, 2),
-            Edge(4, 2, 3),
-            Edge(5, 2, 4),
-        ),
+    instance = graph(
+        ((RED, BLUE), (1, 2)),
+        ((RED, BLUE), (-1, 3)),
+        ((BLUE, green), (-2, 4, -3, 5)),
+        ((green,), (-4,)),
+        ((green,), (-5,)),
+        cracks={1: (RED,)},
     )
     assert minimum(instance) == 2
     assert solve(instance, Options()).segments == 2
@@ -184,16 +175,11 @@ def test_two_cells_that_nothing_separates_become_one() -> None:
 
 def test_merging_around_a_cell_leaves_a_hole() -> None:
     """Two half rings of red and blue between a cell inside and one outside."""
-    instance = Instance(
-        "ring",
-        ("red", "blue", "green"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2, 3, 5),)),
-            Cell(1, (RED, BLUE), ((-1, 6, -3, 4),)),
-            Cell(2, (2, RED), ((-2, -4),)),
-            Cell(3, (RED,), ((-5, -6),)),
-        ),
-        (Edge(1, 0, 1), Edge(2, 0, 2), Edge(3, 0, 1), Edge(4, 1, 2), Edge(5, 0, 3), Edge(6, 1, 3)),
+    instance = graph(
+        ((RED, BLUE), (1, 2, 3, 5)),
+        ((RED, BLUE), (-1, 6, -3, 4)),
+        ((2, RED), (-2, -4)),
+        ((RED,), (-5, -6)),
     )
     found = merge_cells(instance, {cell.id: frozenset(cell.colors) for cell in instance.cells})
     ring = found.merged_cell_of[0]

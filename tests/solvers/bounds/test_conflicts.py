@@ -11,9 +11,8 @@ from hypothesis import given, reject
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import grid_faces, grid_points, surface
-from rooms import crossed_rings, hub
+from rooms import crossed_rings, graph, hub, petal_cells
 
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
@@ -46,17 +45,12 @@ def test_petals_side_by_side_are_not() -> None:
 
 def test_a_way_around_is_no_conflict() -> None:
     """The red petals of the hub also meet behind one of the blue ones."""
-    instance = Instance(
-        "around",
-        ("red", "blue"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2, 3, 4),)),
-            Cell(1, (RED,), ((-1, 5),)),
-            Cell(2, (BLUE,), ((-2,),)),
-            Cell(3, (RED,), ((-3, -5),)),
-            Cell(4, (BLUE,), ((-4,),)),
-        ),
-        (*(Edge(i, 0, i) for i in range(1, 5)), Edge(5, 1, 3)),
+    instance = graph(
+        ((RED, BLUE), (1, 2, 3, 4)),
+        ((RED,), (-1, 5)),
+        ((BLUE,), (-2,)),
+        ((RED,), (-3, -5)),
+        ((BLUE,), (-4,)),
     )
     red, blue = color_regions(instance)
     assert conflicts(instance, red, blue) == []
@@ -71,16 +65,7 @@ def test_corridors_side_by_side_are_no_conflict() -> None:
 
 def test_a_handle_leads_past() -> None:
     """Petals in turn, but the hub's edge 1 leads from between two of them to a second border."""
-    petals = (RED, BLUE, RED, BLUE)
-    instance = Instance(
-        "handle",
-        ("red", "blue"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2, 3, 4, 5), (-1,))),
-            *(Cell(i, (color,), ((-i - 1,),)) for i, color in enumerate(petals, start=1)),
-        ),
-        (Edge(1, 0, 0), *(Edge(i + 1, 0, i) for i in range(1, 5))),
-    )
+    instance = graph(((RED, BLUE), (5, 1, 2, 3, 4), (-5,)), *petal_cells(RED, BLUE, RED, BLUE))
     red, blue = color_regions(instance)
     assert conflicts(instance, red, blue) == []
     found = solve(instance, Options())
@@ -92,26 +77,13 @@ def test_a_conflict_is_proved_for_any_division() -> None:
 
     Nothing limits how often the edge between these two is crossed, and one strand is tried.
     """
-    instance = Instance(
-        "crossing",
-        ("red", "blue"),
-        (
-            Cell(0, (RED,), ((1, 2),)),
-            Cell(1, (RED,), ((3, 4),)),
-            Cell(2, (RED, BLUE), ((-1, 5, -3, 6),)),
-            Cell(3, (RED, BLUE), ((-2, -6, -4, 7),)),
-            Cell(4, (BLUE,), ((-5,),)),
-            Cell(5, (BLUE,), ((-7,),)),
-        ),
-        (
-            Edge(1, 0, 2),
-            Edge(2, 0, 3),
-            Edge(3, 1, 2),
-            Edge(4, 1, 3),
-            Edge(5, 2, 4),
-            Edge(6, 2, 3),
-            Edge(7, 3, 5),
-        ),
+    instance = graph(
+        ((RED,), (1, 2)),
+        ((RED,), (3, 4)),
+        ((RED, BLUE), (-1, 5, -3, 6)),
+        ((RED, BLUE), (-2, -6, -4, 7)),
+        ((BLUE,), (-5,)),
+        ((BLUE,), (-7,)),
     )
     assert set_cover(instance).bound == 2
     found = solve(instance, Options())
@@ -211,16 +183,9 @@ def test_the_surface_bound_holds_where_segments_are_in_conflict(mesh: LabelledSu
 
 def test_a_handle_of_one_color_leads_nobody_past() -> None:
     """Petals in turn; one of the red ones is a torus with a hole, which blue never enters."""
-    petals = (RED, BLUE, RED, BLUE)
-    instance = Instance(
-        "red handle",
-        ("red", "blue"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2, 3, 4),)),
-            Cell(1, (RED,), ((-1, 5, 6, -5, -6),)),
-            *(Cell(i, (color,), ((-i,),)) for i, color in enumerate(petals[1:], start=2)),
-        ),
-        (*(Edge(i, 0, i) for i in range(1, 5)), Edge(5, 1, 1), Edge(6, 1, 1)),
+    with_handle = ((RED,), (-1, 5, 6, -5, -6))
+    instance = graph(
+        ((RED, BLUE), (1, 2, 3, 4)), with_handle, *petal_cells(RED, BLUE, RED, BLUE)[1:]
     )
     red, blue = color_regions(instance)
     (found,) = conflicts(instance, red, blue)

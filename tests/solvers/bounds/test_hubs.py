@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import rooms
 from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
@@ -12,7 +13,6 @@ from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.hubs import Hubs
 from cellcolor.data.bounds import Bound
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.lab.families import hub, hub_grid, hub_with_loops, planar_graph
 from cellcolor.lab.families.hubs import hub_minimum
@@ -25,16 +25,8 @@ COLORS = st.frozensets(st.integers(0, 3), min_size=1, max_size=3)
 
 def wheel(*petals: frozenset[int]) -> Instance:
     """A cell with four colors and a petal on each of its edges, with the colors given."""
-    count = len(petals)
-    return Instance(
-        "wheel",
-        ("a", "b", "c", "d"),
-        (
-            Cell(0, (0, 1, 2, 3), (tuple(range(1, count + 1)),)),
-            *(Cell(i, tuple(sorted(own)), ((-i,),)) for i, own in enumerate(petals, start=1)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, count + 1)),
-    )
+    around = rooms.petal_cells(*(tuple(sorted(own)) for own in petals))
+    return rooms.graph((range(4), range(1, len(petals) + 1)), *around)
 
 
 @examples(40)
@@ -110,16 +102,7 @@ def test_what_is_no_hub_is_refused_with_its_reason() -> None:
         verdict = verify_bound(instance, claim, regions)
         assert verdict.outcome == outcome and reason in verdict.reason
     # Two cells with an edge for two colors between them, each with a petal.
-    wide = Instance(
-        "wide",
-        ("a", "b"),
-        tuple(
-            Cell(number, tuple(sorted(own)), (loop,))
-            for number, (own, loop) in enumerate(
-                [(both, (1, 2)), (both, (-1, 3)), (a, (-2,)), (b, (-3,))]
-            )
-        ),
-        (Edge(1, 0, 1), Edge(2, 0, 2), Edge(3, 1, 3)),
-    )
+    cells = [(both, (1, 2)), (both, (-1, 3)), (a, (-2,)), (b, (-3,))]
+    wide = rooms.graph(*((sorted(own), loop) for own, loop in cells))
     verdict = verify_bound(wide, part(1, [2, 3], [0]), regions_of_cells(wide))
     assert verdict.reason == "edge 1 of hub 0 may be crossed more than once"

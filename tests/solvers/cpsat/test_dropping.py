@@ -9,10 +9,9 @@ from dart_graphs import graph_of
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
-from rooms import hub
+from rooms import graph, hub
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import decompose
@@ -72,13 +71,8 @@ def test_two_colors_take_the_place_of_three(seed: int) -> None:
     Painted in the three, no segment can be left out, not even for one of the other colors.
     """
     colors = (0, 3), (0, 3), (1, 3), (1, 4), (2, 4), (2, 4)
-    around = ((1,),), ((-1, 2),), ((-2, 3),), ((-3, 4),), ((-4, 5),), ((-5,),)
-    row = Instance(
-        "row",
-        tuple(f"color {color}" for color in range(5)),
-        tuple(Cell(*its) for its in zip(range(6), colors, around, strict=True)),
-        tuple(Edge(number, number - 1, number) for number in range(1, 6)),
-    )
+    around = (1,), (-1, 2), (-2, 3), (-3, 4), (-4, 5), (-5,)
+    row = graph(*zip(colors, around, strict=True))
     assert numbers(row, seed) == [3, 2]
 
 

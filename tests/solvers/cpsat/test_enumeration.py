@@ -7,9 +7,10 @@ from itertools import islice
 from queue import SimpleQueue
 
 import pytest
+import rooms
 from dart_graphs import graph_of
 
-from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import scheme_key
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
@@ -41,15 +42,7 @@ def test_divisions_of_a_lone_cell(edges: int, catalan: int) -> None:
     never forced. Every number of segments is asked for, not just the fewest.
     """
     every = (0, 1, 2)
-    instance = Instance(
-        "lone",
-        ("red", "blue", "green"),
-        (
-            Cell(0, every, (tuple(range(1, edges + 1)),)),
-            *(Cell(i, every, ((-i,),)) for i in range(1, edges + 1)),
-        ),
-        tuple(Edge(i, 0, i) for i in range(1, edges + 1)),
-    )
+    instance = rooms.hub(*[every] * edges)
     divisions = {
         frozenset(frozenset(sub.darts) for sub in division[0].subcells)
         for segments in range(1, edges + 2)

@@ -9,10 +9,9 @@ from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
-from rooms import hub
+from rooms import graph, hub, petal_cells
 
 from cellcolor.checker.division import check_division
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
@@ -83,25 +82,14 @@ def test_chords_side_by_side_need_rings() -> None:
 
 def test_a_crack_is_routed_around() -> None:
     """Blue cannot go from cell 1 to cell 2 directly; in cell 4 there is room beside red."""
-    instance = Instance(
-        "crack",
-        ("red", "blue"),
-        (
-            Cell(0, (BLUE,), ((1,),)),
-            Cell(1, (RED, BLUE), ((-1, 2, 3),)),
-            Cell(2, (RED, BLUE), ((-2, 4, 5),)),
-            Cell(3, (BLUE,), ((-5,),)),
-            Cell(4, (RED, BLUE), ((-3, 6, -4),)),
-            Cell(5, (RED,), ((-6,),)),
-        ),
-        (
-            Edge(1, 0, 1),
-            Edge(2, 1, 2, (RED,)),
-            Edge(3, 1, 4),
-            Edge(4, 2, 4),
-            Edge(5, 2, 3),
-            Edge(6, 4, 5),
-        ),
+    instance = graph(
+        ((BLUE,), (1,)),
+        ((RED, BLUE), (-1, 2, 3)),
+        ((RED, BLUE), (-2, 4, 5)),
+        ((BLUE,), (-5,)),
+        ((RED, BLUE), (-3, 6, -4)),
+        ((RED,), (-6,)),
+        cracks={2: (RED,)},
     )
     assert segments_of(instance, whole_cover(instance), 1) == 2
 
@@ -109,22 +97,11 @@ def test_a_crack_is_routed_around() -> None:
 def test_what_no_route_touches_is_connected_next() -> None:
     """Cell 0, of red and blue, lies behind cells that green and gray flood at first."""
     gray = 3
-    instance = Instance(
-        "behind",
-        ("red", "blue", "green", "gray"),
-        (
-            Cell(0, (RED, BLUE), ((1, 2),)),
-            Cell(1, (RED, GREEN), ((3, -1, 4, 5),)),
-            Cell(2, (BLUE, gray), ((6, -2, 7, 8),)),
-            *(Cell(i, (c,), ((-i,),)) for i, c in ((3, RED), (4, GREEN), (5, GREEN))),
-            *(Cell(i, (c,), ((-i,),)) for i, c in ((6, BLUE), (7, gray), (8, gray))),
-        ),
-        (
-            Edge(1, 0, 1),
-            Edge(2, 0, 2),
-            *(Edge(i, 1, i) for i in (3, 4, 5)),
-            *(Edge(i, 2, i) for i in (6, 7, 8)),
-        ),
+    instance = graph(
+        ((RED, BLUE), (1, 2)),
+        ((RED, GREEN), (3, -1, 4, 5)),
+        ((BLUE, gray), (6, -2, 7, 8)),
+        *petal_cells(RED, BLUE, RED, GREEN, GREEN, BLUE, gray, gray)[2:],
     )
     assert segments_of(instance, whole_cover(instance), 1, rounds=1) == 5
     assert segments_of(instance, whole_cover(instance), 1) == 4

@@ -6,10 +6,10 @@ import random
 from collections.abc import Mapping
 
 import holes
+import rooms
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph
@@ -68,19 +68,14 @@ def test_choices_cell_by_cell_as_for_all_cells_at_once(seed: int, darts: int, lo
 
 def test_zeros_on_different_loops_are_free_of_each_other() -> None:
     """Dart 3, the last of one loop, has to show red, and dart 4, the first of the other, blue."""
-    colors = {1: RED, 2: BLUE, 3: BLUE, 4: RED, 5: RED, 6: BLUE}
-    petals = (Cell(dart, (color,), ((-dart,),)) for dart, color in colors.items())
-    instance = Instance(
-        "two loops",
-        ("red", "blue"),
-        (Cell(0, (RED, BLUE), ((1, 2, 3), (4, 5, 6))), *petals),
-        tuple(Edge(dart, 0, dart) for dart in colors),
+    colors = RED, BLUE, BLUE, RED, RED, BLUE
+    graph = loops_apart(
+        rooms.graph(((RED, BLUE), (1, 2, 3), (4, 5, 6)), *rooms.petal_cells(*colors))
     )
-    graph = loops_apart(instance)
     number = {dart.name[0]: n for n, dart in enumerate(graph.darts)}
     blocks_of: dict[int, Blocks] = {
         0: ((RED, (number[1], number[5])), (BLUE, (number[2], number[6])))
     }
-    for dart, color in colors.items():
+    for dart, color in enumerate(colors, start=1):
         blocks_of[dart] = ((color, () if dart in (3, 4) else (number[-dart],)),)
     assert some_choice_is_left(graph, blocks_of)
