@@ -103,7 +103,7 @@ def valid_links(
         border_before = at_domain_border(before.edges, its_candidates.valid)
         new[here] = near_border[here] != border_before[there]
         new |= anew
-        linked[here] = np.where(new[here], linked[here], before.linked[there])
+        linked[here] &= new[here] | before.linked[there]
     each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
     asked = np.flatnonzero((linked & new).any(axis=1))
 
@@ -142,6 +142,8 @@ def _clearances(
     prepared: PreparedScene, candidates: Candidates, points: Array, edges: Index, branches: Index
 ) -> tuple[Clearance, Index] | None:
     """Distances at the vertices beside points (k, 3) on mesh edges, if it pays to know them."""
+    if prepared.judge.partial:
+        return None  # one or two tests take less time than the distances
     ends = prepared.surface.vertices[edges]
     nearer = np.argmin(np.linalg.norm(ends - points[:, None], axis=2), axis=1)
     vertex = edges[np.arange(len(edges)), nearer]

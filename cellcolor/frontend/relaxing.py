@@ -2,7 +2,7 @@
 
 Each kind of :class:`Relaxation` takes one thing out of a prepared scene. Whatever was valid before
 is valid after it, so only candidates that failed for its reason are tested again
-(:func:`~cellcolor.frontend.stages.judged_again`). :func:`relaxations_of` lists all of a scene.
+(:mod:`~cellcolor.frontend.judging_again`). :func:`relaxations_of` lists all of a scene.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ and then one with all its vertices and some more, what is known is taken over.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,7 +27,7 @@ from cellcolor.arrays import Mask
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.links import Links, continuous_links, linked_along, valid_links
+from cellcolor.frontend.links import Links, continuous_links, valid_links
 from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.continuity import Coloring, color_nodes, find_cracks, node_links
@@ -133,73 +133,17 @@ def judged_in_place(
     clock.add(verdicts.seconds)
     if before is not None and known is not None:
         verdicts = before.verdicts.followed_by(verdicts)
-    candidates, tracked = _candidates(prepared, verdicts), verdicts.tracked
+    candidates, tracked = candidates_of(prepared, verdicts), verdicts.tracked
     with clock.timed("continuity"):
         continuous = continuous_links(
             prepared, candidates, None if known is None else known.continuous, deadline
         )
-    candidates, links = _with_turn(prepared, candidates), continuous
+    candidates, links = with_turn(prepared, candidates), continuous
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
             taken = None if known is None else (known.links, known.candidates)
             links = valid_links(prepared, candidates, continuous, tracked, taken, deadline)
     return Judged(colored_stages(prepared, names, candidates, continuous, links, clock), verdicts)
-
-
-def judged_again(
-    prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
-) -> Judged:
-    """All stages of a scene that asks for less, on the same surface; raises like
-    :func:`judged_in_place`.
-
-    Only what the stricter scene has refused is asked about again. The result is the same as that of
-    :func:`judged_in_place`, but for full circles of joints without limits.
-
-    Args:
-        prepared: the scene that asks for less: whatever was valid before is valid.
-        before: of the stricter scene. Its arm's solutions have names.
-        reasons: the tests that ask for less. A candidate becomes valid only if one of them was the
-            first that it failed.
-    """
-    deadline, known = clock.deadline, before.stages
-    clock.begin("validity at the vertices")
-    verdicts = _judged_again(prepared, before.verdicts, reasons, deadline)
-    candidates = _with_turn(prepared, _candidates(prepared, verdicts))
-    with clock.timed("continuity"):
-        edges, linked = known.continuous.edges, known.continuous.linked.copy()
-        both = candidates.valid[edges].all(axis=1)
-        rows = np.flatnonzero((both & ~linked).any(axis=1))
-        linked[rows] |= linked_along(prepared, edges[rows], candidates, deadline)
-        continuous = links = Links(edges, linked)
-    if prepared.setup.continuity.validity_spacing_m is not None:
-        with clock.timed("validity between vertices"):
-            links = valid_links(
-                prepared,
-                candidates,
-                continuous,
-                verdicts.tracked,
-                (known.links, known.candidates),
-                deadline,
-                anew=continuous.linked & ~known.links.linked,
-            )
-    stages = colored_stages(prepared, known.branches, candidates, continuous, links, clock)
-    return Judged(stages, verdicts)
-
-
-def _judged_again(
-    prepared: PreparedScene, before: Verdicts, reasons: Collection[str], deadline: Deadline
-) -> Verdicts:
-    """The verdicts, those with some reasons given anew."""
-    codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
-    rows = np.flatnonzero(np.isin(before.reasons, codes))
-    new = prepared.judge(before.configurations[rows], deadline)
-    members = {}
-    for name in ("configurations", "reasons", "determinants"):
-        members[name] = getattr(before, name).copy()
-        members[name][rows] = getattr(new, name)
-    tracked = before.tracked.copy()
-    tracked[:, rows] = new.tracked
-    return Verdicts(**members, tracked=tracked, seconds=new.seconds)
 
 
 def colored_stages(
@@ -227,7 +171,7 @@ def colored_stages(
     )
 
 
-def _candidates(prepared: PreparedScene, verdicts: Verdicts) -> Candidates:
+def candidates_of(prepared: PreparedScene, verdicts: Verdicts) -> Candidates:
     """Verdicts on all candidates as arrays of vertices and branches."""
     shape = len(prepared.surface.vertices), -1
     return Candidates(
@@ -238,7 +182,7 @@ def _candidates(prepared: PreparedScene, verdicts: Verdicts) -> Candidates:
     )
 
 
-def _with_turn(prepared: PreparedScene, candidates: Candidates) -> Candidates:
+def with_turn(prepared: PreparedScene, candidates: Candidates) -> Candidates:
     """The same with another reason where the setup's rule for the tool's turn says nothing."""
     if prepared.setup.task.turn is None:
         return candidates
@@ -356,8 +300,17 @@ def with_finer_borders(
         InputError: there would be too many vertices, or as the stages do.
         OutOfTime: the deadline came first.
     """
+    *_, (prepared, last) = border_levels(prepared, clock, found)
+    return prepared, last.stages
+
+
+def border_levels(
+    prepared: PreparedScene, clock: StageClock, found: Judged | None = None
+) -> Iterator[tuple[PreparedScene, Judged]]:
+    """Each surface on the way to finer borders and its stages; see :func:`with_finer_borders`."""
     longest = prepared.setup.continuity.border_length_m
     found = found or judged(prepared, clock)
+    yield prepared, found
     while longest is not None:
         marked = _too_long(found.stages, longest)
         if not marked.any():
@@ -366,7 +319,7 @@ def with_finer_borders(
         finer = bisected(prepared.surface, marked, "continuity.border_length_m")
         prepared = replace(prepared, surface=finer)
         found = judged(prepared, clock, found)
-    return prepared, found.stages
+        yield prepared, found
 
 
 def _too_long(stages: Stages, longest: float) -> Mask:

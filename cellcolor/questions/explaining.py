@@ -9,21 +9,23 @@ contradict each other (Liffiton and Sakallah, 2008).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
 import numpy as np
 
 from cellcolor.arrays import Array
+from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
+from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_more
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.relaxing import Relaxation, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Judged, Stages, judged, judged_again, with_finer_borders
+from cellcolor.frontend.stages import Judged, Stages, border_levels
 from cellcolor.questions.explanation import BranchHere, Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
@@ -64,7 +66,7 @@ def explained(
     sets: list[RelaxedMinimum] = []
     complete = True
     try:
-        for one in relaxations_of(prepared):
+        for one in asked.things:
             report(f"without {one.name}")
             alone[one] = asked.without([one])
             if not alone[one].same_as(base):
@@ -78,7 +80,7 @@ def explained(
                 found = asked.least_amount(one)
                 amounts += [] if found is None else [found]
         if not saving and (base.lift_offs or 0) > 0:
-            sets = asked.smallest_sets(relaxations_of(prepared), report)
+            sets = asked.smallest_sets(report)
     except OutOfTime:
         complete = False
     rows = sorted(alone.values(), key=_rank)
@@ -96,70 +98,124 @@ def _rank(row: RelaxedMinimum) -> tuple[float, float]:
     return (np.inf if row.segments is None else row.segments, -row.covered_share)
 
 
+@dataclass(frozen=True, eq=False)
+class _Known:
+    """A scene that is solved: its surfaces, the finest last, their stages, and its row."""
+
+    levels: list[tuple[PreparedScene, Judged]]
+    row: RelaxedMinimum
+
+    @property
+    def coarse(self) -> Judged:
+        """On the surface that the scene has before borders are refined."""
+        return self.levels[0][1]
+
+
 class _Asked:
     """A scene whose stages are known, asked for its minimum without some things."""
 
     def __init__(self, prepared: PreparedScene, options: Options) -> None:
         self._prepared, self._options = prepared, options
-        self._coarse: Judged = judged(prepared, self._clock)
-        self.built = with_finer_borders(prepared, self._clock, self._coarse)
-        self.base = self._solved(*self.built, ())
+        self._known = self._solved(border_levels(prepared, self._clock), ())
+        self.base, self.things = self._known.row, relaxations_of(prepared)
+        self._quick = self._known.coarse.stages.named and prepared.scene.tolerance is None
+        # Without one of the things, where more is valid then.
+        self._freer: dict[Relaxation, _Known] = {}
+
+    @property
+    def built(self) -> tuple[PreparedScene, Stages]:
+        """The scene as it is, on its finest surface."""
+        prepared, finest = self._known.levels[-1]
+        return prepared, finest.stages
 
     @property
     def _clock(self) -> StageClock:
         return StageClock(self._options.deadline, None)
 
-    def without(self, what: Sequence[Relaxation], note: str = "") -> RelaxedMinimum:
+    def without(self, what: Sequence[Relaxation]) -> RelaxedMinimum:
         """The scene without these things; a row without a number where it cannot be built then.
 
         Raises:
             OutOfTime: the deadline came first.
         """
         names, keys = _in_words(what)
-        prepared, known = without(self._prepared, what), self._coarse.stages
-        in_place = prepared.scene.tolerance is None
         try:
-            if known.named and in_place and all(one.reasons is not None for one in what):
-                found = judged_again(prepared, self._coarse, _reasons_of(what), self._clock)
-                if _same(found.stages, known):
-                    return replace(self.base, relaxed=names, keys=keys, note=note)
-            else:
-                found = judged(prepared, self._clock)
-            return self._solved(*with_finer_borders(prepared, self._clock, found), what, note)
+            if not self._quick or any(one.reasons is None for one in what):
+                relaxed = without(self._prepared, what)
+                return self._solved(border_levels(relaxed, self._clock), what).row
+            known, rest = self._nearest(what)
+            found = self._again(judged_asking_less, known, what, _reasons_of(rest))
         except InputError as error:
             return RelaxedMinimum(names, keys, None, 1, 0.0, False, f"it cannot be built: {error}")
+        if len(what) == 1 and what[0] in self.things and found.levels is not known.levels:
+            self._freer[what[0]] = found
+        return found.row
+
+    def _nearest(self, what: Sequence[Relaxation]) -> tuple[_Known, list[Relaxation]]:
+        """The scene without one of these things or none, where it is known, and the others."""
+        freer = [one for one in what if one in self._freer]
+        if not freer:
+            return self._known, list(what)
+        first = max(freer, key=lambda one: self._freer[one].coarse.stages.candidates.valid.sum())
+        return self._freer[first], [one for one in what if one != first]
+
+    def _without_some(self, one: Relaxation, amount: float) -> RelaxedMinimum:
+        """The scene with a thing weakened by an amount."""
+        some = one.by(amount)
+        row = (
+            self._again(judged_asking_more, self._freer[one], [some], _reasons_of([one])).row
+            if one in self._freer and some.reasons is None
+            else self.without([some])
+        )
+        return replace(row, relaxed=(one.said_of(amount),))
+
+    def _again(
+        self,
+        judged_anew: Callable[[PreparedScene, Judged, frozenset[str], StageClock], Judged],
+        known: _Known,
+        what: Sequence[Relaxation],
+        reasons: frozenset[str],
+    ) -> _Known:
+        """The scene without some things, from one that differs by what some tests ask only."""
+        relaxed, first = without(self._prepared, what), None
+        for prepared, before in known.levels:
+            here = replace(relaxed, surface=prepared.surface)
+            found = judged_anew(here, before, reasons, self._clock)
+            first = first or found
+            if not _same(found.stages, before.stages):
+                return self._solved(border_levels(relaxed, self._clock, first), what)
+        names, keys = _in_words(what)
+        return replace(known, row=replace(known.row, relaxed=names, keys=keys))
 
     def _solved(
-        self,
-        prepared: PreparedScene,
-        stages: Stages,
-        what: Sequence[Relaxation],
-        note: str = "",
-    ) -> RelaxedMinimum:
-        names, keys = _in_words(what)
-        surface, _ = labelled(prepared, stages, {})
+        self, levels: Iterable[tuple[PreparedScene, Judged]], what: Sequence[Relaxation]
+    ) -> _Known:
+        known = list(levels)
+        prepared, finest = known[-1]
+        surface, _ = labelled(prepared, finest.stages, {})
         deadline = self._options.deadline
         instance = decomposition_of(surface, deadline=deadline).instance
         areas = surface.vertex_areas
         has_color = np.array([bool(own) for own in surface.vertex_colors])
         share = float(areas[has_color].sum() / areas.sum())
-        if instance.nothing_to_cover:
-            return RelaxedMinimum(names, keys, 0, 0, share, True, note or "nothing is reached")
-        try:
-            solution = checked.solve(instance, self._options)
-        except OutOfTime:
-            if not what:
-                raise
-            return RelaxedMinimum(names, keys, None, 1, share, False, note)
-        return RelaxedMinimum(
-            names,
-            keys,
-            solution.segments,
-            solution.surface_lower_bound,
-            share,
-            solution.proved_for_surface,
-            note,
-        )
+        found: tuple[int | None, int, bool, str] = 0, 0, True, "nothing is reached"
+        if not instance.nothing_to_cover:
+            try:
+                solution = checked.solve(instance, self._options)
+                found = (
+                    solution.segments,
+                    solution.surface_lower_bound,
+                    solution.proved_for_surface,
+                    "",
+                )
+            except OutOfTime:
+                if not what:
+                    raise
+                found = None, 1, False, ""
+        segments, at_least, proved, note = found
+        names, keys = _in_words(what)
+        row = RelaxedMinimum(names, keys, segments, at_least, share, proved, note)
+        return _Known(known, row)
 
     def least_amount(self, one: Relaxation) -> RelaxedMinimum | None:
         """The least amount found that saves a lift-off.
@@ -169,9 +225,8 @@ class _Asked:
         tried: dict[float, RelaxedMinimum] = {}
 
         def enough(amount: float) -> bool:
-            row = self.without([one.by(amount)])
-            tried[amount] = replace(row, relaxed=(one.said_of(amount),))
-            return _saves(row, self.base)
+            tried[amount] = self._without_some(one, amount)
+            return _saves(tried[amount], self.base)
 
         high = one.most
         if not enough(high):
@@ -189,20 +244,22 @@ class _Asked:
             note += "; " * bool(note) + "the number does not fall steadily with the amount"
         return replace(tried[high], note=note)
 
-    def smallest_sets(self, things: Sequence[Relaxation], report: Progress) -> list[RelaxedMinimum]:
+    def smallest_sets(self, report: Progress) -> list[RelaxedMinimum]:
         """All smallest sets of two or three things that save a lift-off, if there are any.
 
         Only things that hold a candidate or a link back, once nothing else does, can be in one.
         """
-        named = [one for one in things if one.reasons is not None]
-        if not self._coarse.stages.named:
+        if not self._quick:
             return []
-        free = self._freed(named)
-        useful = []
-        for one in named:
-            report(f"whether {one.name} holds anything back")
-            if not _same(self._freed([other for other in named if other != one]), free):
-                useful.append(one)
+        named = [one for one in self.things if one.reasons is not None]
+        known, rest = self._nearest(named)
+        relaxed = without(self._prepared, named)
+        free = judged_asking_less(relaxed, known.coarse, _reasons_of(rest), self._clock)
+        report("what holds anything back")
+        useful = [one for one in named if self._refuses(one, named, free)]
+        doubtful = [one for one in named if one not in useful]
+        useful += self._cutting(doubtful, named, free)
+        useful.sort(key=named.index)
         for size in range(2, _LARGEST_SET + 1):
             found = []
             for chosen in combinations(useful, size):
@@ -213,10 +270,30 @@ class _Asked:
                 return sorted(found, key=_rank)
         return []
 
-    def _freed(self, what: Sequence[Relaxation]) -> Stages:
-        """The stages on the same surface without things that need not be asked about anew."""
-        prepared = without(self._prepared, what)
-        return judged_again(prepared, self._coarse, _reasons_of(what), self._clock).stages
+    def _refuses(self, one: Relaxation, things: Sequence[Relaxation], free: Judged) -> bool:
+        """Whether a thing alone refuses a candidate that is valid without all things."""
+        only = without(self._prepared, [other for other in things if other != one])
+        test, valid = only.judge.only(_reasons_of([one])), free.stages.candidates.valid
+        verdicts = test(free.stages.candidates.configurations[valid], self._options.deadline)
+        return bool((verdicts.reasons != VALID).any())
+
+    def _cutting(
+        self, some: Sequence[Relaxation], things: Sequence[Relaxation], free: Judged
+    ) -> list[Relaxation]:
+        """Those of some things that refuse no candidate and cut a link, once nothing else does.
+
+        They are asked together first: where all of them cut nothing, none of them does.
+        """
+        if not some:
+            return []
+        only = without(self._prepared, [other for other in things if other not in some])
+        held = judged_asking_more(only, free, _reasons_of(some), self._clock)
+        if _same(held.stages, free.stages):
+            return []
+        if len(some) == 1:
+            return list(some)
+        half = len(some) // 2
+        return [x for part in (some[:half], some[half:]) for x in self._cutting(part, things, free)]
 
 
 def _reasons_of(what: Sequence[Relaxation]) -> frozenset[str]:

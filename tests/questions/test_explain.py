@@ -19,6 +19,7 @@ from shipped import SCENES, shipped
 import cellcolor
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface
+from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_more
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import (
@@ -36,7 +37,7 @@ from cellcolor.frontend.relaxing import (
     without,
 )
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged, judged_again
+from cellcolor.frontend.stages import Stages, judged
 from cellcolor.questions.explanation import Explanation
 from examples import examples
 
@@ -144,7 +145,7 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
         if one.reasons is None:
             found = judged(without(prepared, [one]), clock).stages
         else:
-            found = judged_again(without(prepared, [one]), before, one.reasons, clock).stages
+            found = judged_asking_less(without(prepared, [one]), before, one.reasons, clock).stages
         assert same_answers(found, from_scratch(scene, one, monkeypatch).stages), one
         changing += not np.array_equal(found.candidates.valid, before.stages.candidates.valid)
     assert changing >= 3
@@ -168,10 +169,43 @@ def test_what_is_known_changes_nothing_of_what_is_found(
     what = list({type(things[i % len(things)]): things[i % len(things)] for i in chosen}.values())
     reasons = frozenset[str]().union(*(one.reasons or () for one in what))
     relaxed = without(prepared, what)
-    found = judged_again(relaxed, judged(prepared, clock), reasons, clock)
+    found = judged_asking_less(relaxed, judged(prepared, clock), reasons, clock)
     anew = judged(relaxed, clock)
     assert same_answers(found.stages, anew.stages)
     assert np.array_equal(found.verdicts.reasons, anew.verdicts.reasons)
+
+
+@pytest.mark.second
+@examples(8)
+@given(data=st.data(), wider=st.floats(0.01, 1.0))
+def test_what_is_known_of_a_freer_scene_changes_nothing_of_what_is_found(
+    data: st.DataObject, wider: float
+) -> None:
+    """Things put back one or several at a time, an obstacle elsewhere too."""
+    prepared = prepare(scene_of("wok_obstacle"))
+    clock = StageClock(NEVER, None)
+    things = [one for one in relaxations_of(prepared) if one.reasons is not None]
+    back = data.draw(st.lists(st.sampled_from(things), min_size=1, max_size=3, unique=True))
+    gone = [one for one in things if one not in back]
+    some = [one.by(wider) for one in back if one.unit] if data.draw(st.booleans()) else []
+    stricter = without(prepared, [*gone, *some])
+    reasons = frozenset[str]().union(*(one.reasons or () for one in back))
+    found = judged_asking_more(stricter, judged(without(prepared, things), clock), reasons, clock)
+    assert same_answers(found.stages, judged(stricter, clock).stages)
+
+
+@pytest.mark.slow
+def test_rows_where_borders_are_refined() -> None:
+    """What changes nothing on the mesh as it is may change something on the finer one."""
+    scene = shipped("wok_obstacle", 60)
+    scene = scene.with_setup(scene.setup.varied(continuity={"border_length_m": 0.01}))
+    rows = {row.relaxed: row for row in cellcolor.explain(scene).alone}
+    for one in (ObstacleBody(1, "cylinder"), GroundPlane(), LinkContact(None), Torques()):
+        surface = build_surface(changed(scene, one)).surface
+        areas, row = surface.vertex_areas, rows[(one.name,)]
+        colored = [bool(colors) for colors in surface.vertex_colors]
+        assert row.covered_share == pytest.approx(areas[colored].sum() / areas.sum())
+        assert row.segments == cellcolor.solve(surface).solution.segments
 
 
 @pytest.fixture(scope="module")

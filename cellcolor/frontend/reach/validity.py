@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -106,6 +107,7 @@ class Judge:
         reason_names: of the codes of verdicts: valid, no solution, and the tests in the order of
             testing, whether the setup leaves them out or not.
         left_out: names of tests that are not made.
+        partial: whether it makes some of its tests only, see :meth:`only`.
         tracked_steps: (points,) how far those of :attr:`Verdicts.tracked` may move between two
             tests, m.
     """
@@ -125,7 +127,7 @@ class Judge:
         Raises:
             InputError: an added test has the name of a standard one.
         """
-        self._workplace, self.left_out = workplace, left_out
+        self._workplace, self.left_out, self.partial = workplace, left_out, False
         standard_names = (*_NAMES, *(test.name for test in STANDARD_TESTS))
         for number, test in enumerate(added):
             if test.name in standard_names:
@@ -189,6 +191,13 @@ class Judge:
         processes = share_out(judge, len(parts), at_least=_PAYS)
         whole.seconds.update(zip(timed, (seconds.sum(axis=0) / processes).tolist(), strict=True))
         return whole
+
+    def only(self, names: frozenset[str]) -> Judge:
+        """The same judge, with the tests of these names only."""
+        judge = copy(self)
+        judge._tests = tuple(test for test in self._tests if test.name in names)
+        judge.partial = True
+        return judge
 
     def all_failures(self, configurations: Array) -> dict[str, Mask]:
         """Which configurations (k, joints) fail each test, also where they fail another one."""

@@ -1,0 +1,111 @@
+"""The stages of a scene that asks for less or more than one whose stages are known.
+
+Only what the difference can change is asked about again, on the same surface. The results are those
+of :func:`~cellcolor.frontend.stages.judged_in_place`, but for full circles of joints without
+limits, and raise the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+import numpy as np
+
+from cellcolor.arrays import Index
+from cellcolor.data.candidate_table import VALID
+from cellcolor.deadline import Deadline
+from cellcolor.frontend.links import Links, linked_along, valid_links
+from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.frontend.reach.validity import Verdicts
+from cellcolor.frontend.reach.validity_tests import JointLimits
+from cellcolor.frontend.stage_clock import StageClock
+from cellcolor.frontend.stages import Judged, candidates_of, colored_stages, with_turn
+
+
+def judged_asking_less(
+    prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
+) -> Judged:
+    """All stages of a scene that asks for less: only what was refused is asked about again.
+
+    Args:
+        prepared: the scene that asks for less: whatever was valid before is valid.
+        before: of the stricter scene. Its arm's solutions have names.
+        reasons: the tests that ask for less. A candidate becomes valid only if one of them was the
+            first that it failed.
+    """
+    deadline, known = clock.deadline, before.stages
+    clock.begin("validity at the vertices")
+    codes = [prepared.judge.reason_names.index(reason) for reason in reasons]
+    rows = np.flatnonzero(np.isin(before.verdicts.reasons, codes))
+    verdicts = _judged_there(prepared, before.verdicts, rows, deadline)
+    candidates = with_turn(prepared, candidates_of(prepared, verdicts))
+    with clock.timed("continuity"):
+        edges, linked = known.continuous.edges, known.continuous.linked.copy()
+        both = candidates.valid[edges].all(axis=1)
+        rows = np.flatnonzero((both & ~linked).any(axis=1))
+        linked[rows] |= linked_along(prepared, edges[rows], candidates, deadline)
+        continuous = links = Links(edges, linked)
+    if prepared.setup.continuity.validity_spacing_m is not None:
+        with clock.timed("validity between vertices"):
+            links = valid_links(
+                prepared,
+                candidates,
+                continuous,
+                verdicts.tracked,
+                (known.links, known.candidates),
+                deadline,
+                anew=continuous.linked & ~known.links.linked,
+            )
+    stages = colored_stages(prepared, known.branches, candidates, continuous, links, clock)
+    return Judged(stages, verdicts)
+
+
+def judged_asking_more(
+    prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
+) -> Judged:
+    """All stages of a scene that asks for more: of what was valid only its new tests are made.
+
+    A candidate that was refused before keeps that reason.
+
+    Args:
+        prepared: the scene that asks for more: whatever is valid was valid before.
+        before: of the scene that asks for less. Its arm's solutions have names.
+        reasons: the tests that ask for more.
+    """
+    deadline, known = clock.deadline, before.stages
+    strict = replace(prepared, judge=prepared.judge.only(frozenset(reasons)))
+    clock.begin("validity at the vertices")
+    rows = np.flatnonzero(before.verdicts.reasons == VALID)
+    verdicts = _judged_there(strict, before.verdicts, rows, deadline)
+    candidates = with_turn(prepared, candidates_of(prepared, verdicts))
+    with clock.timed("continuity"):
+        edges = known.continuous.edges
+        linked = known.continuous.linked & candidates.valid[edges].all(axis=1)
+        if JointLimits.name in reasons:
+            rows = np.flatnonzero(linked.any(axis=1))
+            linked[rows] &= linked_along(prepared, edges[rows], candidates, deadline)
+        continuous = links = Links(edges, linked)
+    if prepared.setup.continuity.validity_spacing_m is not None:
+        with clock.timed("validity between vertices"):
+            left, tracked = Links(edges, linked & known.links.linked), verdicts.tracked
+            left = valid_links(strict, candidates, left, tracked, None, deadline)
+            # Near a new border of the domain all tests are made at closer points.
+            taken = known.links, known.candidates
+            links = valid_links(prepared, candidates, left, tracked, taken, deadline)
+    stages = colored_stages(prepared, known.branches, candidates, continuous, links, clock)
+    return Judged(stages, verdicts)
+
+
+def _judged_there(
+    prepared: PreparedScene, before: Verdicts, rows: Index, deadline: Deadline
+) -> Verdicts:
+    """The verdicts, those of some rows (k,) given anew."""
+    new = prepared.judge(before.configurations[rows], deadline)
+    members = {}
+    for name in ("configurations", "reasons", "determinants"):
+        members[name] = getattr(before, name).copy()
+        members[name][rows] = getattr(new, name)
+    tracked = before.tracked.copy()
+    tracked[:, rows] = new.tracked
+    return Verdicts(**members, tracked=tracked, seconds=new.seconds)
