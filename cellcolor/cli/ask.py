@@ -53,13 +53,19 @@ _VERTICES = click.option(
 )
 
 
-def _print(file: Path, rows: Iterable[Any], text: object, as_json: bool, **common: Any) -> None:
+def _print(
+    file: Path, rows: Iterable[dict[str, Any]], text: object, as_json: bool, **common: Any
+) -> None:
     """An answer: its rows as JSON Lines, or its text."""
     if not as_json:
         say_lines(text)
         return
     for row in rows:
-        print_json({"file": str(file)} | common | row.to_document())
+        print_json({"file": str(file)} | common | row)
+
+
+def _documents(rows: Iterable[Any]) -> Iterable[dict[str, Any]]:
+    return (row.to_document() for row in rows)
 
 
 @cellcolor.command()
@@ -125,7 +131,7 @@ def tradeoff(
                 rows = [front.fewest_for(share)]
             elif price is not None:
                 rows = [front.least_cost(price)]
-        _print(source, rows, "\n".join(map(str, rows)), as_json)
+        _print(source, _documents(rows), "\n".join(map(str, rows)), as_json)
         draw(lambda file: save_front(front, file))
     return Exit.done_if(all(row.proved for row in rows))
 
@@ -154,7 +160,7 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     late = "the time limit came before the scene itself was solved"
     with at_work(scene, "explaining", late) as tell:
         found = explanation_of(scene, at=at, progress=tell, **search)
-    _print(scene, (*found, *found.here), found, as_json)
+    _print(scene, found.documents(), found, as_json)
     return Exit.done_if(found.complete and all(row.proved_for_surface for row in found))
 
 
@@ -257,7 +263,7 @@ def place(
                 **search,
             )
         moved = {"moved": "base"} if found.base else {}
-        _print(scene, found, found, as_json, **moved)
+        _print(scene, _documents(found), found, as_json, **moved)
         draw(lambda file: save_map(found, file))
     proved = bool(found.best) and all(row.proved_for_surface for row in found.best)
     return Exit.done_if(found.complete and proved)
@@ -304,7 +310,7 @@ def compare(
     with drawn_to(output, [part], as_json) as draw:
         with at_work(part, "comparing", late) as tell:
             found = comparison_of(part, arms, progress=tell, **search)
-        _print(part, found, found, as_json)
+        _print(part, _documents(found), found, as_json)
         draw(found.save)
     proved = all(row.best is None or row.best.proved_for_surface for row in found)
     return Exit.done_if(found.complete and proved)
@@ -375,7 +381,7 @@ def setups(
     late = "the time limit came before there was a choice"
     with at_work(scene, "setting up", late) as tell:
         found = set_ups_of(scene, at=all_places, progress=tell, **search)
-    _print(scene, [found.answer], found, as_json)
+    _print(scene, [found.answer.to_document()], found, as_json)
     if output is not None:
         found.plot(output)
     valid = True

@@ -97,7 +97,7 @@ def explain(
         progress: told what is being tried.
 
     Returns:
-        Rows, ranked. Shares are of the whole surface, since what can be reached changes.
+        Rows, ranked.
 
     Raises:
         InputError: the scene cannot be used, nothing of it is reached, or the point is none.

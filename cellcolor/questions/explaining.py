@@ -95,7 +95,7 @@ def _saves(row: RelaxedMinimum, base: RelaxedMinimum) -> bool:
 
 
 def _rank(row: RelaxedMinimum) -> tuple[float, float]:
-    return (np.inf if row.segments is None else row.segments, -row.covered_share)
+    return (np.inf if row.segments is None else row.segments, -row.surface_share)
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,7 +146,9 @@ class _Asked:
             known, rest = self._nearest(what)
             found = self._again(judged_asking_less, known, what, _reasons_of(rest))
         except InputError as error:
-            return RelaxedMinimum(names, keys, None, 1, 0.0, False, f"it cannot be built: {error}")
+            return RelaxedMinimum(
+                names, keys, None, 1, 0.0, 0.0, False, f"it cannot be built: {error}"
+            )
         if len(what) == 1 and what[0] in self.things and found.levels is not known.levels:
             self._freer[what[0]] = found
         return found.row
@@ -197,7 +199,9 @@ class _Asked:
         instance = decomposition_of(surface, deadline=deadline).instance
         areas = surface.vertex_areas
         has_color = np.array([bool(own) for own in surface.vertex_colors])
-        share = float(areas[has_color].sum() / areas.sum())
+        covered = float(areas[has_color].sum())
+        reached = ~np.isnan(finest.stages.candidates.configurations[:, :, 0]).all(axis=1)
+        shares = covered / max(float(areas[reached].sum()), covered, 1e-12), covered / areas.sum()
         found: tuple[int | None, int, bool, str] = 0, 0, True, "nothing is reached"
         if not instance.nothing_to_cover:
             try:
@@ -214,7 +218,7 @@ class _Asked:
                 found = None, 1, False, ""
         segments, at_least, proved, note = found
         names, keys = _in_words(what)
-        row = RelaxedMinimum(names, keys, segments, at_least, share, proved, note)
+        row = RelaxedMinimum(names, keys, segments, at_least, *shares, proved, note)
         return _Known(known, row)
 
     def least_amount(self, one: Relaxation) -> RelaxedMinimum | None:

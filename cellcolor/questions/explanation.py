@@ -18,7 +18,9 @@ class RelaxedMinimum:
         keys: where scene, setup or URDF have it.
         segments: the fewest that were found; None if none were found in time.
         at_least: no division has fewer segments.
-        covered_share: the area with a color, as a share of the whole surface, 0 to 1.
+        covered_share: the area with a color, as a share of the area where the arm has any
+            configuration at all, whatever refuses it, 0 to 1.
+        surface_share: the same area as a share of the whole surface.
         proved_for_surface: whether ``segments`` is the fewest of any division.
         note: what else has to be said of it, or "".
     """
@@ -28,6 +30,7 @@ class RelaxedMinimum:
     segments: int | None
     at_least: int
     covered_share: float
+    surface_share: float
     proved_for_surface: bool
     note: str = ""
 
@@ -38,7 +41,7 @@ class RelaxedMinimum:
 
     def same_as(self, other: RelaxedMinimum) -> bool:
         """Whether number and area are the same."""
-        return (self.segments, self.covered_share) == (other.segments, other.covered_share)
+        return (self.segments, self.surface_share) == (other.segments, other.surface_share)
 
     def to_document(self) -> dict[str, Any]:
         """The JSON object."""
@@ -49,6 +52,7 @@ class RelaxedMinimum:
             "segments": self.segments,
             "at_least_segments": self.at_least,
             "covered_share": self.covered_share,
+            "surface_share": self.surface_share,
             "proved_for_surface": self.proved_for_surface,
             "note": self.note,
         }
@@ -56,7 +60,7 @@ class RelaxedMinimum:
     def __str__(self) -> str:
         known = "not found in time" if self.lift_offs is None else count(self.lift_offs, "lift-off")
         proof = "" if self.proved_for_surface or self.lift_offs is None else " (not proved)"
-        area = f"{100 * self.covered_share:.1f} % of the area"
+        area = f"{100 * self.surface_share:.1f} % of the area"
         what = f"; {' and '.join(self.relaxed)}" if self.relaxed else ""
         return f"{known}{proof}, {area}{what}{f' ({self.note})' if self.note else ''}"
 
@@ -116,6 +120,12 @@ class Explanation:
     here: tuple[BranchHere, ...] = ()
     complete: bool = True
 
+    def documents(self) -> Iterator[dict[str, Any]]:
+        """The JSON object of each row; those of branches have what the scene as it is needs."""
+        yield from (row.to_document() for row in self)
+        scene = self.base.to_document()
+        yield from (scene | branch.to_document() for branch in self.here)
+
     def __iter__(self) -> Iterator[RelaxedMinimum]:
         yield self.base
         yield from self.alone
@@ -146,9 +156,9 @@ class Explanation:
         if before != after:
             number = f"{before} → {count(after, 'lift-off')}"
         proof = "" if row.proved_for_surface else " (not proved)"
-        shares = f"{100 * self.base.covered_share:.1f} → {100 * row.covered_share:.1f} %"
-        if row.covered_share == self.base.covered_share:
-            shares = f"{100 * row.covered_share:.1f} %"
+        shares = f"{100 * self.base.surface_share:.1f} → {100 * row.surface_share:.1f} %"
+        if row.surface_share == self.base.surface_share:
+            shares = f"{100 * row.surface_share:.1f} %"
         return f"{number}{proof}, {shares} of the area{f'; {row.note}' if row.note else ''}"
 
 

@@ -85,10 +85,10 @@ def test_each_point_of_a_front_fills_what_it_covers(front: cellcolor.Front) -> N
 
 
 def test_what_costs_a_lift_off_and_where_to_stand_are_tables() -> None:
-    base = RelaxedMinimum((), (), 3, 3, 0.9, True)
-    free = RelaxedMinimum(("obstacle <1>",), ("obstacle[0]",), 2, 2, 0.95, True)
+    base = RelaxedMinimum((), (), 3, 3, 1.0, 0.9, True)
+    free = RelaxedMinimum(("obstacle <1>",), ("obstacle[0]",), 2, 2, 1.0, 0.95, True)
     same = replace(base, relaxed=("ground",), keys=("ground",))
-    unproved = RelaxedMinimum(("joint 4",), ("joint[3]",), 3, 2, 0.97, False, "at least")
+    unproved = RelaxedMinimum(("joint 4",), ("joint[3]",), 3, 2, 1.0, 0.97, False, "at least")
     found = Explanation("part", base, (free, unproved, same), complete=False)
     here = PlacedMinimum((0.5, 0, 0, 0, 0, 0), 3, 0.9, True, 200)
     there = PlacedMinimum((0.6, 0, 0, 0, 0, 1.0), 1, 0.91, False, 200)

@@ -204,7 +204,7 @@ def test_rows_where_borders_are_refined() -> None:
         surface = build_surface(changed(scene, one)).surface
         areas, row = surface.vertex_areas, rows[(one.name,)]
         colored = [bool(colors) for colors in surface.vertex_colors]
-        assert row.covered_share == pytest.approx(areas[colored].sum() / areas.sum())
+        assert row.surface_share == pytest.approx(areas[colored].sum() / areas.sum())
         assert row.segments == cellcolor.solve(surface).solution.segments
 
 
@@ -227,7 +227,9 @@ def test_numbers_and_areas_are_those_of_the_changed_scene(tilted: Explanation) -
         areas = built.surface.vertex_areas
         colored = [bool(colors) for colors in built.surface.vertex_colors]
         assert (row.segments, row.proved_for_surface) == (solution.segments, True)
-        assert row.covered_share == pytest.approx(areas[colored].sum() / areas.sum())
+        assert row.surface_share == pytest.approx(areas[colored].sum() / areas.sum())
+        solved = (built.reasons != built.reason_names.index("no solution")).any(axis=1)
+        assert row.covered_share == pytest.approx(areas[colored].sum() / areas[solved].sum())
     assert tilted.complete and all(row.proved_for_surface for row in tilted)
     numbers = [row.segments or 0 for row in tilted.alone]
     assert numbers == sorted(numbers)
@@ -309,8 +311,11 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
     rows = json_lines(capsys.readouterr().out)
     assert rows[0]["relaxed"] == [] and rows[1]["relaxed"] == ["obstacle 1 (cylinder)"]
     assert rows[1]["lift_offs"] < rows[0]["lift_offs"]
-    assert all({"branch", "fails"} <= row.keys() for row in rows if "relaxed" not in row)
-    assert sum("branch" in row for row in rows) == 8
+    asked = {"relaxed", "lift_offs", "covered_share", "surface_share", "proved_for_surface"}
+    assert all(asked <= row.keys() for row in rows)
+    branches = [row for row in rows if "branch" in row]
+    assert all("fails" in row and row["lift_offs"] == rows[0]["lift_offs"] for row in branches)
+    assert len(branches) == 8
     for wrong, said in (
         ((file, "--at", "1,2"), "'--at': a point is three numbers"),
         ((file, "--at", "1,2,x"), "'--at': a point is three numbers"),

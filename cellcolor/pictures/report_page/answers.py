@@ -47,7 +47,7 @@ def _explanation_card(found: Explanation) -> Card:
         (
             " and ".join(row.relaxed) + (f" ({row.note})" if row.note else ""),
             f"{_number(base.lift_offs, True)} → {_number(row.lift_offs, row.proved_for_surface)}",
-            f"{100 * base.covered_share:.1f} → {100 * row.covered_share:.1f} %",
+            f"{100 * base.surface_share:.1f} → {100 * row.surface_share:.1f} %",
         )
         for row in (*found.alone, *found.amounts, *found.sets)
         if not row.same_as(base)
