@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import pytest
 from hypothesis import given
 from meshes import surfaces
 
-from cellcolor.data.cells_and_edges import Cell, Edge
+from cellcolor.data.cells_and_edges import Cell, DartName, Edge, Strand, strand_of, twin
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
@@ -47,3 +48,13 @@ def test_dead_darts_and_dead_loops_are_left_out() -> None:
     assert instance.live_edges == (1,)
     assert instance.live_loops == (((1,),), ((-1,),))
     assert (instance.most_live_loops, instance.most_live_darts) == (1, 1)
+
+
+@pytest.mark.parametrize(
+    ("dart", "strand", "other"),
+    [(5, (5, 1), -5), (-5, (-5, 1), 5), ((5, 2), (5, 2), (-5, 2)), ((-7, 1), (-7, 1), (7, 1))],
+)
+def test_strand_and_other_side(dart: DartName, strand: Strand, other: DartName) -> None:
+    assert strand_of(dart) == strand
+    assert twin(dart) == other
+    assert twin(twin(dart)) == dart

@@ -16,6 +16,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.decomposition import decomposition_of
 from cellcolor.decomposition.isomorphic import isomorphic
+from cellcolor.decomposition.same_graph import wrong_cell
 from cellcolor.lab.families.voronoi import voronoi
 from examples import examples
 
@@ -118,3 +119,22 @@ def test_nothing_is_the_same_as_nothing() -> None:
 def test_a_deadline_ends_the_comparison() -> None:
     with pytest.raises(OutOfTime):
         isomorphic(graph(0, "disc"), graph(0, "disc"), Deadline.after(-1.0))
+
+
+@given(st.integers(0, 10**6), SHAPES)
+@examples(30)
+def test_a_graph_is_known_again_and_a_changed_one_is_not(seed: int, shape: str) -> None:
+    """Where loops begin does not matter; an edge that joins another color does."""
+    rng = random.Random(seed)
+    surface = voronoi(seed, shape, size=8, regions=rng.randint(3, 12), colors=rng.randint(2, 4))
+    decomposition = decomposition_of(surface)
+    instance, cells = decomposition.instance, decomposition.vertex_cell
+    assert wrong_cell(surface, instance, cells) is None
+    assert wrong_cell(surface, turned(instance, rng), cells) is None
+    live = [edge for edge in instance.edges if instance.joinable(edge.id)]
+    if not live:
+        return
+    edge = rng.choice(live)
+    fewer = instance.joinable(edge.id)[1:]
+    edges = tuple(replace(e, colors=fewer) if e.id == edge.id else e for e in instance.edges)
+    assert wrong_cell(surface, replace(instance, edges=edges), cells) is not None

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+import cellcolor
+
 pytest.importorskip("matplotlib", reason="the extra 'viz' is not installed")
 
 import numpy as np
@@ -88,3 +90,16 @@ def test_figures_of_the_concepts_are_what_the_script_draws(
         # Other versions of Matplotlib and FreeType draw edges and letters a little differently.
         different = (np.abs(drawn - stored).max(axis=2) > 64).mean()
         assert different < 0.02, f"{name}: out of date, run  python docs/figures/draw.py"
+
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "formats" / "surfaces-and-instances.md"
+
+
+def test_the_instance_by_hand(tmp_path: Path) -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    (example,) = re.findall(r"^```json\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    (segments,) = re.findall(r"^cellcolor solve strip.json +# (\d) segments", text, re.MULTILINE)
+    (tmp_path / "strip.json").write_text(example, encoding="utf-8")
+    for solver in ("cp-sat", "dfs"):
+        found = cellcolor.solve(tmp_path / "strip.json", solver=solver, time_limit=60)
+        assert found.optimal and found.segments == int(segments)

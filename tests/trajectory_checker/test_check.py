@@ -1,4 +1,4 @@
-"""Each kind of fault, made one at a time in a trajectory that has none."""
+"""Each kind of fault, made one at a time in a trajectory that has none, and stated lift-offs."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ pytest.importorskip("coal")
 
 import rasters
 from planted_faults import twice
+from world import KINDS, World, standing
 
 import cellcolor
 from cellcolor.arrays import Array
@@ -23,10 +24,15 @@ from cellcolor.data.surface import Crack
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
 from cellcolor.data.trajectory_csv import read_trajectory_csv
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.deadline import NEVER
 from cellcolor.errors import InputError
 from cellcolor.exports.joint_table import joints_csv
-from cellcolor.frontend.parts.surface import bisected
+from cellcolor.frontend.parts.surface import Surface, bisected
+from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
+from cellcolor.trajectory_checker.claims import judge_left_out, judge_lift_offs
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.other_planners import completed
 from cellcolor.trajectory_checker.tolerances import Limits
 
@@ -428,3 +434,82 @@ def test_a_table_is_not_excused_from_what_an_arm_can_do() -> None:
     names = ("times", "joints", "points", "normals", "contact", "segment")
     half = replace(trajectory, **{name: getattr(trajectory, name)[kept] for name in names})
     assert judged(half, tells=False).of_kind("uncovered")
+
+
+@pytest.mark.parametrize(
+    ("segments", "faults"), [((), 1), ((0,), 1), ((7,), 0), ((7, 8), 0)], ids=str
+)
+def test_a_whole_segment_left_out_allows_one_fewer(segments: tuple[int, ...], faults: int) -> None:
+    """Three segments are needed for all of the surface, and the drive has two of them.
+
+    With the third stated as left out it is no contradiction. A part of a segment that is driven
+    makes no difference.
+    """
+    drive = rasters.cap()[2]
+    assert drive.lift_offs == 1
+    assert 0 in drive.segment[drive.contact] and 7 not in drive.segment
+    left_out = tuple(LeftOut(number, 1e-5, "ground", (0.0, 0.0, 0.0)) for number in segments)
+    found = FaultList(drive, timed=True)
+    judge_lift_offs(replace(drive, left_out=left_out, extra_lift_offs=()), 2, found)
+    assert found.counts["lift-offs"] == faults
+
+
+@pytest.mark.parametrize(("beside", "faults"), [(0, 0), (1, 0), (2, 0), (3, 1)])
+def test_a_place_is_left_out_rightly_with_its_neighbors(beside: int, faults: int) -> None:
+    """A strip of triangles; its last vertex is stated, and one before it is out of reach."""
+    places = np.array([[x, y, 0.0] for x in range(6) for y in range(2)])
+    corner = 2 * np.arange(5)[:, None]
+    faces = np.concatenate([corner + np.array([0, 2, 1]), corner + np.array([1, 2, 3])])
+    fine = refined(Surface(places, faces, np.tile([0.0, 0.0, 1.0], (12, 1))), 2.0, NEVER)
+    drive = rasters.cap()[2]
+    stated = replace(drive, left_out=(LeftOut(0, 0.5, "self collision", (5.0, 0.0, 0.0)),))
+    right = np.zeros(12, dtype=bool)
+    right[2 * (5 - beside)] = True
+    found, areas = FaultList(drive, timed=True), np.full(12, 0.5)
+    judge_left_out(stated, fine, areas, ~np.ones(12, bool), right, np.ones(12, bool), 0.1, found)
+    assert found.counts["claim"] == faults
+
+
+@pytest.mark.parametrize(("margin", "kept"), [(0.0095, True), (0.0105, False)])
+def test_the_tool_keeps_its_margin_to_the_object(margin: float, kept: bool) -> None:
+    """Its body ends 10 mm above the tip, which is on a flat square, and is flat itself."""
+    prepared, built, trajectory = rasters.square()
+    setup = prepared.setup.varied(margins={"to_object_m": margin})
+    wide = prepare(prepared.scene.with_setup(setup))
+    verdict = check_trajectory(replace(built, prepared=wide), trajectory)
+    faults = [f for f in verdict.of_kind("invalid") if f.reason == "object collision"]
+    assert bool(faults) != kept
+    if not kept:
+        invalid = np.zeros(len(trajectory.times), dtype=bool)
+        for fault in faults:
+            invalid[fault.sample : fault.last_sample + 1] = True
+        assert invalid[trajectory.contact].all()
+
+
+@pytest.mark.parametrize(
+    ("key", "reason"), [("to_ground_m", "ground"), ("between_links_m", "self collision")]
+)
+def test_other_margins_are_asked_for_as_well(key: str, reason: str) -> None:
+    prepared, built, trajectory = rasters.square()
+    setup = prepared.setup.varied(margins={key: 0.4})
+    scene = prepared.scene.with_setup(setup).varied(ground={"height_m": -0.2})
+    verdict = check_trajectory(replace(built, prepared=prepare(scene)), trajectory)
+    assert {f.reason for f in verdict.of_kind("invalid")} == {reason}
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_an_obstacle_in_the_way_is_found(kind: str, tmp_path: Path) -> None:
+    prepared, built, trajectory = rasters.square()
+    middle = trajectory.points[len(trajectory.points) // 2] + np.array([0.0, 0.0, 0.15])
+    obstacle, shapes = standing(kind, middle, tmp_path)
+    blocked = prepare(prepared.scene.with_obstacle(obstacle))
+    world = World(prepared.robot, prepared.surface.vertices, prepared.surface.faces)
+
+    def hits(q: Array) -> bool:
+        world.place(q)
+        return any(world.to_solid(*shape) < 0 for shape in shapes)
+
+    first = next(sample for sample, q in enumerate(trajectory.joints) if hits(q))
+    verdict = check_trajectory(replace(built, prepared=blocked), trajectory)
+    found = [f for f in verdict.of_kind("invalid") if f.reason == "obstacle collision"]
+    assert found and abs(min(fault.sample for fault in found) - first) <= 1

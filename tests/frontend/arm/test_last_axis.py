@@ -1,4 +1,4 @@
-"""Both senses of the last axis, and tools along it and against it, for every family of arms.
+"""Both senses of the last axis, and tools along it, against it and beside it, for every family.
 
 Solutions are held against Newton's method on Pinocchio's Jacobians, which knows no family.
 """
@@ -6,6 +6,7 @@ Solutions are held against Newton's method on Pinocchio's Jacobians, which knows
 from __future__ import annotations
 
 import dataclasses
+import math
 from itertools import product
 
 import bent_tools
@@ -14,10 +15,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from independent import wrapped
+from shipped import ROBOTS
 
 from cellcolor.arrays import Array
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics
+from cellcolor.frontend.arm.inverse import KINEMATICS, InverseKinematics, check_tool_on_last_axis
+from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.loading import load_robot
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.turned import TurnedKinematics
@@ -154,3 +157,25 @@ def test_a_tool_that_no_joint_can_tilt_must_not_be_tilted(family: str) -> None:
     robot = loaded(family, "", 1, "0.05 0 0.1", TILTED)
     with pytest.raises(InputError, match="not parallel to the tool's z axis"):
         TurnedKinematics(KINEMATICS.find(family), robot, FILES, Turn(along=(1, 0, 0)))
+
+
+def mounted(position: tuple[float, float, float], rpy: tuple[float, float, float]) -> Robot:
+    files = (ROBOTS / "ur5.urdf", "wrist_3_link", ROBOTS / "polishing_tool.urdf", "tool_tip")
+    return load_robot(*files, mounted=(position, rpy))
+
+
+def check(robot: Robot) -> None:
+    check_tool_on_last_axis(robot, forward(robot, np.zeros((1, 6))), "not that arm")
+
+
+def test_off_by_a_mount() -> None:
+    # Tilted about the flange by an angle, the tip 0.1 m from it; the offset is across that.
+    tilt = math.radians(3)
+    off = math.hypot(100 * math.sin(tilt), 12.5)
+    with pytest.raises(InputError, match=f"tip is {off:.3g} mm off it, the axis 3 deg") as caught:
+        check(mounted((0.0, 0.0125, 0.0), (0.0, tilt, 0.0)))
+    assert caught.value.field == "joint[wrist_3_joint]"
+
+
+def test_on_the_axis_at_any_turn() -> None:
+    check(mounted((0.0, 0.0, 0.07), (0.0, 0.0, 1.2)))
