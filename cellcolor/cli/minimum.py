@@ -309,7 +309,11 @@ def check(seconds: float, **given: Any) -> Exit:
 
 @cellcolor.command()
 @click.argument(
-    "files", metavar="FILE [SOLUTION.json|PLAN.json]", nargs=-1, required=True, type=INPUT
+    "files",
+    metavar="FILE [SOLUTION.json|PLAN.json] | FOLDER…",
+    nargs=-1,
+    required=True,
+    type=INPUT,
 )
 @click.option(
     "-o",
@@ -344,8 +348,15 @@ def show(
 ) -> Exit:
     """Draw an instance, a labelled surface or a scene, by cell unless an option says otherwise.
 
-    With a solution after what was solved, or a plan on its surface: by segment.
+    With a solution after what was solved, or a plan on its surface: by segment. Of folders that
+    cellcolor plan has written: their reports on one page, with a table.
     """
+    if all(file.is_dir() for file in files):
+        from cellcolor.door.plan_files import compare_plans
+
+        compare_plans(files, output)
+        say(f"wrote {output}: {len(files)} plans")
+        return Exit.DONE
     if len(files) > 2:
         raise click.UsageError("give one file to show, or one with its solution or plan")
     implied = {

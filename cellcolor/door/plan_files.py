@@ -1,8 +1,8 @@
-"""The files of a plan's folder (docs/plan.md)."""
+"""The files of a plan's folder (docs/plan.md), and several folders side by side."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.errors import InputError
 from cellcolor.exports.registry import EXPORTS
+from cellcolor.files.documents import read_text
 from cellcolor.files.writing import (
     HTML,
     SIDE_FILE,
@@ -94,3 +95,30 @@ def save(folder: Path, files: Mapping[str, bytes]) -> tuple[str, ...]:
     with make_folder(folder):
         write([Output(folder / name, KINDS[name], [files[name]]) for name in files])
     return tuple(files)
+
+
+def compare_plans(folders: Sequence[Path], page: Path) -> None:
+    """Write one page about several plans, such as of other patterns or places: ``plan``'s folders.
+
+    The page has a table with a row for each plan, and their reports below, which play by
+    themselves.
+
+    Raises:
+        InputError: a folder lacks a file of a whole plan; ``page`` does not end in .html, is no
+            page of cellcolor's, or cannot be written.
+    """
+    from cellcolor.pictures.side_by_side import SavedPlan, render_side_by_side
+
+    if page.suffix != ".html":
+        raise InputError(str(page), None, "must end in .html: several plans are shown on a page")
+    plans = [
+        SavedPlan(
+            folder.name,
+            Solution.read(folder / "solution.json"),
+            Trajectory.read(folder / "trajectory.json"),
+            TrajectoryVerdict.read(folder / "verdict.json"),
+            read_text(folder / "report.html"),
+        )
+        for folder in folders
+    ]
+    write([Output(page, HTML, [render_side_by_side(plans)])])

@@ -51,6 +51,7 @@ def badges_of(report: MotionReport) -> list[tuple[str, bool | None]]:
         why = "as slivers" if report.built.left_alone is None else "on purpose or as slivers"
         more = f", {given_up:.1%} of the surface given up {why}" if given_up else ""
         badges.append((f"{share} of the area with a color covered{more}", None))
+        badges.append((f"{verdict.covered.length_m:.2f} m of path", None))
     return badges
 
 
