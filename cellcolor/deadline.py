@@ -37,7 +37,7 @@ class Deadline:
 
     @classmethod
     def after(cls, seconds: float | None, start: float | None = None) -> Deadline:
-        """The moment so many seconds after the start.
+        """The moment some seconds after the start.
 
         Args:
             seconds: None for no deadline.
@@ -99,7 +99,7 @@ class Deadline:
             yield item
 
     def earlier(self, seconds: float) -> Deadline:
-        """A deadline so much before this one, for what has to be done after the work."""
+        """An earlier deadline, to leave seconds for what has to be done after the work."""
         return Deadline(self.moment - seconds)
 
     def share(self, part: float) -> Deadline:

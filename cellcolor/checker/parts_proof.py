@@ -45,7 +45,7 @@ def verify_cells(proof: Proof, certificate: CertifiedCells, value: int) -> None:
 
 
 def verify_parts(proof: Proof, certificate: CertifiedParts, value: int) -> None:
-    """Verify that the parts need so many segments together.
+    """Verify that the parts together need that many segments.
 
     Raises:
         Refused: they do not.

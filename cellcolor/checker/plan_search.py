@@ -1,4 +1,4 @@
-"""Whether so many segments, or segments that cost so much, can touch some cells: all is tried.
+"""Whether some number of segments, or some cost, is enough to touch some cells: tries everything.
 
 A segment lies in one color region, and touches some of its cells. Two segments that are in
 conflict cannot both touch all that the conflict names. Those of a tangle cannot all touch what it
@@ -57,7 +57,7 @@ class TangledSegment:
 
 @dataclass(frozen=True, slots=True)
 class Tangle:
-    """What so many different segments cannot be side by side."""
+    """Segments that cannot all exist side by side."""
 
     segments: tuple[TangledSegment, ...]
 
@@ -164,7 +164,7 @@ class PlanSearch:
             self._tangles.append(needed)
 
     def is_possible(self, segments: int) -> bool:
-        """Whether so many segments, or segments that cost so much, can touch all cells.
+        """Whether this many segments, or segments of this cost, can touch all cells.
 
         Raises:
             BudgetExceeded: too many choices have been tried.
@@ -197,7 +197,7 @@ class PlanSearch:
         return [tuple(cells) for cells in groups.values()]
 
     def _can_touch(self, cells: tuple[int, ...], segments: int) -> bool:
-        """Whether so many segments can touch some cells, by depth first search."""
+        """Whether this many segments can touch some cells, by depth-first search."""
         trail = [iter([_State((), cells, segments)])]
         while trail:
             state = next(trail[-1], None)
@@ -303,7 +303,7 @@ class PlanSearch:
         return {c: self._able(state.found, numbers, (first, second), c) for c in state.left}
 
     def _count(self, cells: int) -> None:
-        """Count a choice among so many cells; every fifty of them count as one more."""
+        """Count a choice among some cells; every fifty cells count as one more choice."""
         self.tried += 1 + cells // 50
         if self.tried > self._budget or self._deadline.over:
             raise BudgetExceeded

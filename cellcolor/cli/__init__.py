@@ -27,7 +27,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         arguments: what follows the program's name; None takes them from ``sys.argv``.
 
     Returns:
-        The exit code: 0 done, 1 found invalid, 2 bad usage or input, 3 stopped or not proved.
+        0 done, 1 found invalid, 2 bad usage or input, 3 stopped or not proved.
     """
     if arguments is None:
         atexit.register(INTERRUPTS.ignore)  # registered first, so it is called last

@@ -143,7 +143,7 @@ class PlanVerdict(AboutAFile):
         segments: of the plan; null when it is not valid.
         lift_offs: max(0, segments - 1); null when the plan is not valid.
         lower_bound: no division of the surface has fewer segments; null when nothing was proved.
-        upper_bound: a division of the surface with so many segments exists; null when nothing was
+        upper_bound: a division of the surface with this many segments exists; null when nothing was
             proved.
         optimal: true or false where that is proved, null where it is open or the plan not valid.
         beatable_by: how many segments fewer are proved to be enough; 0 only where it is proved that

@@ -70,7 +70,7 @@ def place(
         points: placements that are tried all over the ranges; about three quarters as many are
             tried around the best of them.
         best: how many are proved on the scene's own mesh and listed.
-        vertices: about so many has the coarse mesh that placements are tried on.
+        vertices: about how many the coarse mesh has on which placements are tried.
         base: move the arm's base instead of the part, upright; its ranges are those of the base in
             the scene's world, where it stands in the origin.
         uncovered_price: in lift-offs, of the whole surface: the sum of lift-offs and of this price

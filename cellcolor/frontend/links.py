@@ -24,7 +24,7 @@ from cellcolor.frontend.reach.smooth import bytes_of_following
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.memory import chunks
 
-_PAYS = 3  # points near a vertex; for so many it pays to know how far all is apart there
+_PAYS = 3  # from this many points near a vertex, computing all distances there pays
 
 
 @dataclass(frozen=True)

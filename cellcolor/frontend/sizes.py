@@ -28,7 +28,7 @@ def check_vertices(count: int, field: str | None = None) -> None:
 
 
 def check_turns(vertices: int, turns: int) -> None:
-    """Refuse more turns of the tool than fit beside so many vertices.
+    """Refuse more turns of the tool than fit into memory with this many vertices.
 
     Raises:
         InputError: names the key and the numbers.

@@ -38,7 +38,7 @@ Vector = tuple[FiniteFloat, FiniteFloat, FiniteFloat]
 
 
 def _within_turns(turns: int) -> BeforeValidator:
-    """Refuses angles beyond so many full circles: they are degrees."""
+    """Refuses angles beyond this many full circles: they must be degrees."""
 
     def check(angle: Any) -> Any:
         most = 2 * math.pi * turns + 0.01  # 6.2832 is a full circle as well

@@ -20,7 +20,7 @@ T = TypeVar("T", bound=NDArray[Any])
 
 
 def grouped(count: int, pairs: Index) -> Index:
-    """The group (count,) of each of so many things, of which pairs (p, 2) belong together."""
+    """The group (count,) of each thing, given the pairs (p, 2) of things that belong together."""
     from scipy.sparse import coo_array  # late: reading and solving a surface do without
     from scipy.sparse.csgraph import connected_components
 

@@ -13,7 +13,7 @@ from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.motion.strokes import Stroke
 
 _STARTS = 12  # of a closed stroke that are tried
-_ALL_ORDERS = 6  # up to so many strokes every order is tried
+_ALL_ORDERS = 6  # up to this many strokes, every order is tried
 _BETTER = 1e-9  # s; by less no order counts as better
 
 

@@ -85,7 +85,7 @@ def prove(
 
     Args:
         surface: the labelled surface.
-        deadline: when to be content with what is proved; both ends hold however early it comes.
+        deadline: when to return what is proved; both ends hold however early that is.
         strands: corridors that may cross one topological edge, None for the usual number; more
             may lower ``upper``.
         workers: CP-SAT's search workers, None for its portfolio.

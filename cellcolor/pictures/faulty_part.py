@@ -11,7 +11,7 @@ from cellcolor.frontend.parts.inspection import Inspection
 from cellcolor.pictures.palette import FAINT
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
 
-_MOST = 60_000  # faces that are drawn of a part; of a larger one evenly so many
+_MOST = 60_000  # faces that are drawn; of a part with more, this many, evenly chosen
 _MOST_MARKS = 20_000  # of one kind
 _FILLS = ("#EE6677", "#AA3377", "#4477AA", "#228833", "#CCBB44")  # of faulty faces
 _LINES = ("#D55E00", "#CC0000")  # holes, edges with more than two faces

@@ -83,7 +83,7 @@ def _draw(axes: Axes, plot: Plot) -> None:
 
 
 def render_arms(part: str, shares: Mapping[str, Sequence[float]], kind: str) -> bytes:
-    """What each arm covers with so many lift-offs: bars, a color for each arm.
+    """What each arm covers with each number of lift-offs: bars, a color for each arm.
 
     Args:
         part: its name.
@@ -136,7 +136,7 @@ def render_front(front: Front, kind: str) -> bytes:
         axes.set_ylabel("share of the area that can be covered, %")
         axes.set_ylim(0, 108)
         axes.set_xticks(at)
-        note = "Line: no division with so many lift-offs covers more."
+        note = "Line: no division with that many lift-offs covers more."
         if not front.proved_for_surface:
             note += " Other color: not proved to be the most, for any division of the surface."
         figure.supxlabel(note, fontsize=7, x=0.01, ha="left")

@@ -220,7 +220,7 @@ class _Asked:
         return round(solver.objective_value)
 
     def sets_of(self, size: int) -> list[tuple[int, ...]] | None:
-        """All sets of so many set-ups that cover everything; None if they cannot be listed."""
+        """All sets of this many set-ups that cover everything; None if they cannot be listed."""
         if not self.everything:
             return None
         places = _hardest({tuple(np.flatnonzero(row).tolist()) for row in self._reach.T} - {()})

@@ -20,12 +20,12 @@ _CM2 = 1e4  # in a square meter
 
 @dataclass(frozen=True, eq=False)
 class FrontPoint:
-    """The most that so many segments cover.
+    """The most that a number of segments covers.
 
     Attributes:
-        segments: at most so many.
+        segments: the number, at most.
         covered_share: of what can be covered, 0 to 1: what the solution covers.
-        at_most_share: no division with so many segments covers more.
+        at_most_share: no division with that many segments covers more.
         left_out: the cells that the solution does not cover, ascending.
         solution: a division of the other cells, which are numbered anew in their order
             (:meth:`~cellcolor.data.instance.Instance.without_cells`); the checker has passed it.
@@ -221,4 +221,4 @@ class Front:
         return FrontChoice(point, proved(on_surface=False), proved(on_surface=True))
 
     def __str__(self) -> str:
-        return "\n".join([f"{self.instance.name}: what so many lift-offs cover", *map(str, self)])
+        return "\n".join([f"{self.instance.name}: what lift-offs can cover", *map(str, self)])

@@ -70,7 +70,7 @@ def spread(ranges: Ranges, start: Pose, count: int, seed: int) -> list[Pose]:
 
 
 def middles(ranges: Ranges, start: Pose, tiles: int) -> list[Pose]:
-    """The middles of so many tiles along each range, row by row: the first range goes fastest."""
+    """The middles of the tiles of a map, row by row: the first range varies fastest."""
     steps = (np.arange(tiles) + 0.5) / tiles
     grid = np.meshgrid(*[steps] * len(ranges), indexing="ij")
     return _scaled(ranges, start, np.column_stack([part.ravel() for part in grid[::-1]]))
@@ -147,7 +147,7 @@ def _scaled(ranges: Ranges, start: Pose, points: Array) -> list[Pose]:
 
 
 def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
-    """The scene with a mesh of about so many vertices to be covered; what collides stays.
+    """The scene with about this many vertices to be covered; bodies that can collide stay.
 
     A shape that says how many vertices it has gets fewer. Any other surface is remeshed. Borders
     are not refined.
@@ -186,7 +186,7 @@ def minima_at(
     Args:
         scene: wherever it has its part.
         poses: where the part is put, or the arm's base.
-        seconds: after so many the rows that are left are missing; infinite for no limit.
+        seconds: time limit; rows not reached by then are missing. Infinite for no limit.
         workers: of CP-SAT, None for its portfolio.
         seed: of everything random.
         base: whether the arm's base is moved instead of the part.

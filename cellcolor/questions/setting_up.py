@@ -54,7 +54,7 @@ def candidates_of(
     Args:
         scenes: with the same part.
         poses: other places.
-        deadline: when to be content with those built so far.
+        deadline: when to return those built so far.
         progress: told what is being done.
         by_hand: whether somebody has named each place. Then one in which the part stands in
             something is a mistake, unless it is meant for another of several scenes.

@@ -29,7 +29,7 @@ from cellcolor.solvers.interface import Options
 from cellcolor.solvers.interruptible import make_cp_solver, solve_interruptibly
 
 _FEW_CHOICES = 2000
-"""Of color regions; up to so many are tried one by one."""
+"""The most choices of color regions that are tried one by one."""
 _WHOLE = 2**40
 """What all cells weigh together as integers, for CP-SAT: a share is told to 1e-12."""
 
@@ -147,7 +147,7 @@ class _Asked:
         self._regions = color_regions(instance)
 
     def most_of(self, segments: int) -> tuple[FrontPoint | None, float, bool]:
-        """What so many segments cover at most.
+        """The most that a number of segments can cover.
 
         Returns:
             The best that was found; the share that no division exceeds, -1 where none covers what
@@ -186,7 +186,7 @@ class _Asked:
     def _covering(
         self, cells: Collection[int], segments: int
     ) -> tuple[int, tuple[int, ...], Solution] | None:
-        """A division of some cells with so many segments: weight, what is left out, and itself."""
+        """A division of some cells into this many segments: weight, left-out cells, and itself."""
         left_out = tuple(sorted(set(range(len(self._weights))) - set(cells)))
         if not left_out:  # the whole needs more
             return None
@@ -212,7 +212,7 @@ def _most_covered(
         weights: of each cell, 0 or more.
         segments: how many regions may be chosen.
         required: cells that one of them has to cover.
-        deadline: when to be content with the best found.
+        deadline: when to return the best found.
 
     Returns:
         What they cover, all of it, and the weight that no choice exceeds; None if so few regions

@@ -195,7 +195,7 @@ def enumerate_schemes(
         options: time limit and seed; the search space is ``paper``.
         solver: a name that the registry has.
         segments: the minimum.
-        known: a division with so many segments, for solvers that can start from one.
+        known: a division to start from, for solvers that can.
         counted: told how many schemes there are as soon as the solver knows that.
 
     Raises:

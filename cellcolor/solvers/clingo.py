@@ -34,7 +34,7 @@ _OPTIONS = ("--opt-strategy=usc,stratify", "--parallel-mode=2")
 _MOST_CROSSINGS = 5_000_000
 """The most pairs of crossing links that a model may have. A link goes from one dart of a cell to
 another, and for every two links that would cross the model has a rule. Nothing can interrupt clingo
-while it writes the rules down, which takes up to ten seconds for so many."""
+while it writes the rules down, which takes up to ten seconds for that many."""
 
 _HEARD_AFTER = 0.1
 """Seconds between two looks at the deadline. Python handles a signal, such as Ctrl-C, only then."""

@@ -9,7 +9,7 @@ import numpy as np
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
-_NEAR = 0.02  # of the distance between levels: vertices so near to a level are moved off it
+_NEAR = 0.02  # of the distance between levels: vertices this close to a level are moved off it
 
 
 @dataclass(frozen=True, eq=False)

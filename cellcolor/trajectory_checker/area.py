@@ -20,8 +20,8 @@ from cellcolor.trajectory_checker.repeated import Repeated, passes, repeated_str
 from cellcolor.trajectory_checker.tolerances import Limits
 
 FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as closely covered
-_VISIT = 0.5  # spacings; a pass so near to a point is a visit of it
-_ALONG = 0.25  # spacings; a pass so near to an earlier one runs along it
+_VISIT = 0.5  # spacings; a pass this close to a point is a visit of it
+_ALONG = 0.25  # spacings; a pass this close to an earlier one runs along it
 _APART = 2.0  # spacings of path between two places that belong to two passes
 _THINNED = 0.1  # spacings of path between two places of contact that are measured with
 

@@ -1,4 +1,4 @@
-"""What the judge lets pass, and why so much (docs/judging-trajectories.md)."""
+"""The tolerances of the judge, and their reasons (docs/judging-trajectories.md)."""
 
 from __future__ import annotations
 

@@ -157,6 +157,6 @@ def test_a_plan_is_asked_besides() -> None:
     (found,) = planned.answered.answers
     assert found.points[-1].covered_share == 1.0
     assert "Lift-offs against area" in planned.page().decode()
-    assert "what so many lift-offs cover" in str(planned)
+    assert "what lift-offs can cover" in str(planned)
     with pytest.raises(cellcolor.InputError, match="'why' is not one of"):
         cellcolor.plan("square", ask=["why"])

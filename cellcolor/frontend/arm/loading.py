@@ -137,7 +137,7 @@ def load_robot(
 def _check_chain(
     whole: Urdf, arm: Urdf, tool: Urdf, tip_link: str, wanted: tuple[int, int]
 ) -> None:
-    """Hold the tree to so many turning and prismatic joints in a row to the tip, none elsewhere."""
+    """Require these numbers of turning and prismatic joints from base to tip, none elsewhere."""
     in_chain = [whole.joint_above[link] for link in whole.chain(tip_link)[1:]]
 
     def refuse(name: str, key: str, message: str) -> InputError:

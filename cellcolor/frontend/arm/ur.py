@@ -278,7 +278,7 @@ def _principal(angles: Array) -> Array:
     return np.pi - np.mod(np.pi - angles, 2 * np.pi)
 
 
-_SLACK = 0.05  # by so much a cosine may exceed 1 where the ideal arm just does not reach
+_SLACK = 0.05  # how much a cosine may exceed 1 where the ideal arm just fails to reach
 
 
 class UrKinematics(InverseKinematics):

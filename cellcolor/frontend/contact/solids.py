@@ -42,10 +42,10 @@ _FINEST = 0.002  # m; half a slice that is left to fcl rather than halved again
 _FINEST_AROUND = 0.02  # m; the same of the capsule around a solid, which is not close anyway
 _CLOSE = 0.025  # m; half a slice from which on the nearest sample is worth its price
 _SPACING = 0.003  # m; wanted distance of a mesh's points to the nearest sample
-_SAMPLES = 500_000  # at most about so many; large objects are sampled more coarsely
+_SAMPLES = 500_000  # about the most; large objects are sampled more coarsely
 _PITCH, _PARTS = 0.006, 80  # of the grid: m, or parts of the longest side of a large object
 _ROUNDING = 1e-9  # m
-_AROUND = 0.06  # m; by so much the grid is larger than the object
+_AROUND = 0.06  # m; how far the grid extends beyond the object
 
 Rows = NDArray[np.intp]
 Distances = Callable[[Array], tuple[Array, Array]]
@@ -282,7 +282,7 @@ def sample_mesh(vertices: Array, faces: Faces, slack: float, most: int) -> tuple
         vertices: (n, 3) in m.
         faces: (m, 3), none of them without area.
         slack: wanted, m.
-        most: about so many points besides the vertices; more slack is taken to stay below.
+        most: about the most points besides the vertices; the slack grows to stay below.
     """
     edges = TriangleMesh(vertices, faces).edges
     corners = vertices[faces]

@@ -14,7 +14,7 @@ from cellcolor.frontend.arm.body import Body, StandIn
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.solids import sample_mesh
 
-_SAMPLES = 50_000  # of each surface, at most about so many
+_SAMPLES = 50_000  # about the most samples of each surface
 _SLACK = 0.0005  # m; wanted distance of a surface's points to the nearest sample
 _FAR = 0.02  # m; a hull that is farther off its mesh is warned of
 _HALVINGS = 40  # of a face; a meter comes down to a micrometer

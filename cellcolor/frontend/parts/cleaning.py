@@ -19,7 +19,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh, grouped
 
-_SAME = 1e-8  # of the mesh's size; vertices so near to each other are in one place
+_SAME = 1e-8  # share of the mesh's size; vertices this close count as one place
 _FLAT = 1e-6  # of the longest side's square; a doubled area that counts as none
 _PASSES = 30
 

@@ -62,7 +62,7 @@ class Tolerance(Table):
     Attributes:
         position_m: its center may be off so far, in any direction, m.
         rotation_rad: it may be turned so far, about any axis through its center, rad.
-        samples: so many displacements are asked about.
+        samples: how many displacements are tested.
     """
 
     position_m: Annotated[FiniteFloat, Field(ge=0, le=1)] = 0.0

@@ -1,6 +1,6 @@
 """Validity on the way: what is linked has to be valid between the vertices as well.
 
-Every link is tested at so many points that no body moves far from one to the next. An edge with an
+Every link is tested at points so close that no body moves far from one to the next. An edge with an
 end at the border of the branch's domain, where limits, contacts and thresholds are near, is tested
 at points that are close on the surface as well.
 """
@@ -75,8 +75,8 @@ def remains_valid(
     Args:
         edges: (k, 2) vertex indices.
         branches: (k,) one of each edge.
-        pieces: (k,) at least so many equal parts are made of each edge. A part on which a body
-            moves farther than it may is cut again.
+        pieces: (k,) the least number of equal parts that each edge is divided into. A part on which
+            a body moves farther than it may is cut again.
         ends: (ends, n, branches, 3) of the bodies at the vertices, m.
         longest: (ends,) how far each may move between two points, m.
         test: see :data:`Test`.

@@ -57,7 +57,7 @@ MOST_SHEETS = 60
 
 
 def edges_at_once(slots: int, joints: int) -> int:
-    """How many edges :class:`Linking` compares within memory, if there are so many slots."""
+    """How many edges :class:`Linking` compares at a time within memory, given the slots."""
     return at_once(slots * (slots * 8 * (4 * joints + 8) + bytes_of_following(joints)))
 
 

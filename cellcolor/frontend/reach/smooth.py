@@ -34,7 +34,7 @@ class Measure:
     Attributes:
         policy: the bounds on steps.
         near_singular: task determinant from which on down steps are always looked into, m^3.
-        lever: by so much a turn of the tool by one rad counts as a way, m.
+        lever: the way that counts like a turn of the tool by one rad, m.
         slides: (joints,) which joints are prismatic; none without it.
         reach: a prismatic joint that moves so far, in m, counts as one that turns by one rad.
     """

@@ -29,7 +29,7 @@ from cellcolor.memory import cached, check_memory
 NO_SOLUTION = 1
 """The code where a branch does not reach the pose, so that there is nothing to test."""
 _NAMES = ("valid", "no solution")  # of the codes that no test stands for
-_PAYS = 8  # parts of so many are worth a process of their own
+_PAYS = 8  # with this many parts, other processes are worth their start
 
 
 @dataclass(frozen=True)
@@ -156,7 +156,7 @@ class Judge:
 
         Raises:
             OutOfTime: the deadline came first.
-            TooLarge: the verdicts on so many would not fit into the machine's memory.
+            TooLarge: the verdicts would not fit into the machine's memory.
         """
         count = len(configurations)
         points, joints = len(self.tracked_steps), configurations.shape[1]
@@ -216,7 +216,7 @@ class Judge:
         moved = turned_into_limits(robot, configurations)
         poses = forward(robot, moved)
         ends = body_ends(robot, poses)
-        # A cylinder that is longer and wider by a margin has corners so much farther out.
+        # The corners of a cylinder that is longer and wider by a margin are this much farther out.
         margins, farther = place.setup.margins, np.sqrt(2)
         around = body_gaps(robot, ends, [place.target]) - farther * margins.to_object_m
         others = body_gaps(robot, ends, place.obstacles) - farther * margins.to_obstacles_m

@@ -192,7 +192,7 @@ def fewest_by_vertices(surface: LabelledSurface, most_states: int) -> int | None
 
     Args:
         surface: small, its vertices in an order with a short front, such as row by row.
-        most_states: give up beyond so many partial colorings at a time.
+        most_states: give up if there are more partial colorings at a time.
 
     Returns:
         The minimum, None when given up.

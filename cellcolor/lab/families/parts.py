@@ -36,7 +36,7 @@ class _Labels:
 
 
 def part(seed: int, cells: int = 1000, colors: int = 300) -> LabelledSurface:
-    """A closed part with so many cells and colors.
+    """A closed part with given numbers of cells and colors.
 
     Eight branches, in four pairs with nearly equal domains, reach where rough random fields are
     high. Along creases some of them are cracked. As in a front end the colors are the connected

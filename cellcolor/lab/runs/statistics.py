@@ -167,7 +167,7 @@ def growth(rows: Sequence[Row], size: Callable[[Row], int], name: str) -> Plot:
 
 
 def profile(rows: Sequence[Row]) -> Plot:
-    """Performance profile: the share of runs that take at most so many times the best time."""
+    """Performance profile: the share of runs that take at most a multiple of the best time."""
     all_ratios = ratios(rows)
     end = max(filter(math.isfinite, chain(*all_ratios.values())), default=1.0)
     curves = []

@@ -27,7 +27,7 @@ def answer_card(answer: Answers) -> Card:
 def _front_card(front: Front) -> Card:
     """Each point a row, which shows on the part what it covers."""
     text = (
-        "The most that so many lift-offs cover, of the area that some color reaches. A click on a "
+        "The most that each number of lift-offs can cover, of the area with a color. A click on a "
         "row or on a point shows it on the part."
     )
     rows = [("lift-offs", "covered", "proof")]

@@ -141,7 +141,7 @@ MOST_TANGLES = 20
 """How many are looked for in a plan before the next one is made that heeds them."""
 
 MOST_CHOICES = 60
-"""As many choices of merged cells, one of each group, may be held against the equations before a
+"""How many choices of merged cells, one of each group, may be tested with the equations before a
 merged cell is let into a group of a tangle."""
 
 _Places = Sequence[tuple[int, int]]

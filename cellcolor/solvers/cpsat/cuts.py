@@ -41,7 +41,7 @@ class FewestCuts:
         runner: runs models.
 
     Attributes:
-        bound: no division with so many segments has fewer cutting paths.
+        bound: no division with ``segments`` segments has fewer cutting paths.
         best: the best division so far, written with seams; None as long as no better one than the
             first was found.
         notes: what was left out and why, a sentence each.

@@ -35,7 +35,7 @@ def many_links(
         loops: the colors that each dart can be joined in, loop by loop, in cyclic order.
         enough: no more links are looked for.
         seed: of the attempts.
-        deadline: when to be content with the best so far.
+        deadline: when to return the best so far.
 
     Raises:
         OutOfTime: the deadline came before the first attempt ended.

@@ -53,6 +53,7 @@ class ModelSearch:
     def solve(self, deadline: Deadline) -> None:
         """Solve the stages one after the other; the last one proves a bound."""
         stages = self._stages()
+        # Some may be equal: each is solved once, and what equals the last one is final.
         for number, stage in enumerate(stages):
             if not self._part.done and stages.index(stage) == number:
                 self._minimize(*stage, self._part.colors, deadline, final=stage == stages[-1])

@@ -127,7 +127,7 @@ class PartSearch(PartState):
     def recolor_large(self, deadline: Deadline, moves: int = MOVES) -> None:
         """Better divisions of a large part by local search.
 
-        A few moves come before plans, so that these can be held against a good division. On small
+        A few moves come before plans, so that plans can be compared with a good division. On small
         parts other routes and windows find as much or more.
         """
         if self.large:

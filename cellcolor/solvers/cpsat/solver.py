@@ -34,7 +34,7 @@ from cellcolor.solvers.cpsat.schemes.enumeration import OptimalSchemes
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options, Start
 
 RESERVES = 4
-"""The search ends before the deadline by so many times what it takes to put a division together:
+"""The search ends before the deadline by this multiple of the time to put a division together:
 that is needed once more for the answer, then by the checker, and for writing the file."""
 
 _Stage = Callable[[PartSearch, Deadline], None]

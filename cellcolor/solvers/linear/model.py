@@ -59,7 +59,7 @@ class Model:
         self.exactly_one.append(tuple(literals))
 
     def rows(self) -> Iterator[tuple[str, Literals]]:
-        """Every constraint as (``>=``, ``<=`` or ``=``, literals): so many are true as 1."""
+        """Every constraint as (``>=``, ``<=`` or ``=``, literals); the right-hand side is 1."""
         for sense, group in (
             (">=", self.at_least_one),
             ("<=", self.at_most_one),

@@ -37,7 +37,7 @@ class _Heard:
     """What the program has printed so far.
 
     Attributes:
-        bound: there are so many segments or more.
+        bound: no division has fewer segments.
         true: the variables that are 1 in its best solution; None without one.
         done: that solution is proved the best.
     """

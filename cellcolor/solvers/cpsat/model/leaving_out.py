@@ -32,7 +32,7 @@ def least_left_out(
     required: Collection[int],
     options: Options,
 ) -> tuple[frozenset[int], int] | None:
-    """The cells that are left out if so many segments cover the most in the search space ``paper``.
+    """The cells left out when a number of segments covers the most, in the search space ``paper``.
 
     Args:
         instance: the topological graph.

@@ -45,7 +45,7 @@ def route(
         deadline: when to stop; looked at after each net.
         held: for each segment connected nodes that it has already, none where nothing is known. Its
             first route keeps to them.
-        patience: give up after so many rounds in succession in which no fewer nodes are shared.
+        patience: give up after this many successive rounds without fewer shared nodes.
 
     Returns:
         A painting; with more segments than planned if some could not be connected.

@@ -39,7 +39,7 @@ from cellcolor.solvers.cpsat.schemes.zero_darts import zeros_can_differ
 from cellcolor.solvers.interface import Options
 
 _AHEAD = 100
-"""Schemes that are found ahead of whoever takes them. With so many waiting the search pauses."""
+"""The most schemes found but not yet taken; then the search pauses."""
 _COUNTING = 1 / 4
 """Share of the time that is left for counting; the search needs the rest if that is given up."""
 _NEARBY = 0.3
