@@ -1,10 +1,16 @@
 """The six scenes at a resolution, raw and with the sliver policy, as shipped or displaced.
 
     python benchmarks/experiments.py VERTICES [SEEDS] [--raw-only | --policy-only] [SCENE ...]
+    python benchmarks/experiments.py VERTICES SEEDS --write FOLDER
 
 Without SEEDS: one line a scene and policy. With SEEDS: the object moved by up to 5 mm and
 2 degrees an axis, once for each seed from 1 on, and how often each number of lift-offs came out.
 "a-b" stands for a minimum that the time limit of 10 seconds left between a and b.
+
+With --write, labelled surfaces of other scenes are written instead, for ``cellcolor bench run``:
+no sliver policy, the object moved by up to 40 mm and 12 degrees an axis, far beyond what a fixture
+would allow.
+
 The figures of docs/experiments.md were made with this.
 """
 
@@ -26,15 +32,18 @@ from cellcolor.solvers.interface import Options
 TOP = Path(__file__).parents[1]
 SCENES = TOP / "instances" / "scenes"
 NAMES = ("hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square")
-SHIFT_M, TURN_RAD = 0.005, np.deg2rad(2.0)
+NEARBY, ELSEWHERE = (0.005, np.deg2rad(2.0)), (0.04, np.deg2rad(12.0))
+"""The most that an object is moved: m and rad an axis."""
 
 
-def build(name: str, vertices: int, seed: int, raw: bool) -> BuildResult:
+def build(
+    name: str, vertices: int, seed: int, raw: bool, most: tuple[float, float] = NEARBY
+) -> BuildResult:
     """A variant of a shipped scene; seed 0 leaves it where it is."""
     scene = Scene.read(SCENES / f"{name}.toml").varied(object={"target_vertices": vertices})
     if seed:
         random = np.random.default_rng(seed)
-        shift, turn = random.uniform(-SHIFT_M, SHIFT_M, 3), random.uniform(-TURN_RAD, TURN_RAD, 3)
+        shift, turn = (random.uniform(-limit, limit, 3) for limit in most)
         place = scene.placement
         scene = scene.moved(position_m=place.position_m + shift, rpy_rad=place.rpy_rad + turn)
     if raw:
@@ -59,8 +68,22 @@ def shares(result: BuildResult) -> tuple[float, float]:
     return 100 * report.reachable_area_m2 / report.area_m2, 100 * lost / report.area_m2
 
 
+def write(folder: Path, vertices: int, seeds: int) -> None:
+    """Write a labelled surface for each scene and seed."""
+    for name in NAMES:
+        (folder / name).mkdir(parents=True, exist_ok=True)
+        for seed in range(1, seeds + 1):
+            surface = build(name, vertices, seed, True, ELSEWHERE).surface
+            file = folder / name / f"{name}_{seed}.surface.json"
+            file.write_text(surface.to_json(), encoding="utf-8")
+            print(file, flush=True)
+
+
 def main(arguments: list[str]) -> None:
-    """Print the figures."""
+    """Print the figures, or write surfaces."""
+    if "--write" in arguments:
+        write(Path(arguments[-1]), *map(int, arguments[:2]))
+        return
     options = {argument for argument in arguments if argument.startswith("--")}
     numbers = [int(argument) for argument in arguments if argument.isdigit()]
     names = [argument for argument in arguments if argument in NAMES] or NAMES

@@ -15,9 +15,9 @@ from __future__ import annotations
 
 import argparse
 import resource
-import subprocess
 import sys
 import time
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +25,7 @@ import trimesh
 
 from cellcolor.decomposition import decomposition_of
 from cellcolor.frontend import Scene, build_surface
+from cellcolor.processes import Limits, run_alone
 
 TOP = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(TOP / "benchmarks" / "parts"))
@@ -52,7 +53,7 @@ def scene_of(kind: str, level: int) -> Scene:
     return Scene.read(TOP / "instances" / "parts" / "blend.toml").with_object(part)
 
 
-def measure(kind: str, level: int) -> None:
+def measured(kind: str, level: int) -> str:
     """One line of the table, of this process."""
     scene = scene_of(kind, level)
     started = time.perf_counter()
@@ -66,7 +67,7 @@ def measure(kind: str, level: int) -> None:
     used = (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)
     memory = sum(resource.getrusage(who).ru_maxrss for who in used) / 2**20
     numbers = f"{len(built.surface.vertices):,} | {cells} | {seconds:.1f} | {after:.1f}"
-    print(f"| {kind} | {numbers} | {memory:.2f} | {slowest} | {built.surface.sha256[:8]} |")
+    return f"| {kind} | {numbers} | {memory:.2f} | {slowest} | {built.surface.sha256[:8]} |"
 
 
 def main() -> None:
@@ -74,18 +75,16 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("levels", nargs="*", type=int, default=[1, 2, 3], metavar="LEVEL")
     parser.add_argument("--kinds", nargs="+", choices=KINDS, default=KINDS)
-    parser.add_argument("--one", nargs=2, help=argparse.SUPPRESS)
     arguments = parser.parse_args()
-    if arguments.one:
-        measure(arguments.one[0], int(arguments.one[1]))
-        return
     print("| scene | vertices | cells | build s | decomposition s | GiB | slowest | surface |")
     print("|---|--:|--:|--:|--:|--:|---|---|", flush=True)
     for kind in arguments.kinds:
         for level in arguments.levels:
-            own = [sys.executable, __file__, "--one", kind, str(level)]
-            subprocess.run(own, check=True)
+            ended = run_alone(measured, (kind, level), Limits(inf, inf))
+            print(ended.value or f"| {kind} | {ended.error} |", flush=True)
 
 
 if __name__ == "__main__":
+    from frontend_scale import measured  # by the name that other processes can import
+
     main()
