@@ -17,10 +17,10 @@ from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division
 from cellcolor.deadline import OutOfTime
-from cellcolor.errors import InputError, SolverMissing, TooLarge
+from cellcolor.errors import SolverMissing, TooLarge
 from cellcolor.files.paths import shipped_folder
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
-from cellcolor.solvers.joined_chains import division_of_chains
+from cellcolor.solvers.joined_chains import division_of_chains, only_loops
 
 if TYPE_CHECKING:
     from clingo import Model, Symbol
@@ -124,14 +124,10 @@ def asp_facts(instance: Instance) -> str:
     """
     facts = []
     crossings = 0
-    for cell in instance.cells:
-        facts.append(f"cell({cell.id}).")
-        live = instance.live_loops[cell.id]
-        if len(live) > 1:
-            where = f"cells[{cell.id}].loops"
-            raise InputError(None, where, f"the model knows one live loop, here are {len(live)}")
-        facts += [f"at({cell.id},{place},{d})." for loop in live for place, d in enumerate(loop)]
-        crossings += sum(comb(len(loop), 4) for loop in live)
+    for cell, loop in enumerate(only_loops(instance)):
+        facts.append(f"cell({cell}).")
+        facts += [f"at({cell},{place},{dart})." for place, dart in enumerate(loop)]
+        crossings += comb(len(loop), 4)
     if crossings > _MOST_CROSSINGS:
         raise TooLarge(f"{crossings} pairs of cutting paths that may cross are too many for clingo")
     for edge in instance.edges:

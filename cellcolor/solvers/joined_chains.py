@@ -1,4 +1,4 @@
-"""The division that a model's solution describes: joined edges, and darts linked to sub-cells."""
+"""What models of cells with one live loop are made of, and the divisions that they describe."""
 
 from __future__ import annotations
 
@@ -6,6 +6,20 @@ from collections.abc import Mapping
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, number_segments
+from cellcolor.errors import InputError
+
+
+def only_loops(instance: Instance) -> list[tuple[int, ...]]:
+    """The live loop of each cell; empty where it has none.
+
+    Raises:
+        InputError: a cell has several loops with live darts, which these models cannot divide.
+    """
+    for cell, loops in enumerate(instance.live_loops):
+        if len(loops) > 1:
+            message = f"the model knows one live loop, here are {len(loops)}"
+            raise InputError(None, f"cells[{cell}].loops", message)
+    return [loops[0] if loops else () for loops in instance.live_loops]
 
 
 def division_of_chains(

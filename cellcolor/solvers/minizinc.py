@@ -22,11 +22,11 @@ from cellcolor.data.bounds import Bound
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, count_segments
 from cellcolor.deadline import OutOfTime
-from cellcolor.errors import CellcolorError, InputError, SolverMissing, TooLarge
+from cellcolor.errors import CellcolorError, SolverMissing, TooLarge
 from cellcolor.files.paths import shipped_folder
 from cellcolor.processes import Child
 from cellcolor.solvers.interface import Abilities, Answer, OnProgress, Options
-from cellcolor.solvers.joined_chains import division_of_chains
+from cellcolor.solvers.joined_chains import division_of_chains, only_loops
 
 _MOST_PAIRS = 30_000
 """The most pairs of darts of one cell: the model has a constraint for each, and MiniZinc takes a
@@ -42,7 +42,7 @@ def minizinc_data(instance: Instance) -> str:
         InputError: a cell has several loops with live darts, which the model cannot divide.
         TooLarge: the cells have so many live darts that MiniZinc would not be done with it in time.
     """
-    loops = [_only_loop(instance, cell.id) for cell in instance.cells]
+    loops = only_loops(instance)
     pairs = sum(len(loop) * (len(loop) - 1) // 2 for loop in loops)
     if pairs > _MOST_PAIRS:
         raise TooLarge(f"{pairs} pairs of darts are too many for the MiniZinc model")
@@ -77,14 +77,6 @@ def minizinc_data(instance: Instance) -> str:
             ("regions_of", _array(map(_set, of_cell))),
         )
     )
-
-
-def _only_loop(instance: Instance, cell: int) -> tuple[int, ...]:
-    live = instance.live_loops[cell]
-    if len(live) > 1:
-        message = f"the model knows one live loop, here are {len(live)}"
-        raise InputError(None, f"cells[{cell}].loops", message)
-    return live[0] if live else ()
 
 
 def _regions(instance: Instance, loops: list[tuple[int, ...]]) -> dict[tuple[int, int], int]:

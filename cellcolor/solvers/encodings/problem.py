@@ -9,9 +9,10 @@ from math import inf
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError, TooLarge
+from cellcolor.errors import TooLarge
 from cellcolor.solvers.bounds.cover import Region, color_regions
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
+from cellcolor.solvers.joined_chains import only_loops
 
 Pair = tuple[int, int]
 """Two darts of one cell, in the order of its list."""
@@ -49,12 +50,7 @@ class Problem:
             TooLarge: a model would not fit into memory.
             OutOfTime: the deadline came first.
         """
-        for cell, loops in enumerate(instance.live_loops):
-            if len(loops) > 1:
-                where = f"cells[{cell}].loops"
-                raise InputError(
-                    None, where, f"the model knows one live loop, here are {len(loops)}"
-                )
+        loops = only_loops(instance)
         allowed = drop_dominated(instance, left_out(instance, deadline))
         deadline.check()
         colors = {}
@@ -62,10 +58,7 @@ class Problem:
             joinable = instance.joinable(edge.id)
             if joinable and (left := allowed[edge.left] & allowed[edge.right] & set(joinable)):
                 colors[edge.id] = left
-        cells = tuple(
-            tuple(dart for loop in loops for dart in loop if abs(dart) in colors)
-            for loops in instance.live_loops
-        )
+        cells = tuple(tuple(dart for dart in loop if abs(dart) in colors) for loop in loops)
         problem = cls(cells, colors, allowed, tuple(color_regions(instance, allowed)))
         if problem.size > LARGEST_MODEL:
             raise TooLarge(f"a model of more than {LARGEST_MODEL:.1g} terms is not built")

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.errors import InputError, TooLarge
+from cellcolor.solvers.joined_chains import only_loops
 from cellcolor.solvers.linear.model import Model
 
 
@@ -95,15 +96,11 @@ class Coloring:
             InputError: a cell has several loops with live darts, which the model cannot divide.
             TooLarge: the model would have more than ``MOST_TERMS`` literals.
         """
-        for cell, loops in enumerate(instance.live_loops):
-            if len(loops) > 1:
-                message = f"the model knows one live loop, here are {len(loops)}"
-                raise InputError(None, f"cells[{cell}].loops", message)
+        self._loops = only_loops(instance)
         terms = estimated_terms(instance)
         if terms > MOST_TERMS:
             raise TooLarge(f"the 0-1 model would have {terms} literals, {MOST_TERMS} at most")
         self._instance = instance
-        self._loops = [loops[0] if loops else () for loops in instance.live_loops]
         self._regions = color_regions(instance)
         self.model = Model()
         self.joined: dict[tuple[int, int], int] = {}
