@@ -199,7 +199,8 @@ def _build_surface(source: Path, output: Path) -> Instance:
     "--picture",
     metavar="OUT.(html|png|svg)",
     type=PATH,
-    help="With --refine-until-stable, the meshes side by side.",
+    help="Best division and bounds over the seconds of the search, .png or .svg; with "
+    "--refine-until-stable the meshes side by side.",
 )
 @click.option("--time-limit", metavar="S", type=SECONDS, help="Seconds for each file.")
 @WORKERS
@@ -247,8 +248,8 @@ def _check_solve(
             "--color-cost excludes --all, --cover and --refine-until-stable: they are about the "
             "number of segments"
         )
-    if picture is not None and not (refine and len(files) == 1):
-        raise click.UsageError("--picture needs --refine-until-stable and a single scene")
+    if picture is not None and len(files) > 1:
+        raise click.UsageError("--picture is of a single file")
     if given["warm_start"] is not None and len(files) > 1:
         raise click.UsageError("--warm-start takes a single file")
     if given["required"] is not None and given["cover"] is None:

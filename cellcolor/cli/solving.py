@@ -27,7 +27,7 @@ from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.solution import SearchSpace, Solution, scheme_line
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
-from cellcolor.door.drawing import kind_of_picture
+from cellcolor.door.drawing import kind_of_picture, kind_of_plot
 from cellcolor.door.result import Result
 from cellcolor.errors import CellcolorError, InputError, TooLarge
 from cellcolor.files.writing import (
@@ -122,7 +122,8 @@ def solve_files(request: Request) -> Exit:
     """Solve every file; a bad one does not stop the others."""
     targets = _targets(request)
     if request.picture is not None:
-        check_output(request.picture, kind_of_picture(request.picture), request.inputs)
+        kind = (kind_of_picture if request.refine else kind_of_plot)(request.picture)
+        check_output(request.picture, kind, request.inputs)
     _check_able(request)
     _warn_of_workers(request.workers)
     with apart_from(request.output):
@@ -273,9 +274,9 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
     if target is not None and not is_stream(target) and other:
         beside = [_solved(result, target)]
     if request.picture is not None:
-        from cellcolor.door.drawing import draw_steps
+        from cellcolor.door.drawing import draw_search
 
-        draw_steps(result).save(request.picture)
+        draw_search(result, request.picture)
     if not request.every:
         if target is not None:
             _make_folder(target)

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
 from cellcolor.data.plan import Plan
+from cellcolor.data.plot import Curve, Plot
 from cellcolor.data.solution import Solution
 from cellcolor.door.extras import extras_for
 from cellcolor.door.result import Result
@@ -306,17 +307,49 @@ def _checked(
     return solution, report.bounds
 
 
-def draw_steps(result: Result) -> Drawing:
-    """The meshes of a result's ``refinement``, side by side.
+def draw_search(result: Result, path: str | PathLike[str]) -> None:
+    """Draw how a result was found: best division and bound over time, or its meshes side by side.
+
+    Args:
+        result: one with a ``refinement`` is drawn as its meshes, to .html, .png or .svg; any other
+            as two lines over the seconds of its search, beside what each kind of bound proved in
+            the end, to .png or .svg.
+        path: the file.
 
     Raises:
-        InputError: the result has no refinement.
+        InputError: another suffix, or the file cannot be written.
     """
-    from cellcolor.pictures.by_refinement import draw_refinement
+    if result.refinement is not None:
+        from cellcolor.pictures.by_refinement import draw_refinement
 
-    if result.refinement is None:
-        raise InputError(None, "refinement", "the result has none: solve with refine_until_stable")
-    return Drawing(draw_refinement(result.refinement))
+        Drawing(draw_refinement(result.refinement)).save(path)
+        return
+
+    def render(form: str) -> bytes:
+        from cellcolor.pictures.plots import render_plot
+
+        return render_plot(plot_of_gap(result), form)
+
+    save_plot(path, render)
+
+
+def plot_of_gap(result: Result) -> Plot:
+    """Best division and bound over the seconds of a search, and each kind of bound at its end."""
+    solution, gap = result.solution, result.gap
+    end = gap[-1].seconds if gap else 0.0
+    best = tuple((step.seconds, step.segments) for step in gap if step.segments is not None)
+    of = "segments" if solution.objective is None else "cost"
+    curves = [
+        Curve(f"{bound.kind}: {bound.value}", ((0.0, bound.value), (end, bound.value)))
+        for bound in solution.bounds or ()
+        if bound.of == of
+    ]
+    curves += [
+        Curve("lower bound", tuple((step.seconds, step.lower_bound) for step in gap)),
+        Curve("best division", best),
+    ]
+    title = f"{result.instance.name}: {result.solution.status}"
+    return Plot(title, "seconds of the search", of, tuple(curves), joined="steps")
 
 
 def save_plot(path: str | PathLike[str], render: Callable[[str], bytes]) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import html
 from dataclasses import dataclass, field
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.shares import BASES, segment_rows, shares_of
@@ -21,6 +21,20 @@ if TYPE_CHECKING:
     from cellcolor.questions.refinement import Refinement
 
 
+class GapStep(NamedTuple):
+    """What was known at one moment of a search.
+
+    Attributes:
+        seconds: since the search began.
+        segments: of the best division by then, or what it costs; None before there was one.
+        lower_bound: no division in the search space has fewer, or costs less.
+    """
+
+    seconds: float
+    segments: int | None
+    lower_bound: int
+
+
 @dataclass(frozen=True, repr=False)
 class Result:
     """The fewest segments that were found, and what is proved about them.
@@ -31,12 +45,14 @@ class Result:
         covered_share: what was solved, as a share of the area that can be covered and is not left
             alone, 0 to 1.
         refinement: the steps to the mesh that was solved, where ``refine_until_stable`` was asked.
+        gap: how best division and bound met over time, the last step at the end of the search.
     """
 
     solution: Solution
     subject: Subject = field(hash=False)
     covered_share: float = 1.0
     refinement: Refinement | None = None
+    gap: tuple[GapStep, ...] = field(default=(), compare=False)
 
     @property
     def instance(self) -> Instance:

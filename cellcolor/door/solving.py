@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from dataclasses import replace
 from math import degrees
@@ -16,7 +17,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.decomposition import decomposition_of
 from cellcolor.door.leaving_out import Wanted, rest_of
-from cellcolor.door.result import Result
+from cellcolor.door.result import GapStep, Result
 from cellcolor.door.subject import (
     Solvable,
     Subject,
@@ -159,6 +160,7 @@ def solve(
         objective=replace(objective, uncovered_price=None),
     )
     refinement = None
+    gap: list[GapStep] = []
     if refine_until_stable:
         subject, refinement = _refined(
             subject, lambda graph: checked.solve(graph, options, solver, progress), deadline
@@ -166,11 +168,22 @@ def solve(
         solution = refinement.steps[-1].solution
         left_out = (*left_out, refinement.verdict)
     else:
-        solution = checked.solve(instance, options, solver, progress)
+        begun = time.monotonic()
+
+        def told(segments: int | None, bound: int) -> None:
+            gap.append(GapStep(time.monotonic() - begun, segments, bound))
+            if progress is not None:
+                progress(segments, bound)
+
+        solution = checked.solve(instance, options, solver, told)
+        best, bound = solution.segments, solution.lower_bound
+        if solution.cost_lower_bound is not None:
+            best, bound = solution.cost, solution.cost_lower_bound
+        gap.append(GapStep(time.monotonic() - begun, best, bound))
     solution = _with_minimum_modulo(_with_raw_minimum(solution, subject, options), subject, options)
     notes = (*_tolerance_in_words(subject), *left_out)
     solution = replace(solution, notes=(*notes, *solution.notes))
-    return Result(solution, subject, share, refinement)
+    return Result(solution, subject, share, refinement, tuple(gap))
 
 
 def _refined(
