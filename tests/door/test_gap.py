@@ -10,7 +10,7 @@ import cellcolor
 from cellcolor.door.drawing import plot_of_gap
 
 
-@pytest.fixture(scope="module", params=["half_pipe_8000_clean", "hub_loops_4x4", "patches_overlapping_3"])
+@pytest.fixture(scope="module", params=["half_pipe_8000_clean", "hub_loops_4x4", "torus_raw"])
 def result(request: pytest.FixtureRequest) -> cellcolor.Result:
     return cellcolor.solve(request.param, time_limit=5)
 
