@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from fnmatch import fnmatchcase
 from functools import partial
 from itertools import product, zip_longest
+from typing import Any
 
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
@@ -122,25 +123,6 @@ _WARM_UP = Instance("warm-up", ("any",), (Cell(0, (0,), ()),), ())
 
 
 @dataclass(frozen=True, slots=True)
-class Solve:
-    """How to solve.
-
-    Attributes:
-        solver: a registered name.
-        workers: None for as many as the solver likes.
-        limit: seconds.
-        seed: of what is random in the solver.
-        search_space: where to search.
-    """
-
-    solver: str
-    workers: int | None
-    limit: float
-    seed: int
-    search_space: SearchSpace
-
-
-@dataclass(frozen=True, slots=True)
 class Answered:
     """What a solver answered.
 
@@ -161,23 +143,14 @@ class Answered:
     error: str | None = None
 
 
-def task_of(instance: Instance, solve: Solve, megabytes: float) -> Task:
-    """A solve as a piece of work, with limits that only what does not keep its own will meet."""
-    seconds = _START_UP + 1.1 * solve.limit + 1.0 + _CHECKING
-    return Task(answer, (instance, solve), Limits(seconds, megabytes))
-
-
-def answer(instance: Instance, how: Solve) -> Answered:
-    """Solve an instance; the checker sees the result."""
+def answer(instance: Instance, solver: str, options: Options, limit: float) -> Answered:
+    """Solve an instance within a limit in seconds; the checker sees the result."""
     from cellcolor.solvers.checked import solve
-    from cellcolor.solvers.interface import Options
 
     try:
         # Solvers import what they need on first use, which is not what is measured here.
-        solve(_WARM_UP, Options(search_space=how.search_space), how.solver)
-        deadline = Deadline.after(how.limit)
-        options = Options(how.search_space, deadline=deadline, workers=how.workers, seed=how.seed)
-        solution = solve(instance, options, how.solver)
+        solve(_WARM_UP, Options(search_space=options.search_space), solver)
+        solution = solve(instance, replace(options, deadline=Deadline.after(limit)), solver)
     except (InputError, SolverMissing) as error:
         return Answered("unsupported", error=str(error))
     except TooLarge as error:
@@ -191,7 +164,7 @@ def answer(instance: Instance, how: Solve) -> Answered:
         solution.segments,
         solution.lower_bound,
         solution.proved_for_surface,
-        solution.seconds,
+        round(solution.seconds, 4),
     )
 
 
@@ -227,16 +200,6 @@ class Experiment:
         return len(self.limits) * self.repetitions * len(self.contestants)
 
 
-@dataclass(frozen=True, slots=True)
-class _Run:
-    """One run that has been handed to a worker."""
-
-    subject: Specimen
-    instance: Instance
-    contestant: Contestant
-    how: Solve
-
-
 class Sweep:
     """The runs of a plan.
 
@@ -262,10 +225,11 @@ class Sweep:
 
     def run(self, workers: Workers) -> Iterator[Row]:
         """A row for each run, as they end."""
-        for run, ended in as_they_end(workers, self._tasks()):
-            yield self._row(run, ended)
+        for known, ended in as_they_end(workers, self._tasks()):
+            yield _row(known, ended)
 
-    def _tasks(self) -> Iterator[tuple[_Run, Task]]:
+    def _tasks(self) -> Iterator[tuple[dict[str, Any], Task]]:
+        """What each run's row says before it is made, and what makes it."""
         plan = self._plan
         for subject in plan.subjects:
             try:
@@ -274,54 +238,53 @@ class Sweep:
                 self._complain(subject, error)
                 self.skipped += plan.runs_of_each
                 continue
+            of_instance = {
+                "family": subject.family,
+                "seed": subject.seed,
+                "instance": instance.name,
+                "sha256": instance.sha256,
+                "cells": len(instance.cells),
+                "edges": len(instance.edges),
+                "colors": len(instance.colors),
+                "live_darts": instance.most_live_darts,
+                "live_loops": instance.most_live_loops,
+                "search_space": plan.search_space,
+                "command": plan.command,
+            }
             for limit, repetition, contestant in product(
                 plan.limits, range(plan.repetitions), plan.contestants
             ):
                 solver, workers = contestant.solver, contestant.workers
-                how = Solve(solver, workers, limit, repetition, plan.search_space)
-                run = _Run(subject, instance, contestant, how)
-                key = self._row(run, Ended("stopped")).key
+                known = of_instance | {
+                    "solver": solver,
+                    "solver_version": contestant.version,
+                    "workers": workers,
+                    "limit": limit,
+                    "repetition": repetition,
+                }
+                key = _row(known, Ended("stopped")).key
                 if key in self._done:
                     self.skipped += 1
-                else:
-                    self._done.add(key)
-                    yield run, task_of(instance, how, plan.megabytes)
-
-    def _row(self, run: _Run, ended: Ended) -> Row:
-        instance, how, answered = run.instance, run.how, _answered(ended)
-        return Row(
-            family=run.subject.family,
-            seed=run.subject.seed,
-            instance=instance.name,
-            sha256=instance.sha256,
-            cells=len(instance.cells),
-            edges=len(instance.edges),
-            colors=len(instance.colors),
-            live_darts=instance.most_live_darts,
-            live_loops=instance.most_live_loops,
-            search_space=how.search_space,
-            solver=how.solver,
-            solver_version=run.contestant.version,
-            workers=how.workers,
-            limit=how.limit,
-            repetition=how.seed,
-            status=answered.status,
-            segments=answered.segments,
-            lower_bound=answered.lower_bound,
-            proved_for_surface=answered.proved_for_surface,
-            seconds=None if answered.seconds is None else round(answered.seconds, 4),
-            cpu_seconds=round(ended.cpu_seconds, 3),
-            process_seconds=round(ended.seconds, 3),
-            peak_mb=round(ended.peak_mb, 1),
-            error=answered.error,
-            **asdict(ended.machine),
-            load=round(ended.load, 2),
-            date=datetime.now(UTC).isoformat(timespec="seconds"),
-            command=self._plan.command,
-        )
+                    continue
+                self._done.add(key)
+                options = Options(plan.search_space, workers=workers, seed=repetition)
+                # The process's own limits are met only by what does not keep its own.
+                seconds = _START_UP + 1.1 * limit + 1.0 + _CHECKING
+                limits = Limits(seconds, plan.megabytes)
+                yield known, Task(answer, (instance, solver, options, limit), limits)
 
 
-def _answered(ended: Ended) -> Answered:
-    if isinstance(ended.value, Answered):
-        return ended.value
-    return Answered(_STATUS.get(ended.end, "crashed"), error=ended.error)
+def _row(known: dict[str, Any], ended: Ended) -> Row:
+    answered = ended.value
+    if not isinstance(answered, Answered):
+        answered = Answered(_STATUS.get(ended.end, "crashed"), error=ended.error)
+    return Row(
+        **known,
+        **asdict(answered),
+        cpu_seconds=round(ended.cpu_seconds, 3),
+        process_seconds=round(ended.seconds, 3),
+        peak_mb=round(ended.peak_mb, 1),
+        **asdict(ended.machine),
+        load=round(ended.load, 2),
+        date=datetime.now(UTC).isoformat(timespec="seconds"),
+    )
