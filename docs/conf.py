@@ -33,7 +33,7 @@ exclude_patterns = ["_build"]
 # Markdown: every heading can be linked to as on GitHub, and a link to nothing is a warning.
 myst_heading_anchors = 3
 
-# The code of the tutorials is run anew for each build; an error in it ends the build.
+# The code of the tutorials is run in each build; an error in it ends the build.
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 180  # of a cell; one plans a motion
@@ -115,7 +115,7 @@ def _write_reference(_app: Sphinx) -> None:
             lines.append(f".. automodule:: {name}")
         text = "\n".join(lines) + "\n"
         page = folder / f"{room}.rst"
-        if not page.exists() or page.read_text() != text:  # Sphinx reads anew what is newer
+        if not page.exists() or page.read_text() != text:  # Sphinx rereads newer files
             page.write_text(text)
 
 

@@ -370,7 +370,7 @@ def setups(
 ) -> Exit:
     """Print which set-ups of a part cover it with the fewest lift-offs, with proof.
 
-    A set-up is the part in one place before one arm. SCENE as it stands is one of them.
+    A set-up is the part in one place before one arm. SCENE itself is one of them.
     """
     from cellcolor.door.drawing import kind_of_picture
     from cellcolor.door.setting_up import setups as set_ups_of

@@ -106,7 +106,7 @@ class Request:
         return self.cover is not None or self.left_alone is not None
 
     def options(self, deadline: Deadline = NEVER) -> Options:
-        """How the solver is asked."""
+        """The options for the solver."""
         return Options(
             self.search_space,
             STRANDS[self.search_space] if self.strands is None else self.strands,

@@ -178,7 +178,7 @@ class Instance(Document):
             left_out: the cells that are not to be covered.
 
         Returns:
-            The graph of the other cells, which are numbered anew in the same order, without a
+            The graph of the other cells, which are renumbered in the same order, without a
             reference to the surface; and the number that each of them had.
         """
         kept = [cell.id for cell in self.cells if cell.id not in set(left_out)]

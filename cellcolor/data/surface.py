@@ -126,7 +126,7 @@ class LabelledSurface(WithArrays, Document):
         return hash(self.sha256)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # Made anew, so that the arrays cannot be changed there either, and without caches.
+        # Made from scratch, so that the arrays cannot be changed there either, and without caches.
         return type(self), tuple(getattr(self, member.name) for member in fields(self))
 
     def __str__(self) -> str:

@@ -39,7 +39,7 @@ def locate(
         vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable.
 
     Returns:
-        The instance, with the areas of its cells and its coverage measured anew, and the curves of
+        The instance, with the areas of its cells and its coverage measured here, and the curves of
         its edges. There are none if another program has numbered the edges.
     """
     cells = np.array(vertex_cell, dtype=np.int64)

@@ -310,7 +310,7 @@ class KeepingOracle(Oracle):
     def prove(self, deadline: Deadline) -> Proof:
         """The proof on disk, or else one made now.
 
-        If a kept bound has no certificate, the surface is proved anew. If time does not allow that,
+        If a kept bound has no certificate, the surface is proved again. If there is no time for it,
         ``kept_lower`` is the unverified bound.
 
         Raises:

@@ -74,7 +74,7 @@ class Subject:
         return self._decomposed
 
     def decomposed(self, reference: str | None, deadline: Deadline = NEVER) -> Decomposition:
-        """The decomposition of the surface, made anew; see :meth:`graph`.
+        """The decomposition of the surface, made again; see :meth:`graph`.
 
         Args:
             reference: where the instance's file will say that the surface is; None leaves it out.

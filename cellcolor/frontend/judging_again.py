@@ -1,6 +1,6 @@
 """The stages of a scene that asks for less or more than one whose stages are known.
 
-Only what the difference can change is asked about again, on the same surface. The results are those
+Only what the difference can change is tested again, on the same surface. The results are those
 of :func:`~cellcolor.frontend.stages.judged_in_place`, but for full circles of joints without
 limits, and raise the same.
 """
@@ -26,7 +26,7 @@ from cellcolor.frontend.stages import Judged, candidates_of, colored_stages, wit
 def judged_asking_less(
     prepared: PreparedScene, before: Judged, reasons: Collection[str], clock: StageClock
 ) -> Judged:
-    """All stages of a scene that asks for less: only what was refused is asked about again.
+    """All stages of a scene that asks for less: only what was refused is tested again.
 
     Args:
         prepared: the scene that asks for less: whatever was valid before is valid.
@@ -100,7 +100,7 @@ def judged_asking_more(
 def _judged_there(
     prepared: PreparedScene, before: Verdicts, rows: Index, deadline: Deadline
 ) -> Verdicts:
-    """The verdicts, those of some rows (k,) given anew."""
+    """The verdicts, with those of some rows (k,) replaced."""
     new = prepared.judge(before.configurations[rows], deadline)
     members = {}
     for name in ("configurations", "reasons", "determinants"):

@@ -89,7 +89,7 @@ def valid_links(
         tracked: (points, n * branches, 3) of the bodies at the vertices, m.
         known: the result and the candidates of a surface whose vertices are the first ones of this
             one.
-        anew: (edges, branches) of those that are known, which are asked about again.
+        anew: (edges, branches) those of the known ones that are tested again.
     """
     surface, edges = prepared.surface, continuous.edges
     linked = shared(continuous.linked.shape, np.bool_)

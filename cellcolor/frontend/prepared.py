@@ -93,7 +93,7 @@ class PreparedScene:
         return self.arm.kinematics
 
     def at(self, placement: Placement) -> PreparedScene:
-        """The same scene with the part standing elsewhere; only the part is put in place anew.
+        """The same scene with the part standing elsewhere; only the part is moved.
 
         Raises:
             InputError: the part stands in a link that cannot move, or much too far away.

@@ -27,7 +27,7 @@ class Relaxation(ABC):
 
     Attributes:
         reasons: the tests that it can make a candidate fail. None if bodies change, so that
-            everything has to be tested anew.
+            everything has to be tested again.
         unit: of amounts, ``None`` where the thing is there or not.
     """
 

@@ -206,7 +206,7 @@ def _cleaned(
     coloring: Coloring,
     deadline: Deadline,
 ) -> Cleaned:
-    """What the setup's sliver policy leaves, colored anew, and its cracks."""
+    """What the setup's sliver policy leaves, with new colors and cracks."""
     policy, report = prepared.setup.slivers, None
     edges = links.edges
     if policy is not None:

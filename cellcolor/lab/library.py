@@ -131,7 +131,7 @@ def entry_of(
 def problems(folder: Path) -> list[str]:
     """What is not as the index of a library says, each beginning with the name of a file.
 
-    Every file is read, every solution checked, every certificate verified anew.
+    Every file is read, every solution checked, every certificate verified again.
 
     Args:
         folder: of the library.

@@ -1,4 +1,4 @@
-"""A solution painted with its scene: the robot is asked about everything that is drawn.
+"""A solution painted with its scene: everything that is drawn is tested with the robot.
 
 A painting that had to be refined copies colors (docs/painting.md). Here the robot says what
 reaches each new vertex, and whether a segment's color leads along each mesh edge inside it. If

@@ -286,7 +286,7 @@ class _Asked:
     ) -> list[Relaxation]:
         """Those of some things that refuse no candidate and cut a link, once nothing else does.
 
-        They are asked together first: where all of them cut nothing, none of them does.
+        They are tested together first: if all together cut nothing, none of them does alone.
         """
         if not some:
             return []

@@ -27,7 +27,7 @@ class FrontPoint:
         covered_share: of what can be covered, 0 to 1: what the solution covers.
         at_most_share: no division with that many segments covers more.
         left_out: the cells that the solution does not cover, ascending.
-        solution: a division of the other cells, which are numbered anew in their order
+        solution: a division of the other cells, which are renumbered in their order
             (:meth:`~cellcolor.data.instance.Instance.without_cells`); the checker has passed it.
         holds_for_surface: whether ``at_most_share`` holds for any division of the surface, and not
             only for those in the search space ``paper``.

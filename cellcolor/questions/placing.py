@@ -1,7 +1,7 @@
 """``cellcolor.place``: the fewest lift-offs of a part in many places.
 
 A part is read once and moved (:meth:`~cellcolor.frontend.prepared.PreparedScene.at`). Many
-placements are asked about on a coarse mesh, in batches that any process can do; the best ones are
+placements are tried on a coarse mesh, in batches that any process can do; the best ones are
 then built and proved on the scene's own mesh. Points are Sobol's, which fill the ranges evenly:
 some in the whole of them, then some in smaller and smaller boxes around the best ones.
 """

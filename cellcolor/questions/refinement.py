@@ -3,7 +3,7 @@
 Each step halves the largest edge length of the mesh, and quarters it where colors end. Either alone
 makes about four times as many vertices. The first vertices of each mesh are those of the one
 before. Where two borders cross, the mesh decides which two of the four cells touch; with new
-vertices throughout, each mesh would decide that anew. If a finer mesh still decides differently,
+vertices throughout, each mesh would decide that again. If a finer mesh still decides differently,
 that does not count as a change.
 """
 

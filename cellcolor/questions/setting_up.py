@@ -49,7 +49,7 @@ def candidates_of(
     *,
     by_hand: bool = False,
 ) -> Candidates:
-    """Each scene as it stands, and each with the part in the other places, built.
+    """Build each scene with the part where it is, and with the part in each of the other places.
 
     Args:
         scenes: with the same part.

@@ -39,7 +39,7 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
 
     Args:
         name: of the solver.
-        options: what it is asked for.
+        options: for the solver.
         start: whether it is to start from a division, be it in the options yet or not.
         schemes: whether it is to list all optimal schemes.
 

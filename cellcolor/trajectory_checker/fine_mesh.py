@@ -20,7 +20,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.memory import chunks
 
 _MOST = 2_000_000  # small triangles; some hundred bytes each
-_NEIGHBORS = 8  # small triangles that are asked at first which of them is nearest to a point
+_NEIGHBORS = 8  # how many small triangles are compared at first to find the nearest to a point
 _PAIR = 1_024  # bytes that a point and a small triangle take
 _NEAR = 0.02  # m; for points farther off, a triangle that is nearly the nearest will do
 

@@ -169,7 +169,7 @@ def _judge_accelerations(
     """Note samples where no smooth motion through the samples keeps the accelerations.
 
     Whatever moves on a straight line from sample to sample says no more than the ends of that line
-    do, so only these are asked: the verdict is the same however densely lines are sampled. Three
+    do, so only these are tested: the verdict is the same however densely lines are sampled. Three
     samples of a motion that keeps a limit keep it as well: twice their second divided difference
     is a mean of the accelerations between them. So do four. If the middle step has the velocity v
     and lasts t, those before and after it have u and w and last r and s, the motion has a velocity

@@ -14,7 +14,7 @@ where the arm just reaches, and there the left side goes over from one into the 
 Newton's method leads from there to the solutions of the arm as its URDF has it. So the axes have to
 be parallel and meet within a millimeter and a milliradian only.
 
-The equation is asked at many angles, so two solutions that are nearer to each other than two of
+The equation is evaluated at many angles, so two solutions that are nearer to each other than two of
 these angles may be missed, unless the left side comes near zero between them, where Newton's method
 is started as well. They are about to meet in a singularity then. In how far that happens is
 measured in ``docs/arms.md``.
@@ -51,7 +51,7 @@ from cellcolor.memory import chunks
 
 _TOLERANCE = 1e-3  # m and rad; vendors write 1.5708 for a right angle
 _LEAST = 1e-6  # m; of a length, and of a sine
-_ANGLES = 64  # at which the equation is asked
+_ANGLES = 64  # at which the equation is evaluated
 _PARTS = 16  # of the way between two of them where the equation changes fast or comes near zero
 _HALVINGS = 24  # to where a way ends
 _ROUNDS = 6  # of the method of the false position

@@ -255,7 +255,7 @@ def gap_between(
     Args:
         ends: of all bodies' axes, see :func:`~cellcolor.frontend.contact.collision.body_ends`.
         poses: of the joints.
-        rows: of the configurations that are asked about.
+        rows: of the configurations that are tested.
     """
     bodies = [robot.bodies[index] for index in pair]
     sides = [

@@ -78,7 +78,7 @@ class Solid:
         self._thing = Thing(fcl.CollisionObject(shape, fcl.Transform()), self._parts)
 
     def placed(self, placement: Placement) -> Solid:
-        """The solid, moved from its own frame into place without building it anew."""
+        """The solid moved from its own frame into place, without building it again."""
         turn, origin = rotation_from_rpy(*placement.rpy_rad), np.array(placement.position_m)
         distances, near = self._distances, self._near
 
@@ -105,7 +105,7 @@ class Solid:
             asked: (bodies, n) which bodies may touch it at all; None for all.
         """
         hit = np.zeros(ends.shape[2], dtype=bool)
-        # From the tool to the base: what is near the object is asked first.
+        # From the tool to the base: what is near the object is tested first.
         for index, body in reversed(list(enumerate(robot.bodies))):
             if body.joint == 0:
                 continue

@@ -58,7 +58,7 @@ def clean(
 ) -> tuple[Mask, SliverReport]:
     """Which nodes to keep, (n, branches).
 
-    Colors have to be computed anew from what is kept: taking away a cell can cut one in two.
+    Colors have to be computed again from what is kept: taking away a cell can cut one in two.
 
     Args:
         edges: (k, 2) mesh edges.

@@ -117,7 +117,7 @@ class PartSearch(PartState):
         self.raise_to(self._exact, for_surface=False)
 
     def drop(self, deadline: Deadline) -> None:
-        """Better divisions by leaving out a segment and routing all others anew.
+        """Better divisions by leaving out a segment and rerouting all others.
 
         Around hubs the model works better, for divisions and for the bound.
         """

@@ -19,7 +19,7 @@ class ConnectedPart:
     """A connected part of an instance, in the colors that are left of each cell.
 
     Attributes:
-        instance: its cells, numbered anew, and its live edges under their own ids. An edge to
+        instance: its cells, renumbered, and its live edges under their own ids. An edge to
             another part leads outside.
         cells: the cell of the whole instance that each one is.
         loops: the loops between which the cells' seams run: those that are live in the whole

@@ -1,6 +1,6 @@
 """A division improved window by window: large neighborhood search (Shaw, CP 1998).
 
-Some cells, the window, are divided anew; all others stay as they are. What lies outside is
+Some cells, the window, are divided again; all others stay as they are. What lies outside is
 contracted: a **piece** of a segment outside, that is blocks of it that are connected without the
 window, becomes one cell of one color, with all the darts by which it **faces** the window. So two
 pieces of a color that the window joins are a segment less. Three steps make a turn:
@@ -51,7 +51,7 @@ TRIES = 1
 """Segments left out for each segment of a window that is improved by routes."""
 
 STALE = 50
-"""Segments for each gain that is not looked for among them, before they are listed anew."""
+"""Segments for each gain that is not looked for among them, before they are listed again."""
 
 FRUITLESS = 3
 """Tries for each segment of a division before nothing better is expected."""
@@ -296,7 +296,7 @@ def _routed(window: _Window, seed: int, deadline: Deadline) -> Painting | None:
 
 
 def _solved(window: _Window, solve: SolveWithSeed, seed: int) -> Painting | None:
-    """The window solved anew; None if it is too large, or nothing was found."""
+    """The window solved again; None if it is too large, or nothing was found."""
     # A piece outside may face the window with many darts.
     if model_size(window.graph) > LARGEST_WINDOW:
         return None

@@ -17,7 +17,7 @@ from cellcolor.solvers.dfs.cell_schemes import CellScheme, DartKnowledge, cell_s
 from cellcolor.solvers.dfs.graph import GraphCell
 
 _REMEMBERED = 5000
-"""Longer lists of cell schemes are enumerated anew each time, so that memory stays small."""
+"""Longer lists of cell schemes are enumerated again each time, so that memory stays small."""
 
 
 class Search:

@@ -213,7 +213,7 @@ class _Part:
 def _repeatable(stream: Callable[[], Iterator[_T]], most: int) -> tuple[_Repeatable[_T], int]:
     """A stream to be read many times, and how many items are kept for that.
 
-    Up to ``most`` items are kept in memory; a stream that has more is made anew each time.
+    Up to ``most`` items are kept in memory; a stream that has more is made again each time.
     """
     first = list(islice(stream(), most + 1))
     if len(first) > most:

@@ -1,4 +1,4 @@
-"""Improve a division segment by segment: leave one out, and route all others anew.
+"""Improve a division segment by segment: leave one out, and reroute all others.
 
 The literature calls this ruin and recreate (Schrimpf, Schneider, Stamm-Wilbrandt and Dueck, "Record
 breaking optimization results using the ruin and recreate principle", 2000).

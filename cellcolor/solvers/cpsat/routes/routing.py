@@ -55,7 +55,7 @@ def route(
     for _ in range(rounds):
         if router.improve(deadline) or deadline.over:
             break
-        # Where no node is shared a cell is missed, and connecting that begins anew.
+        # No node is shared but a cell is missed: connect its net from scratch.
         gain = not router.shared or router.shared < fewest
         fewest, in_vain = (router.shared or inf, 0) if gain else (fewest, in_vain + 1)
         if in_vain == patience:
@@ -145,7 +145,7 @@ class _Router:
         )
 
     def _reroute(self, net: int) -> None:
-        """Connect a net's cells anew, each to what is nearest."""
+        """Connect a net's cells from scratch, each to what is nearest."""
         for node in self._routes[net]:
             self._used[node] -= 1
         cells = self._terminals[net][:]
