@@ -39,4 +39,5 @@ def test_the_command_draws_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]
     assert (tmp_path / "gap.png").read_bytes().startswith(b"\x89PNG")
     assert run("solve", "half_pipe_8000_clean", "--picture", tmp_path / "gap.html") == 2
     assert "must end in .png or .svg" in capsys.readouterr().err
-    assert run("solve", "wok_500", "square_500", "--picture", tmp_path / "gap.png") == 2
+    assert run("solve", "wok_500_raw", "square_500_raw", "--picture", tmp_path / "gap.png") == 2
+    assert "--picture is of a single file" in capsys.readouterr().err
