@@ -20,7 +20,7 @@ class BadSeams(Exception):
 
 
 class TooManyDarts(Exception):
-    """So many strands that checking them would not fit into memory."""
+    """There are too many strands to check them within memory."""
 
 
 MOST_DARTS = 500_000
@@ -66,7 +66,7 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
 
 
 def strands_along(dart: int, count: int) -> list[Strand]:
-    """So many strands of a dart, in the order in which a walk along its loop meets them."""
+    """The strands of a dart, in the order in which a walk along its loop meets them."""
     numbers = range(1, count + 1)
     return [(dart, number) for number in (numbers if dart > 0 else reversed(numbers))]
 

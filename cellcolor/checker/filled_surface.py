@@ -233,7 +233,7 @@ class FilledSurface:
         return places
 
     def _wall(self, domain: Mapping[int, int], crossed: set[int]) -> dict[int, Corner]:
-        """Of each cell outside a domain, the component of what the domain is not.
+        """For each cell outside a domain, its component of everything outside the domain.
 
         That is the other cells, the edges that are not crossed, corners, and discs.
         """

@@ -90,7 +90,7 @@ class _Segment:
 
 @dataclass(frozen=True, slots=True)
 class _Needed:
-    """Of a segment of a tangle the bits of its groups, that of what it avoids, and these cells."""
+    """A segment of a tangle: the bits of its groups, the bit of what it avoids, and these cells."""
 
     region: ColorRegion
     groups: int
@@ -340,9 +340,9 @@ class PlanSearch:
         return sorted(able, key=lambda choice: choice[0])
 
     def _need_segments_of_their_own(self, cells: Sequence[int]) -> int:
-        """Of cells that no segment can touch: so many are in different color regions altogether.
+        """How many of the cells need a segment each: no two of them are in one color region.
 
-        Where segments have costs, it is what the cheapest of these regions cost.
+        If segments have costs, it is the cost of the cheapest regions of these cells.
         """
         used: set[ColorRegion] = set()
         count = 0

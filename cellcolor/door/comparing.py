@@ -53,7 +53,7 @@ class ComparedArm:
 
     @property
     def shares(self) -> tuple[float, ...]:
-        """Of the whole surface, what 0, 1, 2, … lift-offs cover at most there."""
+        """The largest shares of the whole surface that 0, 1, 2, … lift-offs cover there."""
         if self.best is None or self.front is None:
             return ()
         return tuple(

@@ -52,7 +52,7 @@ class ChosenSetUps:
         return self.result.plot(path, **view)
 
     def left_alone(self) -> list[Mask]:
-        """Of each set-up the vertices (n,) that others paint, or nobody."""
+        """For each set-up, which vertices (n,) it does not paint."""
         painted = paint(self.result.subject, self.answer.solution)
         count = len(self.answer.surface.vertices)
         own = np.zeros(count, dtype=int)

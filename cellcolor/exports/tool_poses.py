@@ -71,7 +71,7 @@ def _across(vectors: Array, z: Array) -> Array:
 
 
 def quaternions(x: Array, z: Array) -> Array:
-    """Of the rotations (k) whose columns are x, z cross x, and z (k, 3): (k, 4) x, y, z, w.
+    """Quaternions (k, 4) x, y, z, w of the rotations with columns x, z cross x, and z (k, 3).
 
     Of the two that are one rotation, each is the one nearer to the one before; the first has no
     negative w.

@@ -185,7 +185,7 @@ class Threshold(Relaxation):
     most = 100.0
 
     def by(self, amount: float) -> Threshold:
-        """So many percent lower."""
+        """The threshold lower by an amount in percent."""
         return replace(self, share=1 - amount / 100)
 
     def said_of(self, amount: float) -> str:
@@ -216,7 +216,7 @@ class GroundPlane(Relaxation):
         return 1.0
 
     def by(self, amount: float) -> GroundPlane:
-        """So much lower."""
+        """The ground lower by an amount in m."""
         return replace(self, lower=amount)
 
     def said_of(self, amount: float) -> str:
@@ -261,7 +261,7 @@ class ObstacleBody(Relaxation):
         return 0.5
 
     def by(self, amount: float) -> ObstacleBody:
-        """So much farther from the part."""
+        """The obstacle farther from the part by an amount in m."""
         return replace(self, farther=amount)
 
     def said_of(self, amount: float) -> str:

@@ -259,7 +259,7 @@ def survey(surface: Surface, viewpoints: Array) -> Survey:
 
 
 def _from_behind(mesh: TriangleMesh, viewpoints: Array) -> float:
-    """Of the points that are seen from anywhere, the share whose front is not seen."""
+    """The share of the visible points that are seen only from behind."""
     vertices, faces = mesh.points, mesh.corners
     points, face = _spread(mesh)
     shape = fcl.CollisionObject(mesh_model(vertices, faces), fcl.Transform())

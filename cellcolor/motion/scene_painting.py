@@ -28,9 +28,9 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
 _TIMES = 4
-"""So often is a surface solved at most; then what the scene refuses is only told."""
+"""The most times that a surface is solved; what the scene still refuses is only reported."""
 _ROOMY = np.pi / 2
-"""rad; a joint that far from its limits is as well off as can be."""
+"""rad; a joint at least this far from its limits costs nothing."""
 
 
 @dataclass(frozen=True)

@@ -131,6 +131,6 @@ def _largest_pair(
 
 
 def _middle(surface: LabelledSurface, vertices: Index) -> int:
-    """Of some vertices the one nearest to their mean."""
+    """The vertex that is nearest to the mean of some vertices."""
     points = surface.vertices[vertices]
     return int(vertices[np.argmin(np.linalg.norm(points - points.mean(axis=0), axis=1))])

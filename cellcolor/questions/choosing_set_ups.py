@@ -244,7 +244,7 @@ class _Asked:
         literals: Sequence[cp_model.IntVar],
         covering: Iterable[Iterable[int]],
     ) -> None:
-        """Of what covers each vertex choose some, so that enough is covered.
+        """Require that enough vertices have something chosen that covers them.
 
         Args:
             model: to add that to.

@@ -60,12 +60,12 @@ def check_ranges(ranges: Ranges, base: bool = False) -> None:
 
 
 def pose_of(placement: Placement) -> Pose:
-    """Where a scene has its part."""
+    """A placement as six numbers."""
     return (*placement.position_m, *placement.rpy_rad)
 
 
 def spread(ranges: Ranges, start: Pose, count: int, seed: int) -> list[Pose]:
-    """So many placements all over the ranges; a scrambled Sobol sequence."""
+    """Placements all over the ranges; a scrambled Sobol sequence."""
     return _scaled(ranges, start, _sobol(len(ranges), count, seed))
 
 
@@ -77,7 +77,7 @@ def middles(ranges: Ranges, start: Pose, tiles: int) -> list[Pose]:
 
 
 def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> list[Pose]:
-    """So many placements in a box around one, whose sides are a share of the ranges."""
+    """Placements in a box around one, whose sides are a share of the ranges."""
     near = {}
     for name, (low, high) in ranges.items():
         middle, half = best[VARIABLES.index(name)], share * (high - low) / 2
@@ -86,7 +86,7 @@ def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> l
 
 
 def distance(ranges: Ranges, first: Pose, second: Pose) -> float:
-    """How far two placements are apart, as a share of the ranges: that of the variable most so."""
+    """How far two placements are apart: the largest difference, as a share of its range."""
     return max(
         abs(first[at] - second[at]) / (high - low)
         for name, (low, high) in ranges.items()

@@ -59,7 +59,7 @@ class ClingoSolver:
 
     @property
     def version(self) -> str:
-        """Of clingo."""
+        """The version of clingo."""
         return f"clingo {version('clingo')}"
 
     def minimize(

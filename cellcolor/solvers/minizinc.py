@@ -138,7 +138,7 @@ class _MiniZinc:
 
     @property
     def version(self) -> str:
-        """Of the solver."""
+        """The version of the solver."""
         return self._known or self.name
 
     def minimize(

@@ -165,7 +165,7 @@ class FineMesh:
     def _nearest_of(
         self, points: Array, outward: Array, asked: int
     ) -> tuple[Array, Array, Index, Array]:
-        """Of each point (k,): its distance, that of the last centroid asked, triangle, weights."""
+        """For each point (k,): its distance, that of the last centroid tried, triangle, weights."""
         far, candidates = self._tree.query(points, k=asked)
         far, candidates = far.reshape(-1, asked), candidates.reshape(-1, asked)
         corners = self.vertices[self.triangles[candidates]]

@@ -351,9 +351,9 @@ def task_determinants(robot: Robot, configurations: Array, limits: Conditioning 
 
 
 def nearest_points(p: Array, u: Array, q: Array, v: Array) -> tuple[Array, Array]:
-    """Of two lines through p along u and through q along v, (3,) each: the points that are nearest.
+    """The nearest points (3,) of two lines: through p along u, and through q along v.
 
-    Of parallel lines p and the point beside it.
+    If the lines are parallel, p and the point of the other line beside it.
     """
     cosine = u @ v
     sine = 1.0 - cosine**2
@@ -363,9 +363,9 @@ def nearest_points(p: Array, u: Array, q: Array, v: Array) -> tuple[Array, Array
 
 
 def angle_about(axes: Array, first: Array, second: Array) -> Array:
-    """By which angle (...,) in rad, in (-pi, pi], second follows from first about unit vectors.
+    """The angle (...,) in rad, in (-pi, pi], by which axes turn the first vector into the second.
 
-    All (..., 3); parts of the first and the second along the unit vectors do not count.
+    All are (..., 3), axes of unit length. Parts of both vectors along the axes do not count.
     """
     sine = np.einsum("...i,...i->...", axes, np.cross(first, second))
     along = np.einsum("...i,...i->...", axes, first) * np.einsum("...i,...i->...", axes, second)

@@ -53,7 +53,7 @@ from the direction in which axis 4 leads outwards by a positive angle of joint 5
 
 @dataclass(frozen=True)
 class Signs:
-    """Of one arm, what its three factors are made of.
+    """What the three factors of an arm are computed from.
 
     Attributes:
         elbow: (3,) a point of axis 3 in the frame behind joint 3, m.
@@ -90,11 +90,11 @@ class Signs:
         return np.stack([lever, area * np.where(lever >= 0, 1.0, -1.0), flip], axis=1)
 
     def branches(self, robot: Robot, configurations: Array) -> tuple[NDArray[np.intp], Array]:
-        """Of configurations (k, joints) in rad the branch and the task determinant, (k,) each.
+        """The branch and the task determinant, (k,) each, of configurations (k, joints) in rad.
 
         The branch is an index, the determinant absolute, in m^3.
 
-        Of a calibrated arm, next to a singularity, a factor can have the wrong sign, since axes
+        For a calibrated arm, next to a singularity, a factor can have the wrong sign, since axes
         that nearly meet have a center only nearly. Then the product of the signs is not that of the
         task determinant, and the factor nearest to zero is the wrong one.
         """

@@ -96,7 +96,7 @@ def _only(robot: Robot, pairs: list[tuple[int, int]]) -> Robot:
 
 
 def _depth(robot: Robot, pairs: list[tuple[int, int]], ends: Array) -> str:
-    """By how much two links overlap, in words; nothing where one of them is not round."""
+    """How much two links overlap, in words; empty if one of them is not round."""
     bodies = [robot.bodies[index] for pair in pairs for index in pair]
     if any(body.flat or body.solid is not None for body in bodies):
         return ""

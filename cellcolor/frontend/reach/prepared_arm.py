@@ -115,7 +115,7 @@ class PreparedArm:
 
     @property
     def measure(self) -> Measure:
-        """By what motions along mesh edges are measured."""
+        """How motions along mesh edges are measured."""
         near_singular = self.conditioning.near_singular_determinant
         policy, own, slides = self.setup.continuity, self.kinematics, self.robot.slides
         if not slides.any():

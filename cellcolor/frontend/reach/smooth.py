@@ -29,14 +29,14 @@ and task determinants (k,) in m^3, both NaN where there is no well-conditioned c
 
 @dataclass(frozen=True)
 class Measure:
-    """By what motions are measured.
+    """How motions are measured.
 
     Attributes:
         policy: the bounds on steps.
         near_singular: task determinant from which on down steps are always looked into, m^3.
         lever: the way that counts like a turn of the tool by one rad, m.
         slides: (joints,) which joints are prismatic; none without it.
-        reach: a prismatic joint that moves so far, in m, counts as one that turns by one rad.
+        reach: the way of a prismatic joint that counts like a turn by one rad, m.
     """
 
     policy: Continuity
@@ -187,7 +187,7 @@ def follow_edges(
 
 
 def _turned(turns: Array, way: Array) -> Array:
-    """By how much the interpolated normal has turned at parts of the way, rad."""
+    """How much the interpolated normal has turned at parts of the way, rad."""
     return np.arctan2(way * np.sin(turns), 1 - way + way * np.cos(turns))
 
 

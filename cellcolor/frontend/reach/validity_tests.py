@@ -119,7 +119,7 @@ class Postures:
 
     @cached_property
     def poses(self) -> Poses:
-        """Of all joint frames, in the world."""
+        """Poses of all joint frames in the world."""
         return self._arm.poses if self._whole else self._arm.poses.take(self._rows)
 
     @property

@@ -40,7 +40,7 @@ def solve_seconds(row: Row) -> float:
 
 
 def median_seconds(rows: Sequence[Row]) -> float:
-    """Of :func:`solve_seconds`; infinite if half of the runs or more did not prove the minimum."""
+    """Median of :func:`solve_seconds`; infinite if half or more did not prove the minimum."""
     return median(map(solve_seconds, rows))
 
 

@@ -69,7 +69,7 @@ def summary_of_timings(timings: Sequence[Timing]) -> Iterator[str]:
 
 
 def _if_known(seconds: float) -> str:
-    """Of a part of a process the seconds of its processors are not known, and stand there as 0."""
+    """Processor seconds as text; empty if unknown, as for a part of a process (stored as 0)."""
     return f"{seconds:.3f}" if seconds else ""
 
 

@@ -169,7 +169,7 @@ def answer(instance: Instance, solver: str, options: Options, limit: float) -> A
 
 
 _STATUS: dict[str, Status] = {"timeout": "timeout", "memory": "memory"}
-"""Of runs that did not come back; all the others have crashed."""
+"""Ends of runs that did not come back; all others have crashed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ _R = TypeVar("_R")
 
 
 def header_of(path: str | PathLike[str], kinds: Sequence[type[Any]]) -> type[Any]:
-    """Of which kind a table is, by its first line.
+    """The kind of a table, by its first line.
 
     Raises:
         InputError: the file cannot be read, or is a table of none of these kinds.

@@ -23,7 +23,7 @@ from cellcolor.solvers.bounds.cover import greedy_strangers
 from cellcolor.union_find import UnionFind
 
 MOST_ENTRIES = 50_000_000
-"""Of a recursion's tables, eight bytes each."""
+"""The most entries in a recursion's tables, eight bytes each."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -25,7 +25,7 @@ from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.union_find import UnionFind
 
 MOST_STATES = 20_000
-"""Of the frontier; with more of them the hubs are left to other methods."""
+"""The most states of the frontier; beyond that the hubs are left to other methods."""
 
 MOST_OPTIONS = 2_000
 """Ways to connect shared neighbors within a hub."""

@@ -110,7 +110,7 @@ class _Drawing:
         return way[::-1]
 
     def _faces(self) -> list[list[Strand]]:
-        """Of each face the darts before which it lies, on their loops.
+        """For each face the darts before which it lies, on their loops.
 
         A walk around a face goes to the next dart of a loop, and over to the dart before it in its
         area.

@@ -83,7 +83,7 @@ class PartState:
 
     @cached_property
     def regions(self) -> list[Region]:
-        """Of each color the sets of cells that it connects."""
+        """The color regions: for each color the sets of cells that it connects."""
         return color_regions(self.instance)
 
     @property

@@ -62,7 +62,7 @@ class CpSatSolver:
 
     @property
     def version(self) -> str:
-        """Of OR-Tools."""
+        """The version of OR-Tools."""
         return f"OR-Tools {version('ortools')}"
 
     def minimize(
@@ -165,7 +165,7 @@ class _Search:
         return count_segments(division) if costs is None else cost_of(division, costs)
 
     def _cut_least(self, colors: tuple[frozenset[int], ...]) -> None:
-        """Of the divisions with the fewest segments, one with the fewest cutting paths."""
+        """Among the divisions with the fewest segments, one with the fewest cutting paths."""
         live = self._instance.live_edges
         enough = {edge: width for part in self._parts for edge, width in part.widest.items()}
         segments = sum(part.segments for part in self._parts)

@@ -45,7 +45,7 @@ ROUTED_SIZES = (3_000, 6_000, 12_000, 25_000, 50_000)
 """Terms that their models would have. Larger ones come as smaller ones are of no more use."""
 
 SHARE = 0.1
-"""Of the time that is left, for the routes of one window."""
+"""Share of the time left that the routes of one window may take."""
 
 TRIES = 1
 """Segments left out for each segment of a window that is improved by routes."""

@@ -94,7 +94,7 @@ class _CellSearch:
         """The sub-cell of each dart in state 1, -1 in state 0."""
         self._color: list[int] = []
         self._members: list[int] = []
-        """Of each sub-cell: its color and its number of darts in state 1 so far."""
+        """The color of each sub-cell, and how many darts in state 1 it has so far."""
         self._room = [0] * (size + 1)
         """How many darts from here on may be in state 1."""
         for i in reversed(range(size)):

@@ -261,7 +261,7 @@ class ChocoSolver:
 
     @property
     def version(self) -> str:
-        """Of pychoco, which brings Choco with it."""
+        """The version of pychoco, which includes Choco."""
         return f"pychoco {version('pychoco')}"
 
     def minimize(

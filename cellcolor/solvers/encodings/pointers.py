@@ -165,7 +165,7 @@ class Pointers(Encoding):
                 self.model.add(self.up[dart] == 0)
 
     def _first_petal(self) -> None:
-        """Of the petals around a sub-cell only the first can be the root, unless it is a home.
+        """Among the petals around a sub-cell, only the first can be the root, unless it is a home.
 
         A petal, a cell with a single live dart, is never divided: a tree with its root in one petal
         can have it in any other one as well.

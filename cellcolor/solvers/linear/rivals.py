@@ -82,7 +82,7 @@ class _Rival:
 
     @property
     def version(self) -> str:
-        """Of the solver's package."""
+        """The version of the solver's package."""
         return f"{self.called} {version(self.package)}"
 
     def minimize(

@@ -230,7 +230,7 @@ def forced_roots(
 def first_petal(
     model: cp_model.CpModel, graph: DartGraph, v: Variables, regions: Sequence[Region]
 ) -> None:
-    """Of the petals around a sub-cell only the first can be the root of the segment.
+    """Among the petals around a sub-cell, only the first can be the root of the segment.
 
     A petal is a cell with a single live dart. It is never divided, so that a tree which has its
     root in one petal can have it in any other one as well, unless it is fixed (``fixed_roots``).

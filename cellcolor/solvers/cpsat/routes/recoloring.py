@@ -85,7 +85,7 @@ class Recoloring:
 
     @property
     def segments(self) -> int:
-        """Of the division now."""
+        """How many segments the division has now."""
         return len(self._painted.nodes)
 
     @property

@@ -87,7 +87,7 @@ class OptimalSchemes(Iterator[Division]):
         self._found.close()
 
     def drawn(self, number: int) -> Iterator[Division]:
-        """So many schemes, each of them any with equal chance; nothing if they are not counted."""
+        """Some schemes, each drawn with equal chances; none if the schemes were not counted."""
         rng, frontier = Random(self._search.options.seed), self._search.frontier
         if frontier is not None and frontier.count:
             for _ in range(number):

@@ -35,7 +35,7 @@ class Choices(NamedTuple):
 
 
 ShownColors = dict[int, tuple[int, int]]
-"""Of each zero the earlier and the later color."""
+"""The early and the late color of each zero."""
 
 
 def shown_in_cell(loops: Sequence[Sequence[int]], blocks: Blocks) -> list[ShownColors]:
