@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import islice
+from typing import TypeVar
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Division, SchemeKey, SearchSpace, scheme_key
@@ -141,18 +142,20 @@ def compare_on_mesh(
     )
 
 
-def complaint(check: Callable[[], object]) -> str | None:
-    """Why a comparison failed, None if it did not.
+_Found = TypeVar("_Found")
+
+
+def attempt(check: Callable[[], _Found]) -> tuple[_Found | None, str | None]:
+    """What a comparison found, or why it failed.
 
     A solver that breaks down is as much of a finding as one that is wrong.
     """
     try:
-        check()
+        return check(), None
     except Disagreement as error:
-        return str(error)
+        return None, str(error)
     except Exception as error:
-        return f"{type(error).__name__}: {error}"
-    return None
+        return None, f"{type(error).__name__}: {error}"
 
 
 def _schemes(

@@ -7,7 +7,8 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from functools import partial
+from typing import Any, TypeVar
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
@@ -15,9 +16,9 @@ from cellcolor.decomposition import decompose
 from cellcolor.lab.campaign.agreement import (
     Finding,
     MeshFinding,
+    attempt,
     compare_on_mesh,
     compare_solvers,
-    complaint,
 )
 from cellcolor.lab.campaign.shrink import shrink_instance, shrink_surface
 from cellcolor.lab.families import SMALL
@@ -161,30 +162,28 @@ def examine(seed: int, time_limit: float, number: int) -> Outcome:
     """Make one instance of a campaign, and hold the solvers to each other on it."""
     started = time.monotonic()
     case = draw_case(seed, number)
-    instance, surface = case.instance, case.surface
     wrong: list[Wrong] = []
-    finding: Finding | None = None
     mesh: MeshFinding | None = None
 
-    def on_graph() -> None:
-        nonlocal finding
-        finding = compare_solvers(instance, time_limit)
+    def on_graph(instance: Instance) -> Finding:
+        return compare_solvers(instance, time_limit)
 
-    if complaint(on_graph) is not None:
-        wrong.append(_smallest_instance(case, time_limit))
-    if surface is not None:
+    def on_mesh(surface: LabelledSurface) -> MeshFinding | None:
+        instance = decompose(surface)
+        return compare_on_mesh(surface, instance, time_limit) if instance.cells else None
 
-        def on_mesh(mesh_surface: LabelledSurface = surface) -> None:
-            nonlocal mesh
-            mesh = compare_on_mesh(mesh_surface, instance, time_limit)
-
-        if complaint(on_mesh) is not None:
-            wrong.append(_smallest_surface(case, surface, time_limit))
+    finding, message = attempt(partial(on_graph, case.instance))
+    if message is not None:
+        wrong.append(_smallest(case, case.instance, on_graph, shrink_instance))
+    if case.surface is not None:
+        mesh, message = attempt(partial(on_mesh, case.surface))
+        if message is not None:
+            wrong.append(_smallest(case, case.surface, on_mesh, shrink_surface))
     return Outcome(
         number,
         case.kind,
-        len(instance.cells),
-        instance.most_live_darts,
+        len(case.instance.cells),
+        case.instance.most_live_darts,
         finding,
         mesh,
         tuple(wrong),
@@ -192,25 +191,23 @@ def examine(seed: int, time_limit: float, number: int) -> Outcome:
     )
 
 
-def _smallest_instance(case: Case, time_limit: float) -> Wrong:
-    def check(instance: Instance) -> str | None:
-        return complaint(lambda: compare_solvers(instance, time_limit))
-
-    small = shrink_instance(case.instance, lambda i: check(i) is not None, SHRINK_SECONDS)
-    message = check(small) or "did not happen again"
-    return Wrong(message, replace(small, meta=_origin(case, message)).to_json())
+_Subject = TypeVar("_Subject", Instance, LabelledSurface)
 
 
-def _smallest_surface(case: Case, surface: LabelledSurface, time_limit: float) -> Wrong:
-    def check(candidate: LabelledSurface) -> str | None:
-        instance = decompose(candidate)
-        if not instance.cells:
-            return None
-        return complaint(lambda: compare_on_mesh(candidate, instance, time_limit))
+def _smallest(
+    case: Case,
+    subject: _Subject,
+    check: Callable[[_Subject], object],
+    shrink: Callable[[_Subject, Callable[[_Subject], bool], float], _Subject],
+) -> Wrong:
+    """A disagreement on an instance or a surface, made small."""
 
-    small = shrink_surface(surface, lambda s: check(s) is not None, SHRINK_SECONDS)
-    message = check(small) or "did not happen again"
-    return Wrong(message, replace(small, meta=_origin(case, message)).to_json())
+    def message(candidate: _Subject) -> str | None:
+        return attempt(partial(check, candidate))[1]
+
+    small = shrink(subject, lambda candidate: message(candidate) is not None, SHRINK_SECONDS)
+    said = message(small) or "did not happen again"
+    return Wrong(said, replace(small, meta=_origin(case, said)).to_json())
 
 
 def _origin(case: Case, message: str) -> dict[str, Any]:
