@@ -6,8 +6,6 @@
   It also checks the edges in state 0 of each complete painting.
 """
 
-from cellcolor.solvers.dfs.cell_schemes import code, divisions
-from cellcolor.solvers.dfs.literal_cost import literal_cost
 from cellcolor.solvers.dfs.solver import ReferenceSolver
 
-__all__ = ["ReferenceSolver", "code", "divisions", "literal_cost"]
+__all__ = ["ReferenceSolver"]

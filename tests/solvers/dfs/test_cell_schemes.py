@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import product
 from math import comb
 
@@ -11,13 +12,45 @@ from library import PAPER
 
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
-from cellcolor.solvers.dfs import ReferenceSolver, code, divisions
+from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.dfs.cell_schemes import CellScheme, cell_schemes
 from cellcolor.solvers.dfs.graph import GraphCell
 from cellcolor.solvers.dfs.search import zeros_fit
 from cellcolor.solvers.interface import Options
 
 SOLVER = ReferenceSolver()
+
+
+def divisions(size: int) -> set[frozenset[frozenset[int]]]:
+    """The divisions of a lone cell with that many edges, colors ignored.
+
+    Each is the set of its sub-cells, as sets of the places of their darts in state 1. They come
+    from the solver's own enumeration with a color for every sub-cell there can be.
+    """
+    colors = tuple(range(max(1, size // 2)))
+    darts = tuple(range(1, size + 1))
+    cell = GraphCell(0, colors, darts, (frozenset(colors),) * size, (-1,) * size, (0,) * size)
+    return {
+        frozenset(frozenset(darts) for _, darts in scheme.subcells)
+        for scheme in cell_schemes(cell, (None,) * size)
+    }
+
+
+def code(size: int, subcells: Sequence[Sequence[int]]) -> str:
+    """The paper's code of a cell's division (section IV-C), places of darts for each sub-cell.
+
+    ``0`` and ``1`` are states, brackets hold the codes of sub-cells inside the outermost one:
+    ``1(11)1`` is the paper's ``1××1``. Zeros stand outside of the brackets where they can.
+    """
+    block = {dart: own for own in subcells for dart in own}
+    text = ""
+    for dart in range(size):
+        own = block.get(dart)
+        inner = own is not None and own is not block[min(block)]
+        text += "(" * (inner and dart == min(own or ()))
+        text += "0" if own is None else "1"
+        text += ")" * (inner and dart == max(own or ()))
+    return text
 
 
 @pytest.mark.parametrize("edges", range(1, 7))
