@@ -40,7 +40,7 @@ def say_plan(name: str, verdict: PlanVerdict) -> None:
     if verdict.optimal:
         say("  optimal" + ("" if verdict.why is None else f", because {verdict.why}"))
     elif verdict.beatable_by:
-        say(f"  {verdict.beatable_by} fewer are enough")
+        say(f"  {count(verdict.beatable_by, 'fewer is', 'fewer are')} enough")
     else:
         say("  not known to be optimal, not known to be beatable")
     if (found := verdict.improvement) is not None:

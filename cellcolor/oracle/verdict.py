@@ -131,7 +131,8 @@ class Verdict:
             where = "; the time limit came before an example was found" if self.late else ""
             if self.improvement is not None:
                 where = f"; {self.improvement}"
-            return f"{found}, {self.beatable_by} fewer are proved to be enough{where}"
+            fewer = count(self.beatable_by, "fewer is", "fewer are")
+            return f"{found}, {fewer} proved to be enough{where}"
         kept = (
             "" if self.kept_lower is None else f"; kept, not verified: at least {self.kept_lower}"
         )

@@ -140,7 +140,7 @@ def test_another_planner(tmp_path: Path) -> None:
     done = run([*command, "test_tilted.py"], tmp_path, tmp_path)
     assert "1 failed, 1 passed" in done.stdout, done.stdout
     assert "FAILED test_tilted.py" in done.stdout
-    assert "1 fewer are proved to be enough" in done.stdout
+    assert "1 fewer is proved to be enough" in done.stdout
     pytest.importorskip("pinocchio")
     done = run([sys.executable, "-c", joints.text], tmp_path, tmp_path)
     assert (done.returncode, done.stdout) == (0, printed.text), done.stderr

@@ -152,7 +152,7 @@ PLAN_VERDICT: Document = {
     "format": "cellcolor/plan-verdict",
     "version": 1,
     "valid": True,
-    "text": "2 segments, 1 lift-off, 1 fewer are proved to be enough",
+    "text": "2 segments, 1 lift-off, 1 fewer is proved to be enough",
     "problems": [],
     "violation_count": 0,
     "violations": [],

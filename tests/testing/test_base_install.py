@@ -135,7 +135,7 @@ def test_the_plugin(base: Environment) -> None:
     )
     code, out, _ = base.run("python", "-m", "pytest", "-q", "test_planner.py")
     assert code == 1 and "1 failed, 1 passed" in out, out
-    assert "1 fewer are proved to be enough; segments 0 and 1" in out
+    assert "1 fewer is proved to be enough; segments 0 and 1" in out
     assert "no picture: " in out and "pip install 'fewest-lift-offs[viz]'" in out
 
 
