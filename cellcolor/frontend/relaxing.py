@@ -18,6 +18,7 @@ import numpy as np
 from cellcolor.frontend.contact.solids import Solid
 from cellcolor.frontend.contact.tip import Tip
 from cellcolor.frontend.prepared import PreparedScene, named
+from cellcolor.frontend.reach.prepared_arm import prepare_arm
 from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
 
@@ -33,6 +34,8 @@ class Relaxation(ABC):
 
     reasons: ClassVar[frozenset[str] | None]
     unit: ClassVar[str | None] = None
+    finest: ClassVar[tuple[int, int]] = (512, 4)
+    """The smallest share of the most to try, and the halvings between enough and too little."""
 
     @property
     @abstractmethod
@@ -66,6 +69,16 @@ class Relaxation(ABC):
         return ()
 
 
+class _WholeTest(Relaxation):
+    """A restriction that is a test, left out."""
+
+    reasons: ClassVar[frozenset[str]]
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """The test left out."""
+        return _remade(prepared, prepared.workplace, self.reasons)
+
+
 @dataclass(frozen=True)
 class JointRange(Relaxation):
     """The limits of one joint, which then turns or slides as far as it has to."""
@@ -85,10 +98,7 @@ class JointRange(Relaxation):
         """In the arm's URDF."""
         return f"joint[{self.joint}].limit"
 
-    @property
-    def most(self) -> float:
-        """A full circle on both sides."""
-        return 2 * np.pi
+    most = 2 * np.pi  # a full circle on both sides
 
     def by(self, amount: float) -> JointRange:
         """Both limits farther out."""
@@ -140,16 +150,12 @@ class LinkContact(Relaxation):
 
 
 @dataclass(frozen=True)
-class Torques(Relaxation):
+class Torques(_WholeTest):
     """The efforts of the joints: the constraint ``force``."""
 
     reasons = frozenset({"torque"})
     name = "joint torques"
     key = "constraints.force"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """The test of torques left out."""
-        return _remade(prepared, prepared.workplace, self.reasons)
 
 
 _OF_THRESHOLD = {
@@ -210,10 +216,7 @@ class GroundPlane(Relaxation):
     name = "ground"
     key = "ground"
 
-    @property
-    def most(self) -> float:
-        """Most arms do not reach farther down."""
-        return 1.0
+    most = 1.0  # few arms reach farther down
 
     def by(self, amount: float) -> GroundPlane:
         """The ground lower by an amount in m."""
@@ -255,10 +258,7 @@ class ObstacleBody(Relaxation):
         """Of the scene."""
         return f"obstacle[{self.number - 1}]"
 
-    @property
-    def most(self) -> float:
-        """Beyond that distance it might as well be gone."""
-        return 0.5
+    most = 0.5  # beyond that distance it might as well be gone
 
     def by(self, amount: float) -> ObstacleBody:
         """The obstacle farther from the part by an amount in m."""
@@ -288,16 +288,12 @@ class ObstacleBody(Relaxation):
 
 
 @dataclass(frozen=True)
-class PartBody(Relaxation):
+class PartBody(_WholeTest):
     """The part itself, as a body that links and tool must not hit."""
 
     reasons = frozenset({"object collision"})
     name = "contact of arm and tool with the part"
     key = "object"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """The test left out."""
-        return _remade(prepared, prepared.workplace, self.reasons)
 
 
 @dataclass(frozen=True)
@@ -326,6 +322,38 @@ class ToolBody(Relaxation):
 
 
 @dataclass(frozen=True)
+class ToolLength(Relaxation):
+    """A longer tool: the tip farther along the tool's axis, the tool's body as it is.
+
+    The tip's room reaches from the body to the tip, so it grows with the tool. What was valid need
+    not be valid with another tool.
+    """
+
+    longer: float = 0.04
+    reasons = None
+    unit = "m"
+    finest = (8, 1)  # each amount takes a whole build
+    name = "length of the tool"
+    key = "task.stand_off_m"
+    most = 0.04
+
+    def by(self, amount: float) -> ToolLength:
+        """So much longer."""
+        return replace(self, longer=amount)
+
+    def said_of(self, amount: float) -> str:
+        """In millimeters."""
+        return f"tool {1e3 * amount:.3g} mm longer"
+
+    def applied(self, prepared: PreparedScene) -> PreparedScene:
+        """With a larger stand-off, which is where the tip link ends."""
+        longer = prepared.setup.task.stand_off_m + self.longer
+        setup = prepared.setup.varied(task={"stand_off_m": longer})
+        place = _around(replace(prepared.workplace, arm=prepare_arm(setup)))
+        return _remade(replace(prepared, scene=prepared.scene.with_setup(setup)), place)
+
+
+@dataclass(frozen=True)
 class Distance(Relaxation):
     """A distance that arm and tool keep (``margins`` of the setup), down to a touch."""
 
@@ -350,7 +378,7 @@ class Distance(Relaxation):
 
 
 @dataclass(frozen=True)
-class AddedTest(Relaxation):
+class AddedTest(_WholeTest):
     """A test of validity that the scene adds."""
 
     test: str
@@ -365,14 +393,7 @@ class AddedTest(Relaxation):
         """Of the test."""
         return f"test of {self.test}"
 
-    @property
-    def key(self) -> str:
-        """Of the scene."""
-        return "validity_test"
-
-    def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """Without it."""
-        return _remade(prepared, prepared.workplace, self.reasons)
+    key = "validity_test"
 
 
 def _remade(

@@ -23,15 +23,13 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
 from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_more
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.frontend.relaxing import Relaxation, relaxations_of, without
+from cellcolor.frontend.relaxing import Relaxation, ToolLength, relaxations_of, without
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Judged, Stages, border_levels
 from cellcolor.questions.explanation import BranchHere, Explanation, RelaxedMinimum
 from cellcolor.solvers import checked
 from cellcolor.solvers.interface import Options
 
-_HALVINGS = 4  # so an amount is known to a sixteenth of itself or better
-_SMALLEST = 512  # a share of the greatest amount that less is not asked about
 _LARGEST_SET = 3
 
 Progress = Callable[[str], None]
@@ -74,11 +72,11 @@ def explained(
                     report(f"without {part.name}")
                     alone[part] = asked.without([part])
         saving = [one for one, row in alone.items() if _saves(row, base)]
-        for one in saving:
+        for one in (*saving, ToolLength()):
             if one.unit is not None:
                 report(f"how much of {one.name}")
                 found = asked.least_amount(one)
-                amounts += [] if found is None else [found]
+                amounts += [found] if _saves(found, base) or one == ToolLength() else []
         if not saving and (base.lift_offs or 0) > 0:
             sets = asked.smallest_sets(report)
     except OutOfTime:
@@ -221,11 +219,8 @@ class _Asked:
         row = RelaxedMinimum(names, keys, segments, at_least, *shares, proved, note)
         return _Known(known, row)
 
-    def least_amount(self, one: Relaxation) -> RelaxedMinimum | None:
-        """The least amount found that saves a lift-off.
-
-        None where even the greatest amount worth asking about does not do.
-        """
+    def least_amount(self, one: Relaxation) -> RelaxedMinimum:
+        """The least amount found that saves a lift-off; if none does, the greatest."""
         tried: dict[float, RelaxedMinimum] = {}
 
         def enough(amount: float) -> bool:
@@ -234,11 +229,12 @@ class _Asked:
 
         high = one.most
         if not enough(high):
-            return None
-        while high > one.most / _SMALLEST and enough(high / 2):
+            return tried[high]
+        share, halvings = one.finest
+        while high > one.most / share and enough(high / 2):
             high /= 2
-        low = high / 2 if high > one.most / _SMALLEST else 0.0
-        for _ in range(_HALVINGS):
+        low = high / 2 if high > one.most / share else 0.0
+        for _ in range(halvings):
             middle = (low + high) / 2
             low, high = (low, middle) if enough(middle) else (middle, high)
         numbers = [tried[amount].segments or 0 for amount in sorted(tried)]

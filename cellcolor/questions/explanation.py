@@ -105,7 +105,8 @@ class Explanation:
         name: of the scene.
         base: the scene as it is.
         alone: each thing relaxed alone, the fewest lift-offs first, then the largest area.
-        amounts: of each thing that saves a lift-off, the least amount that was found to do so.
+        amounts: of each thing that saves a lift-off, the least amount that was found to do so; and
+            a longer tool, whether it saves one or not.
         sets: the smallest sets that save a lift-off where no single thing does (minimal correction
             sets).
         here: what each branch does at the vertex that was asked about; empty if none was.

@@ -32,6 +32,7 @@ from cellcolor.frontend.relaxing import (
     Relaxation,
     Threshold,
     ToolBody,
+    ToolLength,
     Torques,
     relaxations_of,
     without,
@@ -100,6 +101,8 @@ def changed(scene: Scene, what: Relaxation) -> Scene:
             return scene.with_setup(setup.varied(robot={"arm_urdf": text}))
         case Distance(margin=key):
             return scene.with_setup(setup.varied(margins={key: 0}))
+        case ToolLength(longer=longer):
+            return scene.with_setup(setup.varied(task={"stand_off_m": longer}))
         case ToolBody():
             text = re.sub(
                 r"<collision.*?</collision>", "", urdf_of(scene, "tool_urdf"), flags=re.DOTALL
@@ -139,7 +142,7 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
     clock = StageClock(NEVER, None)
     before = judged(prepared, clock)
     changing = 0
-    for one in relaxations_of(prepared):
+    for one in (*relaxations_of(prepared), ToolLength().by(0.03)):
         if isinstance(one, ToolBody) and (scene.ground is not None or scene.obstacle):
             continue
         if one.reasons is None:
@@ -238,7 +241,8 @@ def test_numbers_and_areas_are_those_of_the_changed_scene(tilted: Explanation) -
 def test_an_amount_saves_what_it_says_and_less_of_it_does_not(tilted: Explanation) -> None:
     """The ground lower by as much as is said, and by as much as is said not to be enough."""
     scene = shipped("hemisphere_tilted", 200)
-    (row,) = [row for row in tilted.amounts if row.keys == ("ground",)]
+    row, tool = tilted.amounts
+    assert row.keys == ("ground",) and tool.relaxed == ("tool 40 mm longer",)
     enough, too_little = (
         float(re.search(r"lower by ([\d.]+) mm", text)[1]) / 1e3  # type: ignore[index]
         for text in (row.relaxed[0], row.note)
