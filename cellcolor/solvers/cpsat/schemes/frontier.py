@@ -180,7 +180,7 @@ class Frontier:
         states = {dart: ZERO if joined is None else joined[0] for dart, joined in before.items()}
         known = tuple(states.get(darts[dart].twin) for dart in self._graph.lists[cell])
         for blocks, ways in self._divisions(cell, known):
-            closed, joined = self._joined(depth, before, blocks)
+            closed, joined = self._joined_after(depth, before, blocks)
             closed += front.closed
             held = 0
             for dart, own in zip(self._open[depth + 1], joined, strict=True):
@@ -192,7 +192,7 @@ class Frontier:
             if shown and (depth + 1 < len(self._order) or closed == self._segments):
                 yield blocks, _Front(closed, joined, shown)
 
-    def _joined(
+    def _joined_after(
         self, depth: int, before: Mapping[int, _Joined], blocks: Blocks
     ) -> tuple[int, tuple[_Joined, ...]]:
         """How many segments the divided cell completes, and what its darts and the others join.
