@@ -241,7 +241,6 @@ class TestTables:
         return path
 
     def test_summary_and_plots(self, table: Path, tmp_path: Path, capsys: Capture) -> None:
-        pytest.importorskip("matplotlib")
         capsys.readouterr()
         assert run("bench", "summary", table) == 0
         out = capsys.readouterr().out

@@ -7,15 +7,12 @@ import json
 from dataclasses import replace
 from pathlib import Path
 
-import pytest
-from commands import run
-from library import PAPER
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-
 import numpy as np
+import pytest
 import rasters
+from commands import run
 from documents import TRAJECTORY
+from library import PAPER
 from shipped import ROBOTS, SCENES, edited
 
 import cellcolor

@@ -48,7 +48,6 @@ class TestBuild:
         assert list(tmp_path.iterdir()) == []
 
     def test_scene(self, tmp_path: Path, capsys: Capture) -> None:
-        pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
         text = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")
         models = (INSTANCES.parent / "models").as_posix()
         scene = tmp_path / "small.toml"

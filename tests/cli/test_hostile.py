@@ -96,7 +96,6 @@ def test_toml(text: str, message: str, tmp_path: Path, capsys: Capture) -> None:
 
 
 def test_a_comment_of_many_dots_is_no_key(tmp_path: Path, capsys: Capture) -> None:
-    pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
     path = tmp_path / "x.toml"
     path.write_text("# " + "." * 500 + " " + ". " * 500 + "\nname = 1\n", encoding="utf-8")
     assert "parts" not in line_about(path, ["solve", path], capsys)

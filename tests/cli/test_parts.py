@@ -8,9 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-pytest.importorskip("trimesh", reason="the extra 'frontend' is not installed")
-
 from dirty import DIRTY, obj
 
 import cellcolor

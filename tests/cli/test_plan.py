@@ -12,9 +12,6 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-
-pytest.importorskip("pinocchio")
-
 import trimesh
 from commands import run
 from shipped import edited, wok_file

@@ -17,9 +17,6 @@ from pages import (
     traces,
 )
 
-pytest.importorskip("matplotlib")
-pytest.importorskip("plotly")
-
 
 def is_text(element: ET.Element) -> bool:
     return element.tag.endswith("}text")

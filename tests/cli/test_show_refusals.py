@@ -17,9 +17,6 @@ from cellcolor.cli import main
 from cellcolor.data.instance import SurfaceReference
 from cellcolor.decomposition import decompose
 
-pytest.importorskip("matplotlib")
-pytest.importorskip("plotly")
-
 Capture = pytest.CaptureFixture[str]
 
 

@@ -72,7 +72,6 @@ def test_what_is_written_is_read(tmp_path: Path) -> None:
 
 def test_side_file_of_another_build(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """As a kill between two renames can leave it: as many vertices, other colors."""
-    pytest.importorskip("matplotlib")
     for name, height in (("low", -0.04), ("high", 0.1)):
         file = wok_file(tmp_path, target_vertices=50, position_m=[0.465, -0.15, height])
         assert main(["build", str(file), "-o", str(tmp_path / f"{name}.json")]) == 0

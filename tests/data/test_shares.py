@@ -78,7 +78,6 @@ def test_cells_and_what_is_uncovered_are_the_whole(mesh: LabelledSurface, random
 
 @pytest.mark.parametrize("name", SURFACES)
 def test_table_json_and_picture_agree(name: str, tmp_path: Path, capsys: Capture) -> None:
-    pytest.importorskip("plotly")
     surface = SURFACES[name]
     path, solved, page = (tmp_path / file for file in ("s.surface.json", "x.json", "x.html"))
     path.write_text(surface.to_json(), encoding="utf-8")

@@ -41,8 +41,6 @@ def brought(folder: Path) -> list[list[str]]:
 
 
 def test_the_guide_to_the_letter(tmp_path: Path) -> None:
-    pytest.importorskip("plotly")
-    pytest.importorskip("matplotlib")
     build, solve, *pictures = brought(tmp_path)
     text = (tmp_path / URDF).read_text()
     assert "<inertial>" not in text and 'effort="0"' in text and "package://" in text

@@ -65,7 +65,6 @@ def test_a_solver(tmp_path: Path) -> None:
 
 
 def test_a_picture(clone: Path) -> None:
-    pytest.importorskip("matplotlib")
     picture, line, _ = found = blocks("add-a-picture")
     follow(picture, clone)
     (show,) = commands(found)
@@ -141,6 +140,5 @@ def test_another_planner(tmp_path: Path) -> None:
     assert "1 failed, 1 passed" in done.stdout, done.stdout
     assert "FAILED test_tilted.py" in done.stdout
     assert "1 fewer is proved to be enough" in done.stdout
-    pytest.importorskip("pinocchio")
     done = run([sys.executable, "-c", joints.text], tmp_path, tmp_path)
     assert (done.returncode, done.stdout) == (0, printed.text), done.stderr

@@ -8,14 +8,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
 
 import cellcolor
-
-pytest.importorskip("matplotlib", reason="the extra 'viz' is not installed")
-
-import numpy as np
-from PIL import Image
 
 ROOT = Path(__file__).resolve().parents[2]
 FIGURES = ROOT / "docs" / "figures"

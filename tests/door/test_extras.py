@@ -6,9 +6,6 @@ import sys
 from pathlib import Path
 
 import pytest
-
-pytest.importorskip("pinocchio")
-
 from commands import run
 from meshes import drawn
 

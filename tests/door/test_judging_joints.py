@@ -8,15 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rasters
 from hypothesis import given
 from hypothesis import strategies as st
-
-from examples import examples
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("coal")
-
-import rasters
 from joint_paths import joints_of, scene, walk_of
 from meshes import drawn
 
@@ -25,6 +19,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.errors import InputError
 from cellcolor.testing.surface_under_test import SurfaceUnderTest
+from examples import examples
 
 
 @cache

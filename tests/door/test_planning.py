@@ -6,11 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio")
-pytest.importorskip("ompl")
-pytest.importorskip("toppra")
-
 from shipped import shipped
 
 import cellcolor

@@ -13,9 +13,6 @@ import cellcolor
 from cellcolor import InputError
 from cellcolor.cli import main
 
-pytest.importorskip("matplotlib")
-pytest.importorskip("plotly")
-
 NAMES = {"A": [0], "B": [0, 1], "C": [1, 2], "-": []}
 SURFACE = drawn("AABBCC AABBCC AA--CC", NAMES)
 
@@ -143,7 +140,6 @@ def test_a_result_is_a_solution_too() -> None:
 
 @pytest.mark.parametrize("vertex", ["0", 1.5, -1, 10**6])
 def test_what_is_no_vertex_is_refused(vertex: Any) -> None:
-    pytest.importorskip("pinocchio")
     from shipped import shipped
 
     with pytest.raises(InputError, match=rf"vertex: {vertex!r} is not among 0 to "):

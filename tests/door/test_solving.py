@@ -83,7 +83,6 @@ def test_read_gives_the_solution_before_schemes(tmp_path: Path) -> None:
 
 
 def test_scenes_and_setups_are_told_apart() -> None:
-    pytest.importorskip("pinocchio")
     from cellcolor.frontend import Scene, Setup
 
     assert isinstance(cellcolor.read(ROBOTS / "ur5_polishing.toml"), Setup)
@@ -172,7 +171,6 @@ class _Cells(html.parser.HTMLParser):
 
 
 def test_a_notebook_shows_a_table_and_a_picture() -> None:
-    pytest.importorskip("plotly")
     named = replace(HALVES, colors=("<red>", "blue & green"))
     page = cellcolor.solve(named)._repr_html_()
     assert "proved for any division" in page
@@ -366,7 +364,6 @@ def test_bounds_are_a_proven_range(bounds: Any) -> None:
 
 
 def test_a_setup_is_no_scene() -> None:
-    pytest.importorskip("pinocchio")
     with pytest.raises(InputError, match=r"ur5_polishing\.toml: is a robot's setup, not a scene"):
         cellcolor.solve("ur5_polishing")
 

@@ -6,10 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("ompl", reason="the extra 'motion' is not installed")
-
 import trimesh
 from commands import run
 from shipped import ROBOTS

@@ -13,14 +13,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pinocchio as pin
 import pytest
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
-
-pytest.importorskip("pinocchio")
-
-import pinocchio as pin
-import yaml
 from scipy.interpolate import CubicHermiteSpline
 from scipy.spatial.transform import Rotation
 from shipped import ROBOTS

@@ -9,14 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import trimesh
+import yaml
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-
-pytest.importorskip("pinocchio")
-
-import trimesh
-import yaml
 from scipy.spatial.transform import Rotation
 from stand_in import stand_in
 

@@ -170,8 +170,6 @@ class TestForeignFiles:
 class TestPictures:
     @pytest.mark.parametrize("kind", ["html", "png", "svg"])
     def test_own_ones_are_overwritten(self, kind: str, tmp_path: Path, capsys: Capture) -> None:
-        pytest.importorskip("matplotlib")
-        pytest.importorskip("plotly")
         surface, path = saved(DRAWN, tmp_path), tmp_path / f"x.{kind}"
         assert run("show", surface, "-o", path) == 0
         first = path.read_bytes()

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-
 from commands import run
 from hypothesis import given
 from hypothesis import strategies as st

@@ -75,7 +75,6 @@ class Killing(ClusterWorkers):
 
 
 def test_placements_are_the_same_with_a_worker_lost(address: str, tmp_path: Path) -> None:
-    pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
     from shipped import shipped
 
     asked: dict[str, Any] = {"x": (0.3, 0.6), "points": 2, "best": 1, "vertices": 50}

@@ -6,10 +6,7 @@ import sys
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from shipped import TOP, shipped
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
 
 from cellcolor.frontend import build_surface
 

@@ -7,9 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-
 from shipped import ROBOTS
 
 from cellcolor.data.tool_paths import ToolPath

@@ -6,10 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("coal")
-
 from shipped import shipped
 from world import KINDS, PAIRS, World, standing
 

@@ -11,9 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio")
-
 from pages import DESKTOP, opened
 from stand_in import stand_in
 
@@ -148,8 +145,6 @@ def test_a_click_on_a_point_shows_it(front: cellcolor.Front, tmp_path: Path) -> 
 
 
 def test_a_plan_is_asked_besides() -> None:
-    pytest.importorskip("ompl")
-    pytest.importorskip("toppra")
     from shipped import shipped
 
     planned = cellcolor.plan(shipped("square", 100), spacing_m=0.05, ask=["tradeoff"])

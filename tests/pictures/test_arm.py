@@ -16,9 +16,6 @@ from pages import (
     traces,
 )
 
-pytest.importorskip("matplotlib")
-pytest.importorskip("plotly")
-
 
 @needs_frontend
 class TestScene:

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 from pages import needs_frontend
 
-pytest.importorskip("matplotlib")
-
 
 @needs_frontend
 class TestFaultyPart:

@@ -14,7 +14,6 @@ from cellcolor.errors import InputError
 from cellcolor.pictures import registry
 from cellcolor.pictures.registry import PICTURES, make_picture
 
-pytest.importorskip("matplotlib")
 Capture = pytest.CaptureFixture[str]
 
 
@@ -75,7 +74,6 @@ def test_usage(arguments: list[str], message: str, tmp_path: Path, capsys: Captu
 
 
 def test_every_picture_declares_parts_that_there_are() -> None:
-    pytest.importorskip("pinocchio")
     parts = set(re.findall(r"^``(\w+)``  ", registry.__doc__ or "", re.MULTILINE))
     assert len(parts) == 11
     for name in PICTURES:

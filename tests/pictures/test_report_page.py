@@ -12,13 +12,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from documents import Document
 from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-
-pytest.importorskip("pinocchio")
-
-from documents import Document
 from joint_paths import SLIDE, driven_scara
 from pages import DESKTOP, PHONE, opened
 from stand_in import stand_in

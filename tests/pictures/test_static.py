@@ -7,11 +7,9 @@ import io
 import numpy as np
 import pytest
 from meshes import drawn
+from PIL import Image
 
 import cellcolor
-
-pytest.importorskip("matplotlib")
-from PIL import Image
 
 
 @pytest.mark.parametrize("length", [10, 60, 90])

@@ -32,9 +32,6 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.decomposition import decompose
 from cellcolor.pictures.palette import AREAS, assign
 
-pytest.importorskip("matplotlib")
-pytest.importorskip("plotly")
-
 
 def holding(instance: Instance) -> dict[str, set[int]]:
     """The vertices of each cell, under the names of the legend."""

@@ -17,9 +17,6 @@ from pages import (
 
 from cellcolor.data.instance import Instance
 
-pytest.importorskip("matplotlib")
-pytest.importorskip("plotly")
-
 
 class TestGraph:
     @pytest.mark.parametrize(

@@ -22,8 +22,6 @@ from cellcolor.door.drawing import Drawing
 from cellcolor.errors import InputError
 from cellcolor.pictures.picture import Picture3D
 
-pytest.importorskip("matplotlib")
-
 
 def painted(drawing: Drawing, surface: LabelledSurface) -> dict[str, set[int]]:
     """The vertices inside each entry of the legend."""

@@ -7,10 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("ompl", reason="the extra 'motion' is not installed")
-
 import trimesh
 from commands import json_lines, run
 from shipped import ROBOTS

@@ -7,9 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-
 from commands import json_lines, run
 from hypothesis import given
 from hypothesis import strategies as st

@@ -10,9 +10,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import relabelled
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-
 from commands import json_lines, run
 from shipped import shipped, wok_file
 
@@ -158,7 +155,6 @@ def test_a_change_begins_the_count_anew(refined: cellcolor.Result) -> None:
 
 @pytest.mark.slow
 def test_the_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("matplotlib", reason="the extra 'viz' is not installed")
     scene = wok_file(tmp_path, target_vertices=50)
     out, picture = tmp_path / "wok.solution.json", tmp_path / "steps.png"
     options = ["--refine-until-stable", "--picture", picture, "-o", out, "--workers", 1, "--json"]

@@ -10,9 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-
 from commands import json_lines, run
 from exhaustive_minima import front_by_subsets, minimum
 from hypothesis import assume, given
@@ -170,8 +167,6 @@ def test_the_part_turned_round_is_covered_whole(found: cellcolor.ChosenSetUps) -
 
 @pytest.mark.second
 def test_each_set_up_is_driven_and_judged() -> None:
-    pytest.importorskip("ompl")
-    pytest.importorskip("toppra")
     scene = shipped("square", 100)
     x, y, z = scene.placement.position_m
     found = cellcolor.setups(scene, at=[(x, y, z, 0, 0, pi / 2)])

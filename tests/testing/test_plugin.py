@@ -149,7 +149,6 @@ def test_a_verdict_asserted_by_hand_and_what_cannot_be_used(tmp_path: Path) -> N
 
 
 def test_a_scene_that_there_is_no_time_to_build(tmp_path: Path) -> None:
-    pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
     tests = "def test_mine(cellcolor_oracle):\n    cellcolor_oracle('wok')\n"
     out = run(tmp_path, tests, "--cellcolor-time-limit", "0.001")
     assert "the scene was not built in 0.001 s (--cellcolor-time-limit)" in out

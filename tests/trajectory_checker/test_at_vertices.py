@@ -5,23 +5,18 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+import joint_paths
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from examples import examples
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("coal")
-
-import joint_paths
 
 from cellcolor.arrays import Array
 from cellcolor.data.joint_plan import ContactPath
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import BuildResult
 from cellcolor.trajectory_checker.at_vertices import AtVertices, at_vertices, touches
+from examples import examples
 
 MM, DEGREE, RAD = 0.001, math.radians(1.0), 0.1
 """What docs/judging-trajectories.md allows: of the tip, of the tool, of the nearest joints."""

@@ -6,9 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree

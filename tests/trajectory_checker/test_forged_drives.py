@@ -11,10 +11,6 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("coal")
-
 import rasters
 from forged_drives import FORGERS, HONEST, Honest, dropped_stroke, resampled
 from hypothesis import given

@@ -6,11 +6,6 @@ import math
 from dataclasses import replace
 
 import numpy as np
-import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("coal")
-
 import rasters
 from turned_scenes import setup
 

@@ -4,10 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("coal")
-
 import rasters
 from planted_faults import PLANTERS, found
 

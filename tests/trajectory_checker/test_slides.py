@@ -7,10 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-pytest.importorskip("pinocchio", reason="the extra 'frontend' is not installed")
-pytest.importorskip("coal")
-
 from forged_drives import HONEST, Honest, dropped_stroke, rows_of
 from joint_paths import MOTION, SLIDE, driven_scara, scara_scene
 

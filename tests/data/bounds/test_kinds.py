@@ -88,7 +88,6 @@ def test_without_kind_or_verifier_it_is_a_claim(monkeypatch: pytest.MonkeyPatch)
 
 @pytest.mark.usefixtures("toy")
 def test_a_new_kind_is_drawn() -> None:
-    pytest.importorskip("matplotlib")
     picture = cellcolor.show(SURFACE, view="why", solution=solved(0, 1)).picture
     assert isinstance(picture, Picture3D)
     assert picture.notes == ("Each has colors of its own.",)
@@ -96,7 +95,6 @@ def test_a_new_kind_is_drawn() -> None:
 
 
 def test_a_new_kind_is_on_the_page(toy: BoundKind) -> None:
-    pytest.importorskip("pinocchio")
     from stand_in import stand_in
 
     from cellcolor.pictures.report_page.cards import cards_of
