@@ -71,6 +71,8 @@ def _leave_out(proof: Proof, steps: Sequence[tuple[int, int, int]]) -> None:
                 if within and color in joinable and stand_in not in joinable:
                     text = f"color {stand_in} does not continue across edge {abs(dart)}"
                     raise Refused(f"{text}, where color {color} does")
+        if proof.costs is not None and proof.costs[stand_in] > proof.costs[color]:
+            raise Refused(f"color {stand_in} costs more than color {color}")
         if stand_in == color:
             raise Refused(f"color {color} cannot stand in for itself")
         for own in cells:
@@ -95,7 +97,9 @@ def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
             demands = _beside_hubs(proof, part)
             pieces += _saved(proof, part)
         left = proof.budget - proof.tried
-        search = PlanSearch(demands, conflicts, left, proof.deadline, tangles, proof.costs)
+        # Pieces beside hubs are counted; segments cost no less than their number.
+        costs = None if part.hubs else proof.costs
+        search = PlanSearch(demands, conflicts, left, proof.deadline, tangles, costs)
         try:
             possible = search.is_possible(pieces - 1)
         finally:
@@ -103,7 +107,7 @@ def _verify(proof: Proof, parts: Sequence[CertifiedPart], value: int) -> None:
         if possible:
             what = "segments" if part.conflicts or part.tangles else "color regions"
             least = f"fewer than {pieces} {what}"
-            if proof.costs is not None:
+            if costs is not None:
                 least = f"{what} that cost less than {pieces}"
             raise Refused(f"{least} touch all of the cells {few(part.cells)}")
 

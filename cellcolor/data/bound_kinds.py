@@ -192,11 +192,17 @@ def _conflict_shown(
     return Shown(tuple(marks), tuple(connections), tuple(notes))
 
 
-CONFLICTS = BoundKind("fewer segments would have to cross each other", EVERY_CELL, CertifiedParts)
+CONFLICTS = BoundKind(
+    "fewer segments would have to cross each other",
+    EVERY_CELL,
+    CertifiedParts,
+    "cheaper segments would have to cross each other",
+)
 HUBS = BoundKind(
     "more connections do not fit side by side into cells with many edges",
     EVERY_CELL,
     CertifiedParts,
+    "more connections do not fit side by side into cells with many edges",
 )
 
 

@@ -10,11 +10,13 @@ import pytest
 from exhaustive_minima import literal_minimum, vertex_minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from library import INSTANCES, PAPER
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.claimed_numbers import claims, segments_of_whole_cells
 from cellcolor.checker.color_regions import regions_of_cells
 from cellcolor.checker.division import check_solution
+from cellcolor.data.bound_kinds import CertifiedPart, CertifiedParts
 from cellcolor.data.bounds import Bound
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
@@ -75,6 +77,58 @@ def test_a_cheap_color_does_not_give_way_to_a_dear_one() -> None:
     single = replace(TWO, cells=(Cell(0, (0, 2), ()),), edges=())
     for name in ABLE:
         assert solve(single, Options(objective=Objective({"red": 5})), name).cost == 1
+
+
+def test_crossing_segments_by_hand() -> None:
+    """Red, blue, red, blue around a cell of both: one color leads through, the other is cut in two.
+
+    Red costs 2 and blue 3, so blue leads through, for 3 + 2 + 2, and a color cover costs 2 + 3.
+    """
+    instance = Instance.read(PAPER / "figeasycell4.json")
+    options = Options(objective=Objective({"red": 2, "blue": 3}))
+    solution = solve(instance, options)
+    assert (solution.segments, solution.cost) == (3, 7)
+    cover, conflicts = (bound for bound in solution.bounds or () if bound.of == "cost")
+    assert [(cover.kind, cover.value), (conflicts.kind, conflicts.value)] == [
+        ("cover", 5),
+        ("conflicts", 7),
+    ]
+    assert {verdict.outcome for verdict in check_solution(instance, solution).bounds} == {
+        "verified"
+    }
+    regions = regions_of_cells(instance)
+    part = CertifiedPart(8, (1, 2, 3, 4))
+    for certificate, reason in (
+        (conflicts.certificate, "the parts need fewer than 8 segments"),
+        (CertifiedParts(parts=(part,)).to_document(), "color regions that cost less than 8 touch"),
+    ):
+        more = replace(conflicts, value=8, certificate=certificate)
+        verdict = verify_bound(instance, more, regions, costs=(2, 3))
+        assert (verdict.outcome, reason in verdict.reason) == ("refused", True)
+
+
+def test_a_dear_color_stands_in_for_none() -> None:
+    """What a certificate leaves out has to have a stand-in that does not cost more."""
+    single = replace(TWO, cells=(Cell(0, (0, 2), ()),), edges=())
+    parts = CertifiedParts(left_out=((2, 0, 0),), parts=(CertifiedPart(5, (0,)),))
+    bound = Bound("conflicts", 5, "surface", parts.to_document(), "cost")
+    regions = regions_of_cells(single)
+    verdict = verify_bound(single, bound, regions, costs=(5, 1, 1))
+    assert (verdict.outcome, verdict.reason) == ("refused", "color 0 costs more than color 2")
+    assert verify_bound(single, bound, regions, costs=(5, 1, 5)).outcome == "verified"
+
+
+def test_around_hubs_the_number_is_a_bound_of_the_cost() -> None:
+    instance = Instance.read(INSTANCES / "random" / "hub_24.json")
+    solution = solve(instance, Options(objective=Objective({instance.colors[0]: 2}), workers=1))
+    hubs = next(bound for bound in solution.bounds or () if bound.kind == "hubs")
+    assert (hubs.of, hubs.value, solution.cost, solution.status) == ("cost", 15, 16, "optimal")
+    outcomes = {v.bound.kind: v.outcome for v in check_solution(instance, solution).bounds}
+    assert outcomes["hubs"] == "verified"
+    assert claims(instance, solution, check_solution(instance, solution).bounds) == {
+        "cost_lower_bound": 16,
+        "status": "optimal",
+    }
 
 
 @examples(12)
@@ -171,8 +225,8 @@ def test_what_is_false_is_refused() -> None:
             "bounds[1].certificate: color regions that cost less than 2 touch all",
         ),
         (
-            {"bounds": (*bounds, replace(cover, kind="conflicts"))},
-            "conflicts proves nothing of costs",
+            {"bounds": (*bounds, replace(cover, kind="strangers"))},
+            "strangers proves nothing of costs",
         ),
         ({"schemes": 1, "complete": True}, "schemes: go with the fewest segments"),
         (

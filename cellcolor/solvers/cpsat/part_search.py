@@ -162,7 +162,14 @@ class PartSearch(PartState):
             graph, painting = self.best
             self.keep_all(
                 graph,
-                improve(graph, painting, self._solve_window, seed, deadline.share(SHARE_OF_ROUTES)),
+                improve(
+                    graph,
+                    painting,
+                    self._solve_window,
+                    seed,
+                    deadline.share(SHARE_OF_ROUTES),
+                    self.costs,
+                ),
             )
 
     def _drop(self, seed: int, deadline: Deadline, tries: float) -> None:

@@ -21,7 +21,7 @@ from cellcolor.solvers.cpsat.model.painting import (
     Block,
     Painting,
     canonical,
-    colored_segments,
+    counted,
 )
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.parts import ConnectedPart
@@ -79,7 +79,7 @@ class PartState:
         graph = self.narrow_graph()
         whole: Painting = [[Block(cheapest(own, self.costs), set())] for own in self.colors]
         self.best = graph, canonical(graph, whole)
-        self.segments = self._counted(*self.best)
+        self.segments = counted(*self.best, self.costs)
 
     @cached_property
     def regions(self) -> list[Region]:
@@ -137,15 +137,10 @@ class PartState:
 
     def keep(self, graph: DartGraph, painting: Painting) -> None:
         """The same for a canonical one."""
-        segments = self._counted(graph, painting)
+        segments = counted(graph, painting, self.costs)
         if segments < self.segments:
             self.segments, self.best = segments, (graph, painting)
             self._report()
-
-    def _counted(self, graph: DartGraph, painting: Painting) -> int:
-        """The segments of a painting, or what they cost."""
-        found = colored_segments(graph, painting)
-        return len(found) if self.costs is None else sum(self.costs[color] for color, _ in found)
 
     def keep_all(self, graph: DartGraph, better: Iterable[Painting]) -> None:
         """Better and better canonical paintings, until the best is proved or there is no time."""

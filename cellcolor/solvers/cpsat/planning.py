@@ -60,6 +60,7 @@ class Planning:
             self._part.cover_bound,
             self._solve_plan,
             self._part.planned,
+            self._part.costs,
         )
         self._undecided = True
         with suppress(Undecided):

@@ -68,11 +68,7 @@ class CpSatSolver:
     def minimize(
         self, instance: Instance, options: Options, progress: OnProgress | None = None
     ) -> Answer:
-        """A division with the fewest segments, or the best found before the deadline.
-
-        Where segments have costs, a cover and the full model do all the work: plans, routes and
-        windows count each segment as one.
-        """
+        """A division with the fewest segments, or the best found before the deadline."""
         if not instance.cells:
             return Answer((), (), (), 0 if options.fewest_cuts else None)
         search = _Search(instance, options, progress, self._plans)
@@ -102,7 +98,7 @@ class _Search:
         self._options = options
         self._progress = progress
         self._costs = options.costs(instance)
-        self._plans = plans and self._costs is None
+        self._plans = plans
         self._runner = Runner(options)
         self._loops = instance.live_loops
         self._own = tuple(frozenset(cell.colors) for cell in instance.cells)
@@ -259,28 +255,22 @@ class _Search:
         """What is proved of the number of segments, and how; bounds of parts add up."""
         if not self._parts:
             return (Bound("strangers", len(greedy_strangers(self._instance)), "surface"),)
-        cover = Bound("cover", sum(part.cover_bound for part in self._parts), "surface")
-        proved = sum(part.proved_for_surface for part in self._parts)
-        bound = sum(part.bound for part in self._parts)
-        if self._costs is not None:
-            return (
-                Bound("strangers", len(greedy_strangers(self._instance)), "surface"),
-                replace(cover, of="cost"),
-                Bound("crossings", proved, "surface", of="cost"),
-                Bound("model", bound, "strands", of="cost"),
-            )
         certificate = conflict_certificate(self._left_out, self._parts)
-        return (
-            cover,
+        bounds = (
+            Bound("cover", sum(part.cover_bound for part in self._parts), "surface"),
             Bound(
                 "hubs" if any(part.hubs for part in self._parts) else "conflicts",
                 sum(part.surface_bound for part in self._parts),
                 "surface",
                 None if certificate is None else certificate.to_document(),
             ),
-            Bound("crossings", proved, "surface"),
-            Bound("model", bound, "strands"),
+            Bound("crossings", sum(part.proved_for_surface for part in self._parts), "surface"),
+            Bound("model", sum(part.bound for part in self._parts), "strands"),
         )
+        if self._costs is None:
+            return bounds
+        strangers = Bound("strangers", len(greedy_strangers(self._instance)), "surface")
+        return (strangers, *(replace(bound, of="cost") for bound in bounds))
 
     def _report(self) -> None:
         if self._progress is None or not self._parts:

@@ -27,7 +27,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import Region
 from cellcolor.solvers.cpsat.model.dart_graph import Dart, DartGraph
 from cellcolor.solvers.cpsat.model.full import full_model, model_size, read_painting
-from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, segments_of
+from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, counted, segments_of
 from cellcolor.solvers.cpsat.model_runs import SolveWithSeed
 from cellcolor.solvers.cpsat.routes.dropping import drop_segments
 from cellcolor.union_find import UnionFind
@@ -58,9 +58,14 @@ FRUITLESS = 3
 
 
 def improve(
-    graph: DartGraph, painting: Painting, solve: SolveWithSeed, seed: int, deadline: Deadline
+    graph: DartGraph,
+    painting: Painting,
+    solve: SolveWithSeed,
+    seed: int,
+    deadline: Deadline,
+    costs: Sequence[int] | None = None,
 ) -> Iterator[Painting]:
-    """Better and better divisions of a graph, each with a segment less at least.
+    """Better and better divisions of a graph, each with a segment less, or one that costs less.
 
     Args:
         graph: the dart graph.
@@ -88,12 +93,10 @@ def improve(
         if routed:
             found = _routed(window, chance.randrange(2**20), deadline.share(SHARE))
         else:
-            found = _solved(window, solve, chance.randrange(2**20))
+            found = _solved(window, solve, chance.randrange(2**20), costs)
         if found is None:
             continue
-        fewer = len(segments_of(window.graph, window.painting)) - len(
-            segments_of(window.graph, found)
-        )
+        fewer = counted(window.graph, window.painting, costs) - counted(window.graph, found, costs)
         if fewer < 0:
             continue
         painting = window.put_back(painting, found, block_of)
@@ -295,16 +298,18 @@ def _routed(window: _Window, seed: int, deadline: Deadline) -> Painting | None:
     return best
 
 
-def _solved(window: _Window, solve: SolveWithSeed, seed: int) -> Painting | None:
+def _solved(
+    window: _Window, solve: SolveWithSeed, seed: int, costs: Sequence[int] | None
+) -> Painting | None:
     """The window solved again; None if it is too large, or nothing was found."""
     # A piece outside may face the window with many darts.
     if model_size(window.graph) > LARGEST_WINDOW:
         return None
-    built = full_model(window.graph, _regions(window.graph))
+    built = full_model(window.graph, _regions(window.graph), costs=costs)
     solver, status = solve(built.model, seed)
     if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
         return None
-    return read_painting(window.graph, built.variables, solver)
+    return read_painting(window.graph, built.variables, solver, costs)
 
 
 def _regions(graph: DartGraph) -> list[Region]:

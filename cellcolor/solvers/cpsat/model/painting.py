@@ -63,6 +63,12 @@ def segments_of(graph: DartGraph, painting: Painting) -> list[set[int]]:
     return [cells for _, cells in colored_segments(graph, painting)]
 
 
+def counted(graph: DartGraph, painting: Painting, costs: Sequence[int] | None) -> int:
+    """The number of segments, or what they cost by color."""
+    found = colored_segments(graph, painting)
+    return len(found) if costs is None else sum(costs[color] for color, _ in found)
+
+
 def colored_segments(graph: DartGraph, painting: Painting) -> list[tuple[int, set[int]]]:
     """The color of each segment, and the cells that it touches."""
     blocks = [block for cell in painting for block in cell]

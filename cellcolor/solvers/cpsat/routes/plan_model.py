@@ -15,7 +15,7 @@ Terms, with the places that define them:
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from itertools import product
+from itertools import chain, product
 
 from ortools.sat.python import cp_model
 
@@ -109,13 +109,14 @@ class PlanCells:
 
 
 class PlanModel:
-    """The model of plans with an exact number of segments.
+    """The model of plans with an exact number of segments, or of those that cost no more than that.
 
     Args:
         cells: the merged cells.
-        segments: how many segments a plan has.
-        copies: how many segments one region may have at most.
+        segments: how many segments a plan has, or what they may cost.
+        copies: how many segments each region may have at most.
         last: the segments of the last plan with the kinds that they touch, as a hint.
+        prices: what a segment in each region costs; None where segments are counted.
 
     Attributes:
         model: the model.
@@ -127,8 +128,9 @@ class PlanModel:
         self,
         cells: PlanCells,
         segments: int,
-        copies: int,
+        copies: Sequence[int],
         last: Mapping[SegmentName, set[int]],
+        prices: Sequence[int] | None = None,
     ) -> None:
         self.model = cp_model.CpModel()
         self.in_use: dict[SegmentName, cp_model.IntVar] = {}
@@ -137,7 +139,11 @@ class PlanModel:
         self._copies = copies
         self._touching: dict[tuple[SegmentName, frozenset[int]], cp_model.IntVar] = {}
         self._add_segments(last)
-        self.model.add(sum(self.in_use.values()) == segments)
+        if prices is None:
+            self.model.add(sum(self.in_use.values()) == segments)
+        else:
+            used = self.in_use.items()
+            self.model.add(sum(prices[region] * own for (region, _), own in used) <= segments)
         self._add_cover()
         for one, other in cells.parted:
             self._add_partings(one, other)
@@ -147,8 +153,8 @@ class PlanModel:
     def _add_segments(self, last: Mapping[SegmentName, set[int]]) -> None:
         """Literals for the copies in use, in their order, and for the kinds that each touches."""
         model = self.model
-        for segment in product(range(len(self._cells.of_region)), range(self._copies)):
-            region, copy = segment
+        for region, copy in chain.from_iterable(map(self._segments_in, range(len(self._copies)))):
+            segment = region, copy
             self.in_use[segment] = own = model.new_bool_var("")
             model.add_hint(own, segment in last)
             if copy:
@@ -159,6 +165,10 @@ class PlanModel:
                 model.add_implication(literal, own)
                 model.add_hint(literal, kind in last.get(segment, ()))
 
+    def _segments_in(self, region: int) -> list[SegmentName]:
+        """The copies of a region."""
+        return [(region, copy) for copy in range(self._copies[region])]
+
     def _add_cover(self) -> None:
         """Every merged cell is touched by some segment."""
         for merged_cell in self._cells.demands():
@@ -168,8 +178,8 @@ class PlanModel:
                 if kind is None:
                     literals.append(self.in_use[region, 0])
                 else:
-                    own = range(self._copies)
-                    literals += [self.touched[region, copy][kind] for copy in own]
+                    own = self._segments_in(region)
+                    literals += [self.touched[segment][kind] for segment in own]
             self.model.add_bool_or(literals)
 
     def _touches(self, segment: SegmentName, merged_cells: Iterable[int]) -> cp_model.IntVar:
@@ -184,9 +194,9 @@ class PlanModel:
     def _add_partings(self, one: int, other: int) -> None:
         """If a segment of ``one`` touches both ends, none of ``other`` touches two groups."""
         for own, groups in self._cells.parted[one, other]:
-            for near, far in product(range(self._copies), repeat=2):
-                ends = [self._touches((one, near), merged_cells) for merged_cells in own]
-                parted = [self._touches((other, far), group) for group in groups]
+            for near, far in product(self._segments_in(one), self._segments_in(other)):
+                ends = [self._touches(near, merged_cells) for merged_cells in own]
+                parted = [self._touches(far, group) for group in groups]
                 self.model.add(sum(parted) <= 1).only_enforce_if(ends)
 
     def _add_tangle(self, tangle: Tangle) -> None:
@@ -194,8 +204,7 @@ class PlanModel:
 
         A segment breaks them if it does not touch some group, or touches what it has to avoid.
         """
-        for chosen in product(range(self._copies), repeat=len(tangle.segments)):
-            segments = [(s.region, copy) for s, copy in zip(tangle.segments, chosen, strict=True)]
+        for segments in product(*(self._segments_in(own.region) for own in tangle.segments)):
             if len(set(segments)) < len(segments):
                 continue  # two segments of a tangle are never the same
             literals: list[cp_model.LiteralT] = []

@@ -85,6 +85,8 @@ class Planner:
         fewest: the size of a smallest cover: as few regions can touch every cell, not fewer.
         solve: runs a model with a seed, within limits.
         cover: color regions that touch every cell, a hint for the first plan.
+        costs: what a segment of each color costs; None for 1 each. With costs, ``fewest`` is what a
+            cheapest cover costs.
     """
 
     def __init__(
@@ -94,7 +96,9 @@ class Planner:
         fewest: int,
         solve: SolveWithSeed,
         cover: Sequence[Region] = (),
+        costs: Sequence[int] | None = None,
     ) -> None:
+        self._prices = None if costs is None else [costs[color] for color, _ in regions]
         self._instance = instance
         self._regions = regions
         self._fewest = fewest
@@ -121,7 +125,8 @@ class Planner:
         """A plan with an exact number of segments that respects all partings and tangles so far.
 
         Args:
-            segments: how many; at least as many as a smallest cover has.
+            segments: how many; at least as many as a smallest cover has. With costs, what they may
+                cost together.
             seed: other seeds give other plans, if there are several.
             thoroughly: whether to accept far more partings before giving up, which takes longer.
 
@@ -131,7 +136,10 @@ class Planner:
         Raises:
             Undecided: the model would be too large, or the solver's limits came first.
         """
-        copies = segments - self._fewest + 1
+        # Without the copies of a region but one, the segments are still a cover.
+        spare = segments - self._fewest
+        copies_in = [spare // price + 1 for price in self._prices or [1] * len(self._regions)]
+        copies = max(copies_in, default=1)
         most = MOST_PARTED_THOROUGHLY if thoroughly else MOST_PARTED
         parted = [parting for partings in self._partings.values() for parting in partings]
         if copies**2 * sum(2 + len(parting.groups) for parting in parted) > most:
@@ -141,7 +149,7 @@ class Planner:
         cells = PlanCells(self._merged_cells_of, self._parted_cells(), self._tangles)
         if copies * sum(len(set(own.values())) for own in cells.kinds) > MOST_LITERALS:
             raise Undecided
-        built = PlanModel(cells, segments, copies, self._last)
+        built = PlanModel(cells, segments, copies_in, self._last, self._prices)
         model, touched = built.model, built.touched
         if seed:
             # Without a random objective, other seeds find the same plan again.
