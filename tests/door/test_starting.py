@@ -100,11 +100,15 @@ def test_what_cannot_be_used_is_one_line_and_nothing_is_written(
     scara = ROBOTS / "cobra600.urdf"
     faulty = tmp_path / "faulty.stl"
     faulty.write_text("solid\nendsolid\n")
+    pinched = tmp_path / "pinched.obj"  # two triangles with one vertex in common
+    corners = ("0 0 0", "90 0 0", "0 90 0", "-90 0 0", "0 -90 0")
+    pinched.write_text("".join(f"v {at}\n" for at in corners) + "f 1 2 3\nf 1 4 5\n")
     arm = ROBOTS / "ur5.urdf"
     for part, urdf, options, named in (
         (plate, scara, [], "cobra600.urdf"),
         (plate, tmp_path / "none.urdf", [], "none.urdf"),
         (faulty, arm, [], "faulty.stl"),
+        (pinched, arm, [], f"repair it first: cellcolor repair {pinched} -o pinched-repaired.obj"),
         (plate, arm, ["--unit", "m"], "the part is 160 x 120"),
     ):
         assert run("new", part, urdf, "-o", tmp_path / "new", *options) == 2
