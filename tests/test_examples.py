@@ -14,13 +14,10 @@ pytestmark = pytest.mark.second
 
 FOLDER = TOP / "examples"
 FILES = sorted(FOLDER.glob("*.py"))
-NEEDED = {"move_the_part": ("pinocchio",), "plan_a_motion": ("pinocchio", "ompl", "toppra")}
 
 
 @pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
 def test_it_runs(file: Path, tmp_path: Path) -> None:
-    for module in NEEDED.get(file.stem, ()):
-        pytest.importorskip(module)
     pytest_runs_it = file.name.startswith("test_")
     command = [sys.executable, *(["-m", "pytest", "-q", "-p", "no:cacheprovider"] * pytest_runs_it)]
     environment = {**os.environ, "PYTHONPATH": str(TOP)}

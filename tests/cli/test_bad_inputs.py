@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 import sys
 from collections.abc import Callable
@@ -18,9 +17,6 @@ from meshes import surface, torus
 from cellcolor.cli import main
 
 SCENE = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")
-needs_frontend = pytest.mark.skipif(
-    importlib.util.find_spec("pinocchio") is None, reason="the extra 'frontend' is not installed"
-)
 
 
 @dataclass(frozen=True)
@@ -196,7 +192,6 @@ def test_broken_graph(
     assert list(tmp_path.iterdir()) == [path]
 
 
-@needs_frontend
 @pytest.mark.parametrize("bad", SCENES.values(), ids=SCENES.keys())
 @pytest.mark.parametrize("command", ["solve", "build"])
 def test_broken_scene(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -23,18 +22,11 @@ RING = PAPER / "ring.json"
 SPLIT = PAPER / "split-cell.json"
 ZEROS = PAPER / "crossing-zeros.json"
 CORRIDORS = PAPER / "parallel-corridors.json"
-needs_frontend = pytest.mark.skipif(
-    importlib.util.find_spec("pinocchio") is None, reason="the extra 'frontend' is not installed"
-)
-needs_viz = pytest.mark.skipif(
-    importlib.util.find_spec("plotly") is None, reason="the extra 'viz' is not installed"
-)
 
 
 class TestWhatWasSolved:
     """A solution goes with the instance, the surface and the scene alike."""
 
-    @needs_viz
     def test_surface(self, tmp_path: Path, capsys: Capture) -> None:
         surface, instance = tmp_path / "a.surface.json", tmp_path / "sub" / "a.json"
         instance.parent.mkdir()
@@ -53,8 +45,6 @@ class TestWhatWasSolved:
         assert run("check", PAPER / "ring.surface.json", schemes) == 1
         assert "instance.sha256" in capsys.readouterr().out
 
-    @needs_frontend
-    @needs_viz
     def test_scene(self, tmp_path: Path, capsys: Capture) -> None:
         scene = small_wok(tmp_path)
         built, solution = tmp_path / "wok.json", tmp_path / "solution.json"

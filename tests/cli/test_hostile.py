@@ -15,7 +15,6 @@ from documents import INSTANCE, SURFACE
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
-from pages import needs_frontend
 
 from cellcolor.cli.terminal import shown
 
@@ -85,7 +84,6 @@ def test_json(text: str, message: str, tmp_path: Path, capsys: Capture) -> None:
     assert list(tmp_path.iterdir()) == [path]
 
 
-@needs_frontend
 @pytest.mark.parametrize(("text", "message"), TOMLS.values(), ids=TOMLS.keys())
 def test_toml(text: str, message: str, tmp_path: Path, capsys: Capture) -> None:
     path = tmp_path / "x.toml"
@@ -131,7 +129,6 @@ MESHES = {
 }
 
 
-@needs_frontend
 @pytest.mark.parametrize("repair", [False, True])
 @pytest.mark.parametrize("name", MESHES)
 def test_meshes(name: str, repair: bool, tmp_path: Path, capsys: Capture) -> None:

@@ -15,7 +15,6 @@ from types import ModuleType
 import pytest
 from commands import run
 from library import INSTANCES, PAPER
-from pages import needs_frontend
 
 pytestmark = pytest.mark.second
 
@@ -54,13 +53,11 @@ def test_a_few(name: str) -> None:
 
 
 @pytest.mark.slow
-@needs_frontend
 @pytest.mark.parametrize("name", kills.COMMANDS)
 def test_a_hundred(name: str) -> None:
     kill(name, 100)
 
 
-@needs_frontend
 def test_between_two_renames(tmp_path: Path) -> None:
     """What can happen only then: files of two builds, which are not shown together."""
     kills.prepare(tmp_path, kills.BUILD)

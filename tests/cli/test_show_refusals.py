@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from documents import Document
 from library import PAPER
-from pages import DRAWN, WOK, needs_frontend, saved, side_file, small_wok
+from pages import DRAWN, WOK, saved, side_file, small_wok
 
 from cellcolor.cli import main
 from cellcolor.data.instance import SurfaceReference
@@ -30,7 +30,6 @@ def refused(arguments: list[object], capsys: Capture, *named: str) -> None:
         assert text in line
 
 
-@needs_frontend
 def test_arms(tmp_path: Path, capsys: Capture) -> None:
     from reasons import Reason
 

@@ -132,7 +132,7 @@ def test_commands_take_names(
 SOLVE = """
 import cellcolor
 assert cellcolor.__file__.startswith({folder!r}), cellcolor.__file__
-print(cellcolor.solve("wok"{surface}))
+print(cellcolor.solve("wok"))
 names = cellcolor.library()
 for entry in names.index.entries:
     if entry.file is not None:
@@ -153,14 +153,13 @@ def test_a_wheel_has_it_all(tmp_path: Path) -> None:
     there = folder / "cellcolor" / "shipped"
     for name in names:
         assert (there / name).read_bytes() == (TOP / name).read_bytes()
-    has_frontend = _can_import("pinocchio", "fcl", "trimesh")
-    script = SOLVE.format(folder=str(folder), surface="" if has_frontend else ' ".surface.json"')
+    script = SOLVE.format(folder=str(folder))
     environment = os.environ | {"PYTHONPATH": str(folder)}
     empty = tmp_path / "empty"
     empty.mkdir()
     for command in (
         ["-c", script],
-        ["-m", "cellcolor", "solve", "wok" if has_frontend else "wok.surface.json"],
+        ["-m", "cellcolor", "solve", "wok"],
     ):
         done = subprocess.run(
             [sys.executable, *command], cwd=empty, env=environment, capture_output=True, text=True
@@ -173,9 +172,3 @@ def test_a_wheel_has_it_all(tmp_path: Path) -> None:
 def _files(place: str) -> list[Path]:
     found = (file for file in (TOP / place).rglob("*") if file.is_file())
     return [file for file in found if file.parent.name != "__pycache__"]
-
-
-def _can_import(*packages: str) -> bool:
-    from importlib.util import find_spec
-
-    return all(find_spec(package) is not None for package in packages)

@@ -91,8 +91,6 @@ def test_scenes_and_setups_are_told_apart() -> None:
 
 
 def test_a_scene_is_built() -> None:
-    for package in ("pinocchio", "fcl", "trimesh"):
-        pytest.importorskip(package)
     stages: list[str] = []
     built = cellcolor.build("square", progress=stages.append)
     assert stages[0] == "preparation" and len(stages) > 3

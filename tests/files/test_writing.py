@@ -16,7 +16,7 @@ import pytest
 from commands import run
 from documents import INSTANCE, PLAN, SOLUTION, SURFACE
 from library import INSTANCES, PAPER
-from pages import DRAWN, needs_frontend, saved, small_wok
+from pages import DRAWN, saved, small_wok
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
@@ -306,7 +306,6 @@ class TestTogether:
             signal.signal(number, before)
         assert sorted(tmp_path.iterdir()) == paths
 
-    @needs_frontend
     def test_foreign_file_beside_the_instance(self, tmp_path: Path, capsys: Capture) -> None:
         scene, out = small_wok(tmp_path), tmp_path / "w.json"
         assert run("build", scene, "-o", out) == 0

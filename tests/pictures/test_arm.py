@@ -9,7 +9,6 @@ import pytest
 from library import INSTANCES
 from numpy.typing import NDArray
 from pages import (
-    needs_frontend,
     points,
     show,
     small_wok,
@@ -17,7 +16,6 @@ from pages import (
 )
 
 
-@needs_frontend
 class TestScene:
     def test_collision_object(self, tmp_path: Path) -> None:
         """A smaller cap in the same frame is what must not be hit."""

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from pages import needs_frontend
 
 
-@needs_frontend
 class TestFaultyPart:
     def test_faults_are_marked(self) -> None:
         from dirty import DIRTY

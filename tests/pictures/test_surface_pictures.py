@@ -14,7 +14,6 @@ from pages import (
     DRAWN,
     area_of,
     meshes,
-    needs_frontend,
     points,
     saved,
     show,
@@ -263,7 +262,6 @@ class TestReasons:
         names = {"valid": 0, "torque": 2, "ground": 3}
         assert found == {n: set(np.flatnonzero(codes == c).tolist()) for n, c in names.items()}
 
-    @needs_frontend
     def test_of_a_scene(self, tmp_path: Path) -> None:
         from reasons import Reason
 

@@ -6,7 +6,6 @@ Drawing with the command line, and reading pages back.
 from __future__ import annotations
 
 import base64
-import importlib.util
 import json
 import re
 import shutil
@@ -54,9 +53,6 @@ def opened(file: Path, size: tuple[int, int]) -> Iterator[tuple[Any, list[str]]]
 
 
 WOK = INSTANCES / "scenes" / "wok.toml"
-needs_frontend = pytest.mark.skipif(
-    importlib.util.find_spec("pinocchio") is None, reason="the extra 'frontend' is not installed"
-)
 
 DRAWN = drawn(
     "aaaabb aacabb aaaab. ddd... ddd...",

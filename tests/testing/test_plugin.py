@@ -10,7 +10,6 @@ import re
 import subprocess
 import sys
 from importlib.metadata import entry_points
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -33,8 +32,7 @@ LOADED = (
 def loaded() -> None:
     """What the runs need is imported once: they are forked, and start with all of it."""
     cellcolor.Oracle(ROW).judge([0] * 18)
-    if find_spec("matplotlib"):
-        importlib.import_module("cellcolor.pictures.static")
+    importlib.import_module("cellcolor.pictures.static")
 
 
 def written(
