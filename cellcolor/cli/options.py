@@ -235,6 +235,7 @@ _MOTION = {
     "tool_radius_m": "Of the tool's footprint, m.",
     "spacing_m": "Between neighboring passes, m.",
     "speed_m_per_s": "Of the tool on the surface, m/s; slower where joints limit it.",
+    "approach_speed_m_per_s": "Of the tool within 10 mm of contact, m/s; as in contact without.",
     "joint_velocities_rad_per_s": "Lower limits than the URDF's, rad/s (m/s for sliding joints).",
     "joint_accelerations_rad_per_s2": "A URDF has none; rad/s² (m/s² for sliding joints).",
     "retract_m": "Along the normal, before a move to another stroke, m.",

@@ -68,6 +68,7 @@ uncover_below_share = 0.005
 tool_radius_m = 0.015               # of the tool's footprint
 spacing_m = 0.01                    # between neighboring passes
 speed_m_per_s = 0.05                # of the tool on the part
+approach_speed_m_per_s = 0.02       # of the tool within 10 mm of a touch
 $velocities
 joint_accelerations_rad_per_s2 = $accelerations   # take the data sheet's
 retract_m = 0.05                    # along the normal, before moving on

@@ -269,11 +269,13 @@ class Motion(Table):
     """How the tool covers a segment, and how the arm moves; only planning a motion asks for it.
 
     ``tool_radius_m`` is that of the tool's footprint, ``spacing_m`` the distance between
-    neighboring passes. The tool retracts by ``retract_m`` along the normal; between segments the
-    arm keeps ``clearance_m`` from everything. A URDF has velocities, which
-    ``joint_velocities_rad_per_s`` may lower, but no accelerations. Lists of joints go from base to
-    tool, with m in the place of rad for prismatic ones; ``home_rad`` is where the arm begins and
-    ends, nowhere in particular without it. ``"free"`` asks for a free position, which is found.
+    neighboring passes. Within 10 mm of a contact the tool comes and goes at
+    ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
+    ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
+    A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
+    Lists of joints go from base to tool, with m in the place of rad for prismatic ones;
+    ``home_rad`` is where the arm begins and ends, nowhere in particular without it. ``"free"`` asks
+    for a free position, which is found.
     """
 
     tool_radius_m: Positive = 0.015
@@ -281,6 +283,7 @@ class Motion(Table):
     speed_m_per_s: Positive = 0.05
     joint_velocities_rad_per_s: tuple[Positive, ...] | None = None
     joint_accelerations_rad_per_s2: tuple[Positive, ...]
+    approach_speed_m_per_s: Positive | None = None
     retract_m: Positive = 0.05
     clearance_m: NotNegative = 0.005
     home_rad: tuple[JointAngle, ...] | Literal["free"] | None = None

@@ -19,6 +19,8 @@ from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.timing import Speeds, timed
 from cellcolor.motion.transfers import Transfer
 
+_NEAR = 0.01  # m, of the tip's way to and from contact, on which it keeps to the approach speed
+
 
 @dataclass
 class _Rows:
@@ -49,6 +51,7 @@ def assembled(
     transfers: Sequence[Transfer],
     speeds: Speeds,
     tool_speed: float,
+    approach_speed: float,
     spacing: float,
     left_out: tuple[LeftOut, ...],
     meta: dict[str, Any],
@@ -63,6 +66,7 @@ def assembled(
         transfers: the way to the first stroke, those between strokes, and that from the last one.
         speeds: of the joints.
         tool_speed: of the tool in contact, m/s.
+        approach_speed: of the tool shortly before and after contact, m/s.
         spacing: desired between passes, m; it decides what counts as passed twice.
         left_out: parts that the tool does not visit.
         meta: as of the trajectory.
@@ -80,7 +84,9 @@ def assembled(
     for number, transfer in enumerate(transfers):
         deadline.check()
         at_stroke = 1 if number else 0  # the first sample is the stroke's last one
-        gap = _add_transfer(rows, robot, transfer, at_stroke, number < len(strokes), speeds)
+        gap = _add_transfer(
+            rows, robot, transfer, at_stroke, number < len(strokes), speeds, approach_speed
+        )
         if gap is not None:
             unplanned[gap] = transfer.blocked
         if number == len(strokes):
@@ -140,6 +146,7 @@ def _add_transfer(
     first: int,
     to_stroke: bool,
     speeds: Speeds,
+    approach_speed: float,
 ) -> int | None:
     """Add the samples of a transfer that no stroke has; where its gap is, if it has one."""
     joints, count = transfer.joints, len(transfer.joints)
@@ -147,13 +154,19 @@ def _add_transfer(
     if transfer.gap is not None:
         ends = [0, transfer.gap, transfer.gap + 1, count - 1]
         pieces = [(a, b) for a, b in pairwise(ends) if b > a]
-    times = np.zeros(count)
+    times, poses = np.zeros(count), forward(robot, joints)
+    steps = np.linalg.norm(np.diff(poses.tip, axis=0), axis=1)
+    way = np.cumsum(steps)
+    left = steps.sum() - way + steps
+    near = ((way <= _NEAR) & (first > 0)) | ((left <= _NEAR) & to_stroke)
+    fastest = np.where(near, approach_speed, np.inf)
     for a, b in pieces:
-        times[a : b + 1] = times[a] + timed(joints[a : b + 1], speeds)
+        times[a : b + 1] = times[a] + timed(
+            joints[a : b + 1], speeds, poses.tip[a : b + 1], fastest[a:b]
+        )
     times += rows.now
     base = rows.count - first
     own = slice(first, count - 1 if to_stroke else count)
-    poses = forward(robot, joints[own])
-    rows.add(times[own], joints[own], poses.tip, -poses.tool_axis, -1)
+    rows.add(times[own], joints[own], poses.tip[own], -poses.tool_axis[own], -1)
     rows.now = float(times[-1])
     return None if transfer.gap is None else base + transfer.gap

@@ -7,13 +7,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
-from cellcolor.mesh.dividing import small_triangle_at
 from cellcolor.motion.following import (
     Followed,
     bowed,
@@ -22,6 +21,7 @@ from cellcolor.motion.following import (
     off_way,
     unwound,
 )
+from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP
 from cellcolor.tool_paths.cover import Covered
@@ -48,12 +48,10 @@ class Courses:
     Attributes:
         covered: what was laid out.
         courses: one of each path.
-        reasons: of each small triangle that a sample must not be in, the test that fails there.
     """
 
     covered: Covered
     courses: tuple[Course, ...]
-    reasons: dict[int, str]
 
 
 def laid_out(
@@ -61,8 +59,8 @@ def laid_out(
     surface: LabelledSurface,
     normals: Array,
     branch: int,
-    lay: Callable[[Index], Covered],
-    reasons: dict[int, str],
+    lay: Callable[[], Covered],
+    refusals: ArmRefusals,
     deadline: Deadline,
 ) -> Courses:
     """Lay out the paths of a segment, and again without the places where a sample fails.
@@ -72,8 +70,8 @@ def laid_out(
         surface: the painted one.
         normals: (n, 3) outward unit normals at its vertices.
         branch: of the segment's color.
-        lay: makes the segment's paths, given the numbers of small triangles to leave out.
-        reasons: of each of its small triangles that is known to be bad, the test that fails there.
+        lay: makes the segment's paths.
+        refusals: where these do not go; it is told where samples fail.
         deadline: when to give up.
 
     Returns:
@@ -82,22 +80,21 @@ def laid_out(
     Raises:
         OutOfTime: the deadline came first.
     """
-    reasons = dict(reasons)
-    for _ in range(_ROUNDS):
-        covered = lay(np.array(sorted(reasons), dtype=np.int64))
-        courses, failing = [], {}
+    for left in reversed(range(_ROUNDS)):
+        covered = lay()
+        courses, good = [], True
         for path, corners in zip(covered.paths.paths, covered.along_border, strict=True):
             places = even_places(path, corners)
             course = _course(prepared, path, places, surface, normals, branch, deadline)
             samples = course.samples
             courses.append(course)
+            good &= course.followed.good
             for at, why in _failures(course.followed, prepared.judge.reason_names):
-                face, point = int(samples.faces[at]), samples.points[at]
-                failing[small_triangle_at(surface.mesh, face, point)] = why
-        if failing.keys() <= reasons.keys():
+                if left:
+                    refusals.add(int(samples.faces[at]), samples.points[at], why)
+        if good:
             break
-        reasons = failing | reasons
-    return Courses(covered, tuple(courses), reasons)
+    return Courses(covered, tuple(courses))
 
 
 def _course(

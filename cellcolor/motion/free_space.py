@@ -34,7 +34,9 @@ class FreeSpace:
         self._place, self._on = place, prepared.setup.constraints.collision
         self.space = joint_space(prepared)
         self._leaving, margins = leaving, prepared.setup.margins
-        tip = replace(place.tip.body, link=place.robot.bodies[_last(place.robot)].link)
+        tip, last = place.tip.body, _last(place.robot)
+        if last is not None:
+            tip = replace(tip, link=place.robot.bodies[last].link)
 
         def keeping(room: float, margin: float) -> Robot:
             """The robot with room around it, and a margin that the tip's region does not have."""
@@ -146,10 +148,10 @@ def _with_tip(robot: Robot, tip: Body) -> Robot:
     return replace(robot, bodies=(*robot.bodies, tip), tested_pairs=robot.tested_pairs + pairs)
 
 
-def _last(robot: Robot) -> int:
-    """The number of the last body that the chain of joints carries.
+def _last(robot: Robot) -> int | None:
+    """The number of the last body that the chain of joints carries; None of an arm without any.
 
     Bodies on frames beside the chain (:attr:`Robot.followers`) may stand after the tool's.
     """
     carried = [k for k, body in enumerate(robot.bodies) if body.joint <= robot.joints]
-    return max(carried, default=len(robot.bodies) - 1)
+    return max(carried, default=len(robot.bodies) - 1 if robot.bodies else None)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array
 from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.trajectory import LeftOut, Trajectory
 from cellcolor.deadline import NEVER, Deadline
@@ -19,15 +19,12 @@ from cellcolor.motion.assembly import assembled
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.limits import motion_of, speeds_of
 from cellcolor.motion.order import ordered
+from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.segment import Ground, SegmentStrokes, strokes_of
-from cellcolor.motion.small_triangles import (
-    SmallTriangles,
-    corner_states,
-    left_out_parts,
-)
+from cellcolor.motion.small_triangles import SmallTriangles, corner_states
 from cellcolor.motion.transfers import Transfers
 from cellcolor.painting.paint import Painted
-from cellcolor.tool_paths.cover import ASKED_FOR, Covered, check_spacing, cover
+from cellcolor.tool_paths.cover import Covered, check_spacing, cover
 from cellcolor.tool_paths.measures import PathMeasures, in_all
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
@@ -99,7 +96,7 @@ def plan_motion(
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
         states = corner_states(prepared, small, own_branch, deadline)
 
-    def lay(segment: int, walls: Collection[tuple[int, int]], left_out: Index) -> Covered:
+    def lay(segment: int, walls: Collection[tuple[int, int]], refusals: ArmRefusals) -> Covered:
         return cover(
             surface,
             np.where(segment_of == segment, segment, -1),
@@ -109,7 +106,7 @@ def plan_motion(
             spacing_m=motion.spacing_m,
             tool_radius_m=motion.tool_radius_m,
             walls=walls,
-            left_out=left_out,
+            refusals=refusals,
             deadline=deadline,
         )
 
@@ -131,7 +128,7 @@ def plan_motion(
     if on_paths is not None:
         on_paths(paths, tuple(measures))
     strokes = [stroke for segment in covered for stroke in segment.strokes]
-    left_out = _left_out(small, covered)
+    left_out = _left_out(covered)
     if not strokes:
         raise InputError(None, None, _no_stroke(small, left_out, motion.spacing_m))
     with clock.timed("order of strokes"):
@@ -146,6 +143,7 @@ def plan_motion(
             transfers,
             speeds,
             motion.speed_m_per_s,
+            motion.approach_speed_m_per_s or motion.speed_m_per_s,
             motion.spacing_m,
             left_out,
             {"pattern": pattern, "seed": seed},
@@ -170,16 +168,13 @@ def _colors(painted: Painted) -> list[int]:
     return colors
 
 
-def _left_out(small: SmallTriangles, covered: Sequence[SegmentStrokes]) -> tuple[LeftOut, ...]:
+def _left_out(covered: Sequence[SegmentStrokes]) -> tuple[LeftOut, ...]:
     """What the tool does not go to: where a sample would fail, and what no path comes near to."""
-    reasons = {number: why for one in covered for number, why in one.courses.reasons.items()}
-    parts = list(left_out_parts(small, reasons))
-    for one in covered:
-        parts += [
-            LeftOut(place.segment, place.area_m2, place.cause, place.place)
-            for place in one.courses.covered.uncovered
-            if place.cause != ASKED_FOR
-        ]
+    parts = [
+        LeftOut(place.segment, place.area_m2, place.cause, place.place)
+        for one in covered
+        for place in one.courses.covered.uncovered
+    ]
     return tuple(sorted(parts, key=lambda part: (-part.area_m2, part.segment, part.place)))
 
 

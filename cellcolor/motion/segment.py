@@ -8,12 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.courses import Course, Courses, laid_out
 from cellcolor.motion.following import joint_space
+from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
@@ -22,8 +22,10 @@ from cellcolor.tool_paths.cover import Covered
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
 _SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short
 
-Lay = Callable[[int, Collection[tuple[int, int]], Index], Covered]
-"""The tool paths of a segment, given walls (mesh edges) and small triangles to leave out."""
+_AROUND = 0.2  # spacings; so far from a sample that fails no path is laid
+
+Lay = Callable[[int, Collection[tuple[int, int]], ArmRefusals], Covered]
+"""The tool paths of a segment, given walls (mesh edges) and where the arm cannot touch it."""
 
 
 @dataclass(frozen=True)
@@ -36,7 +38,7 @@ class Ground:
         small: its small triangles.
         states: what the arm does at their corners.
         lay: see :data:`Lay`.
-        shortest: shorter pieces of a path are left out where it is cut, m.
+        spacing: desired between passes, m; shorter pieces of a path are left out where it is cut.
         deadline: when to give up.
     """
 
@@ -45,7 +47,7 @@ class Ground:
     small: SmallTriangles
     states: CornerStates
     lay: Lay
-    shortest: float
+    spacing: float
     deadline: Deadline
 
 
@@ -79,32 +81,31 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
         OutOfTime: the deadline came first.
     """
     prepared, small = ground.prepared, ground.small
-    bad = ground.states.bad(prepared.judge.reason_names)
-    own = {number: why for number, why in bad.items() if small.segment[number] == segment}
+    around = _AROUND * ground.spacing
+    refusals = ArmRefusals(prepared, branch, small, ground.states, segment, around, ground.deadline)
 
-    def courses_with(walls: Collection[tuple[int, int]], reasons: dict[int, str]) -> Courses:
+    def courses_with(walls: Collection[tuple[int, int]]) -> Courses:
         return laid_out(
             prepared,
             ground.surface,
             small.normals[: len(ground.surface.vertices)],
             branch,
-            lambda left_out: ground.lay(segment, walls, left_out),
-            reasons,
+            lambda: ground.lay(segment, walls, refusals),
+            refusals,
             ground.deadline,
         )
 
-    courses = courses_with((), own)
+    courses = courses_with(())
     strokes = _on(ground, courses, branch)
     space = joint_space(prepared)
     if all(space.fits(stroke.joints) for stroke in strokes):
         return SegmentStrokes(courses, strokes, None)
     cracks = [crack for crack in ground.surface.cracks if color in crack.colors]
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
-    left_out = np.array(sorted(courses.reasons), dtype=np.int64)
-    parts = parts_of(small, ground.states, segment, left_out, closed)
+    parts = parts_of(small, ground.states, segment, closed)
     walls = walls_of(parts, small.whole, space, ground.deadline)
     parted = len(strokes)
-    courses = courses_with(walls.edges, courses.reasons)
+    courses = courses_with(walls.edges)
     name = prepared.robot.joint_names[walls.joint]
     strokes = _on(ground, courses, branch)
     if not walls.whole:
@@ -117,7 +118,7 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
         for stroke in strokes
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
-    return SegmentStrokes(courses, _worth_a_lift_off(cut, ground.shortest), walls)
+    return SegmentStrokes(courses, _worth_a_lift_off(cut, ground.spacing), walls)
 
 
 def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
@@ -127,12 +128,12 @@ def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:
     for course in courses.courses:
         segment = course.path.segment
         parts = trimmed(
-            segment, branch, course.samples, course.followed, ground.shortest, names, space
+            segment, branch, course.samples, course.followed, ground.spacing, names, space
         )
         if parts and found:
             parts[0] = replace(parts[0], parting=_apart(course))
         found += parts
-    return _worth_a_lift_off(found, ground.shortest)
+    return _worth_a_lift_off(found, ground.spacing)
 
 
 def _worth_a_lift_off(strokes: list[Stroke], spacing: float) -> list[Stroke]:

@@ -12,14 +12,12 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
-from cellcolor.data.trajectory import LeftOut
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.mesh.dividing import small_areas, small_triangles, unit_everywhere
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import joint_space
-from cellcolor.union_find import UnionFind
 
 JUMP = "discontinuity"
 """The reason where configurations are valid and the branch jumps between them."""
@@ -69,7 +67,7 @@ class CornerStates:
     Attributes:
         joints: (6 m, 3, joints) in rad or m, those of the second and the third corner unwound
             from the first; NaN without solution or segment.
-        reasons: (6 m,) codes of the judge: the first test that a corner fails.
+        reasons: (6 m, 3) codes of the judge: the first test that each corner fails.
         space: of the joints.
         wound: (6 m,) whether the angles do not return after one turn: the branch jumps inside.
     """
@@ -79,11 +77,10 @@ class CornerStates:
     space: JointSpace
     wound: Mask
 
-    def bad(self, names: tuple[str, ...]) -> dict[int, str]:
-        """The small triangles that no path may enter, and why; ``names`` are those of the codes."""
-        found = {int(at): JUMP for at in np.flatnonzero(self.wound)}
-        failed = np.flatnonzero(self.reasons != VALID)
-        return found | {int(at): names[self.reasons[at]] for at in failed}
+    @property
+    def bad(self) -> Mask:
+        """(6 m,) the small triangles that are not valid all over."""
+        return np.asarray(self.wound | (self.reasons != VALID).any(axis=1))
 
 
 def corner_states(
@@ -107,10 +104,9 @@ def corner_states(
     )
     verdicts = prepared.judge(found, deadline)
     place = place.reshape(-1, 3)
-    at_corners, failed = found[place], verdicts.reasons[place]
-    reasons = np.zeros(len(small.corners), dtype=np.uint8)
-    first = np.argmax(failed != VALID, axis=1)  # 0, which is valid then, if none has failed
-    reasons[own] = failed[np.arange(len(own)), first]
+    at_corners = found[place]
+    reasons = np.full((len(small.corners), 3), VALID, dtype=np.uint8)
+    reasons[own] = verdicts.reasons[place]
     one, two, three = at_corners.swapaxes(0, 1)
     space = joint_space(prepared)
     out, across, back = space.step(one, two), space.step(two, three), space.step(three, one)
@@ -119,26 +115,3 @@ def corner_states(
     joints = np.full((len(small.corners), 3, found.shape[1]), np.nan)
     joints[own] = np.stack([one, one + out, one - back], axis=1)
     return CornerStates(joints, reasons, space, wound)
-
-
-def left_out_parts(small: SmallTriangles, reasons: dict[int, str]) -> tuple[LeftOut, ...]:
-    """What is left out, as connected parts with one reason each; large ones first.
-
-    Args:
-        reasons: of each small triangle that is left out.
-    """
-    together: UnionFind[int] = UnionFind()
-    at_corner: dict[tuple[int, int, str], int] = {}
-    for number, reason in reasons.items():
-        for corner in small.corners[number].tolist():
-            key = (corner, int(small.segment[number]), reason)
-            together.union(number, at_corner.setdefault(key, number))
-    parts = []
-    for group in together.sets():
-        members = sorted(group)
-        areas = small.areas[members]
-        largest = members[int(np.argmax(areas))]
-        x, y, z = small.points[small.corners[largest]].mean(axis=0).tolist()
-        segment, reason = int(small.segment[largest]), reasons[largest]
-        parts.append(LeftOut(segment, float(areas.sum()), reason, (x, y, z)))
-    return tuple(sorted(parts, key=lambda part: (-part.area_m2, part.segment, part.place)))

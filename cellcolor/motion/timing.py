@@ -37,7 +37,7 @@ class Speeds:
 
 
 def timed(
-    joints: Array, speeds: Speeds, points: Array | None = None, tool_speed: float = np.inf
+    joints: Array, speeds: Speeds, points: Array | None = None, tool_speed: float | Array = np.inf
 ) -> Array:
     """Times (k,) of the samples of a motion from rest to rest, from 0 on, s.
 
@@ -45,7 +45,7 @@ def timed(
         joints: (k, joints) rad or m, unwound, neighbors near each other.
         speeds: of the joints.
         points: (k, 3) where the tip is, m; only with a speed of the tool.
-        tool_speed: the tool goes no faster, m/s.
+        tool_speed: the tool goes no faster, m/s; one number, or one for each step (k - 1,).
 
     Raises:
         RefusedResult: no times were found, which for a motion from rest to rest is a bug.

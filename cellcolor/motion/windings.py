@@ -106,20 +106,16 @@ class Walls:
     joint: int
 
 
-def parts_of(
-    small: SmallTriangles, states: CornerStates, segment: int, left_out: Index, closed: Mask
-) -> Parts:
-    """The parts of a segment.
+def parts_of(small: SmallTriangles, states: CornerStates, segment: int, closed: Mask) -> Parts:
+    """The parts of a segment, without small triangles that are not valid all over.
 
     Args:
         small: the small triangles of the mesh.
         states: what the arm does at their corners.
         segment: the segment.
-        left_out: numbers of small triangles that no path enters.
         closed: (k,) mesh edges that no path crosses, cracks and walls.
     """
-    kept = small.segment == segment
-    kept[left_out] = False
+    kept = (small.segment == segment) & ~states.bad
     part_of = _part_of(small, kept)
     part, joints = part_of[kept], states.joints[kept]
     count = int(part.max(initial=-1)) + 1

@@ -15,18 +15,17 @@ from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.mesh.dividing import small_areas
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
+from cellcolor.tool_paths.refused import Refusals, Refused, without_refused
 from cellcolor.tool_paths.region import Region, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.spurs import with_spurs
-
-ASKED_FOR = "left out on request"
-"""The cause of what is uncovered because it must not be entered."""
+from cellcolor.tool_paths.triangles import Triangles
 
 _TRIANGLES = 24  # for each square of the spacing, about
 _MOST_TRIANGLES = 4_000_000
+_REFUSED = 0.25  # spacings: sides of triangles at the border of what is refused
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
 _INWARD = 2e-5  # m; so far off the border points are put that lie on it
 _INWARD_SHARE = 0.1  # of the way into the triangle, at most
@@ -69,7 +68,7 @@ def cover(
     spacing_m: float,
     tool_radius_m: float,
     walls: Collection[tuple[int, int]] = (),
-    left_out: Index | Sequence[int] = (),
+    refusals: Refusals | None = None,
     deadline: Deadline = NEVER,
     progress: Callable[[str], None] | None = None,
 ) -> Covered:
@@ -84,7 +83,7 @@ def cover(
         spacing_m: desired distance between neighboring passes, m.
         tool_radius_m: of the tool's footprint, m.
         walls: mesh edges that no path may cross, like cracks of whatever segment is there.
-        left_out: numbers of small triangles (``region.py``) that no path may enter.
+        refusals: where the tool must not touch the segments.
         deadline: when to give up.
         progress: told in a few words what is being done.
 
@@ -96,25 +95,34 @@ def cover(
     lay = find_pattern(pattern)
     _check_lengths(surface, spacing_m, tool_radius_m)
     paths, measures, uncovered, along_border = [], [], [], []
-    regions = regions_of(surface, segment_of, colors, normals, walls, left_out)
+    regions = regions_of(surface, segment_of, colors, normals, walls)
     for number, region in enumerate(regions):
         deadline.check()
         if progress is not None:
             progress(f"covering part {number + 1} of {len(regions)}")
-        area = float(region.mesh.areas.sum())
-        if area < _LEAST_AREA * spacing_m**2:
-            place = _point(region.mesh.points[region.mesh.corners[0]].mean(axis=0))
-            cause = "a part smaller than a quarter of the spacing squared"
-            uncovered.append(Uncovered(region.segment, area, place, cause))
-            continue
-        laid = with_spurs(lay(region.mesh, spacing_m, deadline), spacing_m, deadline)
-        own, left = measure(laid, region.segment, spacing_m)
-        path, beside = _path(region, laid)
-        paths.append(path)
-        along_border.append(beside)
-        measures.append(own)
-        uncovered += left
-    uncovered += _left_out(surface, segment_of, left_out)
+        parts, refused = [region.mesh], list[Refused]()
+        if refusals is not None:
+            parts, refused = without_refused(
+                region.mesh, refusals, _REFUSED * spacing_m, _LEAST_AREA * spacing_m**2
+            )
+        uncovered += [
+            Uncovered(region.segment, place.area_m2, _point(place.place), place.why)
+            for place in refused
+        ]
+        for part in parts:
+            area = float(part.areas.sum())
+            if area < _LEAST_AREA * spacing_m**2:
+                place = _point(part.points[part.corners[0]].mean(axis=0))
+                cause = "a part smaller than a quarter of the spacing squared"
+                uncovered.append(Uncovered(region.segment, area, place, cause))
+                continue
+            laid = with_spurs(lay(part, spacing_m, deadline), spacing_m, deadline)
+            own, left = measure(laid, region.segment, spacing_m)
+            path, beside = _path(region, laid)
+            paths.append(path)
+            along_border.append(beside)
+            measures.append(own)
+            uncovered += left
     uncovered.sort(key=lambda place: (-place.area_m2, place.place))
     return Covered(
         ToolPaths(surface.name, pattern, spacing_m, tool_radius_m, tuple(paths), surface.sha256),
@@ -175,7 +183,8 @@ def _path(region: Region, laid: Laid) -> tuple[ToolPath, Index]:
 
     On the border itself rounding decides on which side of a crack a point lies. Each step stays in
     its triangle, so where the triangle beside the border changes, the path touches the border,
-    unless both lie in one triangle of the surface and the border is convex there.
+    unless both lie in one triangle of the surface and the border is convex there. Where a path
+    turns round a corner of the border, such as the end of a crack, it keeps off that as well.
 
     Returns:
         The path, and the numbers of its points that were put inside.
@@ -187,8 +196,7 @@ def _path(region: Region, laid: Laid) -> tuple[ToolPath, Index]:
     triangle[mesh.edge_of_side] = np.arange(len(mesh.corners))[:, None]
     number = mesh.find(np.stack([walk[:-1], walk[1:]], axis=1))
     beside = np.where(mesh.triangles_at[number] == 1, triangle[number], -1)
-    angles = np.zeros(len(mesh.points))
-    np.add.at(angles, mesh.corners.ravel(), _angles(mesh.points[mesh.corners]).ravel())
+    angles, around = _round_corners(mesh)
     points, normals = [mesh.points[walk[0]]], [mesh.normals[walk[0]]]
     owns: list[Any] = []
     moved: list[int] = []
@@ -207,13 +215,42 @@ def _path(region: Region, laid: Laid) -> tuple[ToolPath, Index]:
                 points.append(mesh.points[end] + share * way)
                 normals.append(mesh.normals[end])
                 owns.append(face)
-        points.append(mesh.points[ends[1]])
+        points.append(mesh.points[ends[1]] + around[ends[1]])
         normals.append(mesh.normals[ends[1]])
         owns.append(face)
+        if around[ends[1]].any():
+            moved.append(len(points) - 1)
     path = ToolPath(
         region.segment, region.color, np.array(points), np.array(normals), np.array(owns)
     )
     return path, np.array(moved, dtype=np.int64)
+
+
+def _round_corners(mesh: Triangles) -> tuple[Array, Array]:
+    """The angle (n,) inside the mesh at each point, and how far (n, 3) to keep off corners, m.
+
+    Corners are points of the border with more than half a circle inside. On those whose triangles
+    all lie in one triangle of the surface a point can be moved.
+    """
+    corners = mesh.corners.ravel()
+    angles, inward = np.zeros(len(mesh.points)), np.zeros((len(mesh.points), 3))
+    np.add.at(angles, corners, _angles(mesh.points[mesh.corners]).ravel())
+    # Away from both border edges that meet there, which at the end of a crack are the same.
+    border = mesh.edges[mesh.triangles_at == 1]
+    along = mesh.points[border[:, 1]] - mesh.points[border[:, 0]]
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    np.add.at(inward, border[:, 0], -along)
+    np.add.at(inward, border[:, 1], along)
+    least, most = np.full(len(mesh.points), np.inf), np.full(len(mesh.points), -1)
+    first = np.full(len(mesh.points), len(mesh.faces) + int(mesh.faces.max(initial=0)))
+    faces = np.repeat(mesh.faces, 3)
+    np.minimum.at(least, mesh.edges.ravel(), np.repeat(mesh.lengths, 2))
+    np.minimum.at(first, corners, faces)
+    np.maximum.at(most, corners, faces)
+    sizes = np.linalg.norm(inward, axis=1)
+    turned = mesh.border & (angles > np.pi) & (first == most) & (sizes > 0)
+    far = np.where(turned, np.minimum(_INWARD, _INWARD_SHARE * least), 0.0)
+    return angles, far[:, None] * inward / np.where(sizes > 0, sizes, 1.0)[:, None]
 
 
 def _angles(triangles: Array) -> Array:
@@ -222,25 +259,6 @@ def _angles(triangles: Array) -> Array:
     other = np.roll(triangles, 1, axis=1) - triangles
     across = np.linalg.norm(np.cross(one, other), axis=2)
     return np.asarray(np.arctan2(across, (one * other).sum(axis=2)))
-
-
-def _left_out(
-    surface: LabelledSurface, segment_of: Index, left_out: Index | Sequence[int]
-) -> list[Uncovered]:
-    """What must not be entered, by segment."""
-    numbers = np.unique(np.asarray(left_out, dtype=np.int64))
-    if not len(numbers):
-        return []
-    corners = surface.faces[numbers // 6, numbers % 6 // 2]
-    areas = small_areas(surface.mesh)[numbers]
-    found = []
-    for segment in np.unique(segment_of[corners]).tolist():
-        own = segment_of[corners] == segment
-        if segment < 0:
-            continue
-        place = _point(surface.vertices[corners[own][areas[own].argmax()]])
-        found.append(Uncovered(segment, float(areas[own].sum()), place, ASKED_FOR))
-    return found
 
 
 def _point(row: Array) -> tuple[float, float, float]:

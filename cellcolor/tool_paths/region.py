@@ -46,7 +46,6 @@ def regions_of(
     colors: Sequence[int],
     normals: Array,
     walls: Collection[tuple[int, int]] = (),
-    left_out: Index | Sequence[int] = (),
 ) -> tuple[Region, ...]:
     """The connected parts of all segments, by segment, the largest of each first.
 
@@ -56,7 +55,6 @@ def regions_of(
         colors: of each segment.
         normals: (n, 3) outward unit normals at the vertices.
         walls: mesh edges that are not to be crossed, like cracks of whatever segment is there.
-        left_out: numbers of small triangles that belong to no region.
     """
     mesh, vertex_count = surface.mesh, len(surface.vertices)
     color_of = np.array([*colors, -1], dtype=np.int64)[segment_of]
@@ -64,7 +62,6 @@ def regions_of(
     fine, _ = small_triangles(mesh)
     small = fine.corners
     kept = np.repeat(segment_of[mesh.corners].ravel() >= 0, 2)
-    kept[np.asarray(left_out, dtype=np.int64)] = False
     inner, other = fine.pairs
     sides, other = fine.edges[inner], other // 3
     # A side between two corners' parts ends in the middle of a mesh edge and in a centroid.
@@ -74,25 +71,42 @@ def regions_of(
     joined = kept[other[:, 0]] & kept[other[:, 1]]
     joined &= ends[other[:, 0]] == ends[other[:, 1]]
     joined[across] &= ~closed[crossed]
-    sides, other = sides[joined], other[joined]
-    directions = unit_everywhere(mesh, normals)
-    vertex_of = _cut_vertices(small, sides, other)
-    part_of = grouped(len(small), other)
+    faces = np.arange(len(small)) // 6
+    whole = Triangles(fine.points, small, unit_everywhere(mesh, normals), faces)
     areas = small_areas(mesh)
     found = []
-    own = np.flatnonzero(kept)
-    own = own[np.argsort(part_of[own], kind="stable")]
-    parts = np.split(own, np.flatnonzero(np.diff(part_of[own])) + 1) if len(own) else []
-    for members in parts:
-        used, corners = np.unique(vertex_of[members], return_inverse=True)
-        at = np.empty(len(used), dtype=np.int64)
-        at[corners.ravel()] = small[members].ravel()
+    for members, part in parts_of(whole, kept, sides[joined], other[joined]):
         segment = int(ends[members[0]])
-        corners = corners.reshape(-1, 3)
-        part = Triangles(fine.points[at], corners, directions[at], members // 6)
         region = Region(segment, int(colors[segment]), part, members)
         found.append((segment, -float(areas[members].sum()), int(members[0]), region))
     return tuple(region for *_, region in sorted(found, key=lambda entry: entry[:3]))
+
+
+def parts_of(
+    mesh: Triangles, kept: Mask, sides: Index, other: Index
+) -> list[tuple[Index, Triangles]]:
+    """The connected parts of some triangles, each with the numbers of its triangles.
+
+    Args:
+        mesh: all triangles.
+        kept: (m,) which of them are meant.
+        sides: (p, 2) the ends of the sides that triangles are joined over; a part is cut open
+            along all others.
+        other: (p, 2) the two triangles of each, both kept.
+    """
+    vertex_of = _cut_vertices(mesh.corners, sides, other)
+    part_of = grouped(len(mesh.corners), other)
+    own = np.flatnonzero(kept)
+    own = own[np.argsort(part_of[own], kind="stable")]
+    found = []
+    for members in np.split(own, np.flatnonzero(np.diff(part_of[own])) + 1) if len(own) else []:
+        used, corners = np.unique(vertex_of[members], return_inverse=True)
+        at = np.empty(len(used), dtype=np.int64)
+        at[corners.ravel()] = mesh.corners[members].ravel()
+        corners = corners.reshape(-1, 3)
+        part = Triangles(mesh.points[at], corners, mesh.normals[at], mesh.faces[members])
+        found.append((members, part))
+    return found
 
 
 def _closed_edges(

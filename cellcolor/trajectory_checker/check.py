@@ -189,13 +189,14 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         notes.append("The setup leaves out collisions and joint limits.")
     velocity = robot.velocity
     acceleration: Array | None = None
-    tool_speed = np.inf
+    tool_speed, touch_speed = np.inf, np.inf
     if not timed:
         notes.append("There are no times, so velocities and accelerations are not judged.")
     elif setup.motion is None:
         notes.append("The setup has no [motion], so accelerations are not judged.")
     if setup.motion is not None:
         tool_speed = setup.motion.speed_m_per_s
+        touch_speed = setup.motion.approach_speed_m_per_s or np.inf
         lowered = setup.motion.joint_velocities_rad_per_s
         acceleration = np.array(setup.motion.joint_accelerations_rad_per_s2)
         for key, given in (
@@ -212,4 +213,4 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         names = [robot.joint_names[joint] for joint in np.flatnonzero(np.isnan(velocity))]
         notes.append(f"Without a limit, so velocities are not judged: {', '.join(names)}.")
         velocity = np.where(np.isnan(velocity), np.inf, velocity)
-    return JointLimits(lower, upper, velocity, acceleration, tool_speed, robot.slides)
+    return JointLimits(lower, upper, velocity, acceleration, tool_speed, robot.slides, touch_speed)

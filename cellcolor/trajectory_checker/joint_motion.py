@@ -30,6 +30,8 @@ class JointLimits:
         acceleration: rad/s² or m/s²; None where the setup has none.
         tool_speed: of the tip in contact, m/s, no array; infinite where the setup has none.
         slides: which joints are prismatic.
+        touch_speed: of the tip on the step onto the surface and on that off it, m/s, no array;
+            infinite where the setup has none.
     """
 
     lower: Array | None
@@ -38,6 +40,7 @@ class JointLimits:
     acceleration: Array | None
     tool_speed: float
     slides: Mask
+    touch_speed: float = np.inf
 
     @property
     def units(self) -> list[str]:
@@ -100,7 +103,14 @@ def judge_joints(
     if limits.acceleration is not None and len(passed) > 1:
         known = ascending & ~jumps.any(axis=1)
         _judge_accelerations(trajectory, known, tips, limits, limits.acceleration, faults)
-    _judge_tool_speed(tips, safe[:, 0], together & ~jumps.any(axis=1), limits.tool_speed, faults)
+    moves: Mask = ~np.any(jumps, axis=1)
+    moves[[sample for sample in trajectory.unplanned if sample < len(moves)]] = False
+    touching = trajectory.contact[1:] != trajectory.contact[:-1]
+    for steps_of, most, doing in (
+        (together, limits.tool_speed, "in contact"),
+        (touching, limits.touch_speed, "where it touches or leaves the surface"),
+    ):
+        _judge_tool_speed(tips, safe[:, 0], steps_of & moves, most, doing, faults)
     return np.asarray(jumps.any(axis=1))
 
 
@@ -144,16 +154,16 @@ def _note_jumps(
 
 
 def _judge_tool_speed(
-    tips: Array, passed: Array, together: Mask, most: float, faults: FaultList
+    tips: Array, passed: Array, asked: Mask, most: float, doing: str, faults: FaultList
 ) -> None:
-    """Note where the tip is too fast in contact."""
-    speed = np.where(together, np.linalg.norm(np.diff(tips, axis=0), axis=1) / passed, 0.0)
+    """Note on which of the steps that are asked about the tip is too fast."""
+    speed = np.where(asked, np.linalg.norm(np.diff(tips, axis=0), axis=1) / passed, 0.0)
     over = speed > most * (1 + SHARE_OVER_LIMIT) + POSE_ROUNDING / passed
     faults.add_stretches(
         "velocity",
         over,
         speed,
-        lambda k: f"the tool moves at {speed[k]:.4g} m/s in contact, allowed: {most:.4g}",
+        lambda k: f"the tool moves at {speed[k]:.4g} m/s {doing}, allowed: {most:.4g}",
         tips,
     )
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
+from painted import square
 from shipped import ROBOTS
 
 from cellcolor.data.tool_paths import ToolPath
@@ -18,7 +20,9 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion import courses
 from cellcolor.motion.courses import Course, laid_out
 from cellcolor.motion.following import Followed, bowed
-from cellcolor.motion.samples import DISTANCE, Samples
+from cellcolor.motion.samples import DISTANCE, Samples, even_places, sampled
+from cellcolor.tool_paths.cover import cover
+from cellcolor.tool_paths.registry import PATTERNS
 
 CORNERS = np.array([[-0.05, -0.01, 0.0], [0.05, -0.01, 0.0], [0.0, 0.05, 0.0]])
 MOST = 0.5  # rad; docs/judging-trajectories.md: in contact, a longer step is a jump
@@ -45,7 +49,8 @@ def course(passed_within: float, monkeypatch: pytest.MonkeyPatch) -> Course:
     judge = SimpleNamespace(reason_names=("valid",))
     prepared: Any = SimpleNamespace(judge=judge, robot=None)
     surface: Any = SimpleNamespace(mesh=mesh)
-    (found,) = laid_out(prepared, surface, up, 0, lambda _: laid, {}, NEVER).courses
+    refusals: Any = SimpleNamespace(add=lambda *_: None)
+    (found,) = laid_out(prepared, surface, up, 0, lambda: laid, refusals, NEVER).courses
     return found
 
 
@@ -93,3 +98,24 @@ def test_steps_that_bow_off_their_way_are_told() -> None:
     assert share[~told].max() < 0.4 and tilt[~told].max() < 0.75
     assert ((share > 0.25) | (tilt > 0.4))[told].all()
     assert 50 < told.sum() < 350
+
+
+@pytest.mark.parametrize("pattern", PATTERNS)
+@pytest.mark.parametrize("seed", range(3))
+def test_samples_go_round_the_ends_of_cracks(pattern: str, seed: int) -> None:
+    """Chords between samples as well: no two neighbors lie in the parts of a crack's two ends."""
+    rng = np.random.default_rng(seed)
+    whole = square(8)
+    edges = sorted({(min(a, b), max(a, b)) for a, b in whole.surface.left_of})
+    cracks = [edges[k] for k in rng.choice(len(edges), 12, replace=False)]
+    painting = square(8, tuple(cracks))
+    covered = cover(*painting, pattern=pattern, spacing_m=0.03, tool_radius_m=0.03)
+    mesh = painting.surface.mesh
+    for path, corners in zip(covered.paths.paths, covered.along_border, strict=True):
+        samples = sampled(path, even_places(path, corners))
+        owners = mesh.corners[
+            samples.faces, mesh.shares(samples.faces, samples.points).argmax(axis=1)
+        ]
+        steps = {(min(a, b), max(a, b)) for a, b in pairwise(owners.tolist()) if a != b}
+        assert len(steps) > 20
+        assert not steps & set(cracks)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -79,3 +80,14 @@ def test_margins_are_kept_besides_the_clearance(key: str, margin: float) -> None
     assert not clear[gap < least - CLOSE].any()
     assert clear[gap > 1.45 * least + CLOSE].all()
     assert clear.any() and not clear.all()
+
+
+def test_an_arm_without_any_body_is_free_but_for_its_tip() -> None:
+    prepared = prepare(shipped("wok", 200))
+    bare = replace(prepared.robot, bodies=(), tested_pairs=())
+    place = prepared.workplace
+    place = replace(place, arm=replace(place.arm, robot=bare))
+    joints = np.random.default_rng(8).uniform(-np.pi, np.pi, (300, 6))
+    clear = FreeSpace(replace(prepared, workplace=place), CLEARANCE).clear(joints)
+    assert clear.any() and not clear.all()
+    assert clear[FreeSpace(prepared, CLEARANCE).clear(joints)].all()

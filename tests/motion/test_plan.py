@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pinocchio as pin
@@ -18,6 +19,9 @@ from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import prepare
 from cellcolor.motion.limits import motion_of
 from cellcolor.motion.plan import plan_motion
+from cellcolor.motion.refusing import ArmRefusals
+from cellcolor.tool_paths.refused import Codes
+from cellcolor.trajectory_checker.check import check_trajectory
 
 pytestmark = pytest.mark.second
 
@@ -119,6 +123,21 @@ def test_velocities_and_accelerations_are_kept_and_the_tool_is_no_faster_than_as
     assert np.median(speed[both]) > 0.95 * asked.speed_m_per_s
 
 
+def test_the_tool_touches_and_leaves_at_the_approach_speed(motion: Planned) -> None:
+    setup = motion.prepared.setup.varied(motion={"approach_speed_m_per_s": 0.004})
+    prepared = prepare(motion.prepared.scene.with_setup(setup))
+    built = replace(motion.built, prepared=prepared)
+    slow = plan_motion(built, motion.painted, motion.normals).trajectory
+    for trajectory, within in ((slow, True), (motion.plan.trajectory, False)):
+        steps = np.linalg.norm(np.diff(trajectory.points, axis=0), axis=1)
+        speed = steps / np.diff(trajectory.times)
+        touching = trajectory.contact[1:] != trajectory.contact[:-1]
+        assert touching.sum() == 2 * len(trajectory.strokes)
+        assert (speed[touching].max() <= 0.004 * (1 + 1e-9)) == within
+        verdict = check_trajectory(built, trajectory)
+        assert ("velocity" in verdict.fault_counts) != within
+
+
 def test_lift_offs_are_the_proved_minimum_and_all_transfers_are_planned(motion: Planned) -> None:
     trajectory = motion.plan.trajectory
     assert trajectory.lift_offs == motion.lift_offs
@@ -184,7 +203,18 @@ def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
     assert re.search(r'"lower":\s*\[null', planned.page().decode())  # JSON knows no infinity
 
 
-def test_where_no_path_can_be_followed_it_says_why() -> None:
+def test_a_mesh_that_is_much_coarser_than_the_spacing_is_covered_as_far_as_can_be() -> None:
     """A dome of some 12 triangles: at every corner between two of them the tool's body hits it."""
+    planned = cellcolor.plan(shipped("wok", 12))
+    assert planned.verdict.valid
+    covered = planned.verdict.covered
+    assert covered is not None and covered.closely_covered_share > 0.9
+
+
+def test_where_no_path_can_be_followed_it_says_why(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(asked: ArmRefusals, points: Array, _normals: Array) -> Codes:
+        return np.full(len(points), asked.names.index("object collision"), dtype=np.uint8)
+
+    monkeypatch.setattr(ArmRefusals, "__call__", refuse)
     with pytest.raises(InputError, match=r"no path .* 100% \(object collision\); try a finer mesh"):
-        cellcolor.plan(shipped("wok", 12))
+        cellcolor.plan(shipped("square", 100))

@@ -8,7 +8,7 @@ the point between. Nothing of ``cellcolor.tool_paths`` is used.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection
 from itertools import pairwise
 
 import networkx as nx
@@ -28,14 +28,12 @@ class PathChecker:
         surface: LabelledSurface,
         segment_of: np.ndarray,
         walls: Collection[tuple[int, int]] = (),
-        left_out: Iterable[int] = (),
     ) -> None:
         self.faces = surface.faces.tolist()
         self.places = surface.vertices
         self.segment_of = segment_of.tolist()
         self.surface = surface
         self.walls = {frozenset(wall) for wall in walls}
-        self.left_out = {int(number) for number in left_out}
         self.faces_at: dict[int, set[int]] = {}
         for number, face in enumerate(self.faces):
             for vertex in face:
@@ -53,7 +51,6 @@ class PathChecker:
                     small
                     for small in self.small_triangles(face, piece)
                     if self.segment_of[self.corner(small)] == path.segment
-                    and small not in self.left_out
                 }
                 if before is not None:
                     joined = self.around(face, at, path)
@@ -117,7 +114,7 @@ class PathChecker:
         for other in faces:
             here = np.array([share_of.get(corner, 0.0) for corner in self.faces[other]])
             for small in self.small_triangles(other, here):
-                if self.segment_of[self.corner(small)] != path.segment or small in self.left_out:
+                if self.segment_of[self.corner(small)] != path.segment:
                     continue
                 graph.add_node(small)
                 for side in self.sides(small):

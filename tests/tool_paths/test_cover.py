@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
+from numpy.typing import NDArray
 from painted import SHAPES, Painting, one_segment, painted_at_random, slit, square, whole
 from path_checker import PathChecker
 
 import cellcolor
+from cellcolor.arrays import Array
 from cellcolor.data.plan import Plan
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
@@ -81,29 +83,56 @@ def test_whole_shapes_are_covered_nearly_once(pattern: str, shape: str) -> None:
     assert found.in_all.mean_visits <= 1.3
 
 
+class Discs:
+    """Refuses what is in one of some discs on a plane, and is told of triangles with one inside."""
+
+    names = ("", "in a disc")
+
+    def __init__(self, middles: Array, radius: float, doubtful: set[int]) -> None:
+        self.middles, self.radius, self.doubtful = middles, radius, doubtful
+
+    def depths(self, points: Array) -> Array:
+        """How far inside of a disc each point is; below 0 outside."""
+        apart = np.linalg.norm(points[:, None, :2] - self.middles[None], axis=2)
+        return self.radius - apart.min(axis=1, initial=np.inf)
+
+    def __call__(self, points: Array, normals: Array) -> NDArray[np.uint8]:
+        assert (normals == [0, 0, 1]).all()
+        return (self.depths(points) >= 0).astype(np.uint8)
+
+
 @given(st.integers(0, 10**6), st.sampled_from(sorted(PATTERNS)), st.data())
 @examples(6)
-def test_walls_and_what_is_left_out_are_kept_off(
+def test_walls_and_what_is_refused_are_kept_off(
     seed: int, pattern: str, data: st.DataObject
 ) -> None:
-    painting = square(8)
+    """However coarse the mesh is, hardly more is left out than what is refused."""
+    painting, spacing = square(8), 0.1
     rng = np.random.default_rng(seed)
     edges = sorted({(min(a, b), max(a, b)) for a, b in painting.surface.left_of})
     walls = [edges[k] for k in rng.choice(len(edges), data.draw(st.integers(0, 25)))]
-    left_out = rng.choice(6 * len(painting.surface.faces), data.draw(st.integers(0, 40)))
-    found = covered(painting, pattern, 0.1, walls=walls, left_out=left_out)
-    checker = PathChecker(painting.surface, painting.segment_of, walls, left_out)
+    middles = rng.uniform(0, 1, (data.draw(st.integers(0, 4)), 2))
+    everywhere = set(range(len(painting.surface.faces)))
+    refusals = Discs(middles, data.draw(st.floats(0.02, 0.3)), everywhere)
+    found = covered(painting, pattern, spacing, walls=walls, refusals=refusals)
+    checker = PathChecker(painting.surface, painting.segment_of, walls)
+    finest = spacing / 4
     for path in found.paths.paths:
         assert not checker.problems(path)
-    # Every part that is large enough has a path, all else is listed.
-    regions = regions_of(*painting, walls, left_out)
-    large = [region for region in regions if region.mesh.areas.sum() >= 0.1**2 / 4]
-    assert len(found.paths.paths) == len(large)
-    areas = small_areas(painting.surface.mesh)
-    listed = sum(place.area_m2 for place in found.uncovered if place.cause.startswith("left out"))
-    assert listed == pytest.approx(areas[np.unique(left_out)].sum())
+        assert refusals.depths(path.points).max(initial=0) < finest / 2
+    # What is left out is the discs and a rim of one small triangle, and states a place in one.
+    out = [place for place in found.uncovered if place.cause == "in a disc"]
+    left = sum(region.mesh.areas.sum() for region in regions_of(*painting, walls))
     small = [place for place in found.uncovered if place.cause.startswith("a part smaller")]
-    assert len(small) == len(regions) - len(large)
+    parts = found.in_all.area_m2 + sum(place.area_m2 for place in (*out, *small))
+    assert parts == pytest.approx(left)
+    if out:
+        places = np.array([place.place for place in out])
+        assert (refusals.depths(places) >= 0).all()
+    grid = np.stack(np.meshgrid(*[np.linspace(0, 1, 201)] * 2), axis=-1).reshape(-1, 2)
+    near = (refusals.depths(grid) > -finest).mean()
+    crumbs = 0.25 * spacing**2 * len(walls)
+    assert sum(place.area_m2 for place in out) <= left * near + crumbs + 0.01
 
 
 @pytest.mark.parametrize("key", ["spacing_m", "tool_radius_m"])
@@ -156,11 +185,6 @@ def test_the_checker_finds_what_is_wrong() -> None:
     other = painting.segment_of.copy()
     other[27] = 1
     assert "leaves" in PathChecker(painting.surface, other).problems(path)[0]
-    on_path = 6 * int(path.faces[20])
-    left_out = PathChecker(
-        painting.surface, painting.segment_of, left_out=range(on_path, on_path + 6)
-    )
-    assert "leaves" in left_out.problems(path)[0]
 
 
 def test_a_path_goes_round_a_slit() -> None:

@@ -39,7 +39,7 @@ from cellcolor.frontend.arm.inverse import (
     pose_at_zero,
 )
 from cellcolor.frontend.arm.kinematics import farthest_reach, frames_along, nearest_points
-from cellcolor.frontend.arm.newton import exact_solutions
+from cellcolor.frontend.arm.newton import exact_solutions, followed_solutions
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.signs import BRANCHES, signs_of
 from cellcolor.frontend.setup import RobotFiles
@@ -104,7 +104,10 @@ class EaikKinematics(InverseKinematics):
         if self._near is not None:
             return self._near.solve(points, directions, branches)
         candidates = self._closed_form(points, directions)
-        found = exact_solutions(self._robot, candidates, points, directions, self._signs)
+        asked = self._robot, candidates, points, directions
+        if branches is not None and self._signs is not None:
+            return followed_solutions(*asked, self._signs, branches)[:, None]
+        found = exact_solutions(*asked, self._signs)
         return found if branches is None else found[np.arange(len(points)), branches][:, None]
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:

@@ -200,6 +200,34 @@ def exact_solutions(
     return named.reshape(len(points), len(BRANCHES), robot.joints)
 
 
+def followed_solutions(
+    robot: Robot,
+    candidates: Array,
+    points: Array,
+    directions: Array,
+    signs: Signs,
+    branches: NDArray[np.intp],
+) -> Array:
+    """The solution (n, joints) of one branch (n,) a pose; the others are not polished.
+
+    Only where the signs of a candidate are not those of its solution, or none has the branch's, are
+    all solutions found. See :func:`exact_solutions`.
+    """
+    pose, number = np.nonzero(~np.isnan(candidates[:, :, 0]))
+    own = signs.branches(robot, candidates[pose, number])[0] == branches[pose]
+    rows, first = np.unique(pose[own], return_index=True)
+    starts = candidates[rows, number[own][first]][:, None]
+    ends = polished(robot, starts, points[rows], directions[rows], _EXACT)[:, 0]
+    known = np.flatnonzero(~np.isnan(ends[:, 0]))
+    known = known[signs.branches(robot, ends[known])[0] == branches[rows[known]]]
+    found = np.empty((len(points), robot.joints))
+    found[rows[known]] = ends[known]
+    left = np.setdiff1d(np.arange(len(points)), rows[known])
+    every = exact_solutions(robot, candidates[left], points[left], directions[left], signs)
+    found[left] = every[np.arange(len(left)), branches[left]]
+    return found
+
+
 def named_slots(robot: Robot, solutions: Array, signs: Signs) -> tuple[Array, Array, Index, Array]:
     """Room for the solutions (n, s, joints) by name, and where each of them belongs.
 
