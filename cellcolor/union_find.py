@@ -36,6 +36,14 @@ class UnionFind(Generic[T]):
 
     def union(self, *elements: T) -> None:
         """Make one set of the sets of some elements; the largest gives its name."""
+        if len(elements) == 2:  # by far the most, and worth a way of their own
+            one, other = self[elements[0]], self[elements[1]]
+            if one != other:
+                if self._size[other] > self._size[one]:
+                    one, other = other, one
+                self._above[other] = one
+                self._size[one] += self._size.pop(other)
+            return
         roots = {self[element]: None for element in elements}
         if len(roots) < 2:
             return
@@ -44,6 +52,13 @@ class UnionFind(Generic[T]):
             if root != largest:
                 self._above[root] = largest
                 self._size[largest] += self._size.pop(root)
+
+    def copy(self) -> UnionFind[T]:
+        """The same sets, to be united on their own."""
+        other: UnionFind[T] = UnionFind()
+        other._above = dict(self._above)
+        other._size = dict(self._size)
+        return other
 
     def sets(self) -> list[set[T]]:
         """All sets."""

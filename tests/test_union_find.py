@@ -32,3 +32,12 @@ def test_the_sets_are_the_components(elements: set[int], unions: list[list[int]]
         assert {found[element] for element in component} <= set(component)
         assert len({found[element] for element in component}) == 1
         assert len({groups.find(element) for element in component}) == 1
+
+
+def test_a_copy_is_united_on_its_own() -> None:
+    first = UnionFind("abc")
+    first.union("a", "b")
+    other = first.copy()
+    other.union("b", "c")
+    assert sorted(map(sorted, first.sets())) == [["a", "b"], ["c"]]
+    assert sorted(map(sorted, other.sets())) == [["a", "b", "c"]]

@@ -156,6 +156,7 @@ class Side:
         self._wall: list[tuple[list[int], frozenset[int]]] = []
         self._around: list[set[int]] = []
         self._tree: dict[int, tuple[int, int]] = {}
+        self._known: dict[tuple[int, int], list[Parting]] = {}
         if usable and len(merged_cells) > 1 and len(parted) > 1:
             self._tree = spanning_tree(self._own, merged_cells[:1])
             self._around = self._circles()
@@ -175,6 +176,11 @@ class Side:
         """
         if not self._wall or not {near, far} <= self._tree.keys():
             return []
+        if (near, far) not in self._known:
+            self._known[near, far] = self._partings(near, far)
+        return self._known[near, far]
+
+    def _partings(self, near: int, far: int) -> list[Parting]:
         curves = [self._path(near) ^ self._path(far), *self._around]
         turns = self._turns(curves)
         cells = self._surface.cells

@@ -6,7 +6,7 @@ The polygons are glued along edges; curves on the surface are compared up to hom
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable, Mapping
+from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from cellcolor.data.instance import Instance
@@ -49,41 +49,70 @@ def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> Mer
         instance: the topological graph.
         colors: the colors that each cell may be painted in, of the cells that are looked at.
     """
+    loops = {cell: instance.cells[cell].loops for cell in colors}
+    sides: dict[int, tuple[int, int]] = {}
     joinable: dict[int, frozenset[int]] = {}
+    for edge_id in {abs(dart) for own in loops.values() for loop in own for dart in loop}:
+        edge = instance.edge(edge_id)
+        sides[edge_id] = edge.left, edge.right
+        joinable[edge_id] = frozenset(instance.joinable(edge_id))
+    return _merged(loops, sides, joinable, colors, {})
+
+
+def merge_further(
+    merged: MergedCells, colors: Mapping[int, frozenset[int]], apart: Mapping[int, Hashable]
+) -> MergedCells:
+    """Merge what has been merged further, for the sake of fewer colors.
+
+    Args:
+        merged: the cells, under names of their own.
+        colors: of each cell that is looked at those of its colors that matter.
+        apart: cells with different values here are not merged.
+    """
+    return _merged(merged.loops, merged.sides, merged.joinable, colors, apart)
+
+
+def _merged(
+    loops: Mapping[int, Sequence[Sequence[int]]],
+    sides: Mapping[int, tuple[int, int]],
+    joinable: Mapping[int, frozenset[int]],
+    colors: Mapping[int, frozenset[int]],
+    apart: Mapping[int, Hashable],
+) -> MergedCells:
+    none = frozenset[int]()
+    live: dict[int, frozenset[int]] = {}
     rings = _Rings()
     for cell in colors:
-        for loop in instance.cells[cell].loops:
-            live: list[int] = []
+        for loop in loops[cell]:
+            kept: list[int] = []
             for dart in loop:
-                own, beyond = instance.joinable(dart), instance.across(dart)
-                if own and beyond in colors:
-                    shared = colors[cell] & colors[beyond] & frozenset(own)
-                    if shared:
-                        joinable[abs(dart)] = shared
-                        live.append(dart)
-            rings.add(live)
-    merged: UnionFind[int] = UnionFind(colors)
-    for edge_id in sorted(joinable):
-        edge = instance.edge(edge_id)
-        if colors[edge.left] != joinable[edge_id] or colors[edge.right] != joinable[edge_id]:
+                edge = abs(dart)
+                if edge not in live:
+                    left, right = sides[edge]
+                    live[edge] = joinable[edge] & colors.get(left, none) & colors.get(right, none)
+                if live[edge]:
+                    kept.append(dart)
+            rings.add(kept)
+    live = {edge: shared for edge, shared in live.items() if shared}
+    names: UnionFind[int] = UnionFind(colors)
+    for edge in sorted(live):
+        left, right = sides[edge]
+        if colors[left] != live[edge] or colors[right] != live[edge]:
             continue
-        left, right = merged[edge.left], merged[edge.right]
-        if left == right and not rings.same(edge_id, -edge_id):
+        if apart.get(left) != apart.get(right):
+            continue
+        if names[left] == names[right] and not rings.same(edge, -edge):
             continue  # two loops of one cell: a handle, and without the edge it was not planar
-        if left != right:
-            merged.union(left, right)
-        rings.remove(edge_id)
-        del joinable[edge_id]
-    merged_cell_of = {cell: merged[cell] for cell in colors}
-    loops: dict[int, list[list[int]]] = {merged_cell: [] for merged_cell in merged_cell_of.values()}
-    sides = {
-        edge: (merged_cell_of[instance.edge(edge).left], merged_cell_of[instance.edge(edge).right])
-        for edge in joinable
-    }
+        names.union(left, right)
+        rings.remove(edge)
+        del live[edge]
+    merged_cell_of = {cell: names[cell] for cell in colors}
+    found: dict[int, list[list[int]]] = {name: [] for name in merged_cell_of.values()}
+    ends = {edge: (merged_cell_of[sides[edge][0]], merged_cell_of[sides[edge][1]]) for edge in live}
     for darts in rings.loops():
-        left, right = sides[abs(darts[0])]
-        loops[left if darts[0] > 0 else right].append(darts)
-    return MergedCells(loops, sides, joinable, merged_cell_of)
+        left, right = ends[abs(darts[0])]
+        found[left if darts[0] > 0 else right].append(darts)
+    return MergedCells(found, ends, live, merged_cell_of)
 
 
 class _Rings:
@@ -163,6 +192,9 @@ class PolygonSurface:
                 self.sides[highest] = merged_cell, merged_cell
                 self.seams[merged_cell].append(highest)
         self.before = {following: dart for dart, following in self.following.items()}
+        self._borders: UnionFind[int] = UnionFind(self.following)
+        for dart in self.following:
+            self._borders.union(dart, self.before[-dart])
 
     def borders(self) -> UnionFind[int]:
         """The border curves, each as the darts after which it runs.
@@ -170,10 +202,7 @@ class PolygonSurface:
         At the corner where a dart ends, the border continues to what lies before the dart's
         other side.
         """
-        borders: UnionFind[int] = UnionFind(self.following)
-        for dart in self.following:
-            borders.union(dart, self.before[-dart])
-        return borders
+        return self._borders.copy()
 
     @property
     def is_spheres(self) -> bool:
@@ -182,7 +211,7 @@ class PolygonSurface:
         connected: UnionFind[int] = UnionFind(polygons)
         for left, right in self.sides.values():
             connected.union(left, right)
-        points, lines = len(self.borders().sets()), len(self.sides)
+        points, lines = len(self._borders.sets()), len(self.sides)
         return points - lines + len(polygons) == 2 * len(connected.sets())
 
     def turns(self, crossed: Mapping[int, int]) -> dict[int, int]:

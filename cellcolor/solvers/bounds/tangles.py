@@ -10,129 +10,14 @@ docs/bounds/tangles.md.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations, product
 
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.cover import Region
-from cellcolor.solvers.bounds.merged_surface import MergedCells, PolygonSurface, spanning_tree
-from cellcolor.union_find import UnionFind
-
-
-@dataclass(frozen=True, slots=True)
-class Domain:
-    """Where a segment can be: merged cells that its color connects.
-
-    Attributes:
-        id: identifies the domain on its surface.
-        tree: by which edge each merged cell of the domain is first reached, and from which one.
-        number: of each of these merged cells, from 0.
-        wall: for each other merged cell, its component outside the domain.
-    """
-
-    id: int
-    tree: Mapping[int, tuple[int, int]]
-    number: Mapping[int, int]
-    wall: Mapping[int, int]
-
-    def apart(self, other: Domain) -> bool:
-        """Whether two domains have no merged cell in common."""
-        return self.number.keys().isdisjoint(other.number)
-
-
-class Domains:
-    """The domains of segments on one surface, and how often ways within them cross.
-
-    Args:
-        merged: its cells, merged where nothing separates them in any color.
-        regions: each color region as its color and its cells.
-
-    Attributes:
-        surface: the merged cells as polygons.
-        cells: the merged cells of each color region.
-    """
-
-    def __init__(self, merged: MergedCells, regions: Sequence[Region]) -> None:
-        self.surface = PolygonSurface(merged)
-        self.cells = [frozenset(merged.merged_cell_of[c] for c in cells) for _, cells in regions]
-        self._colors = [color for color, _ in regions]
-        self._connected: dict[tuple[int, frozenset[int]], dict[int, int]] = {}
-        self._known: dict[tuple[int, frozenset[int], int], Domain] = {}
-        self._odd: dict[tuple[int, int], dict[int, int]] = {}
-
-    def domain(self, region: int, avoided: frozenset[int], start: int) -> Domain:
-        """Where a segment can be.
-
-        Args:
-            region: the number of its color region.
-            avoided: merged cells that it does not touch.
-            start: one that it touches.
-        """
-        if (region, avoided) not in self._connected:
-            self._connected[region, avoided] = self._components(region, avoided)
-        connected = self._connected[region, avoided]
-        key = region, avoided, connected[start]
-        if key not in self._known:
-            own = frozenset(c for c, root in connected.items() if root == connected[start])
-            self._known[key] = self._domain(region, own)
-        return self._known[key]
-
-    def odd_crossings(self, one: Domain, other: Domain) -> dict[int, int]:
-        """For each merged cell of a domain its way's odd crossings with those of another domain.
-
-        They are the bits of a number, one for each merged cell of the first domain; the way leads
-        to a merged cell of the second.
-        """
-        if (one.id, other.id) not in self._odd:
-            crossed: dict[int, int] = {}
-            for cell, number in one.number.items():
-                while one.tree[cell][0]:
-                    edge, cell = one.tree[cell]
-                    crossed[edge] = crossed.get(edge, 0) | 1 << number
-            turns = self.surface.turns(crossed)
-            odd: dict[int, int] = {}
-            # A tree's merged cells come in the order in which they are reached.
-            for cell, (edge, nearer) in other.tree.items():
-                odd[cell] = odd[nearer] ^ turns[edge] if edge else 0
-            self._odd[one.id, other.id] = odd
-        return self._odd[one.id, other.id]
-
-    def _sides(self, region: int, own: frozenset[int]) -> dict[int, tuple[int, int]]:
-        """The edges between some merged cells that are joinable in a region's color."""
-        merged = self.surface.merged
-        return {
-            edge: ends
-            for edge, ends in merged.sides.items()
-            if self._colors[region] in merged.joinable[edge] and own.issuperset(ends)
-        }
-
-    def _components(self, region: int, avoided: frozenset[int]) -> dict[int, int]:
-        """For each merged cell of a region one that stands for all that are connected with it."""
-        own = self.cells[region] - avoided
-        connected: UnionFind[int] = UnionFind(sorted(own))
-        for ends in self._sides(region, own).values():
-            connected.union(*ends)
-        return {cell: connected[cell] for cell in sorted(own)}
-
-    def _domain(self, region: int, own: frozenset[int]) -> Domain:
-        merged = self.surface.merged
-        sides = self._sides(region, own)
-        tree = spanning_tree(sides, [min(own)])
-        wall = self.surface.borders()
-        for edge in merged.sides:
-            if edge not in sides:
-                wall.union(edge, self.surface.before[edge])
-        beyond = {cell: loops for cell, loops in merged.loops.items() if loops and cell not in own}
-        for loops in beyond.values():
-            wall.union(*(dart for loop in loops for dart in loop))
-        return Domain(
-            len(self._known),
-            tree,
-            {cell: number for number, cell in enumerate(tree)},
-            {cell: wall[loops[0][0]] for cell, loops in beyond.items()},
-        )
-
+from cellcolor.solvers.bounds.domains import Domain, Domains
+from cellcolor.solvers.bounds.merged_surface import MergedCells, merge_further
 
 MOST_EQUATIONS = 5_000
 """With more of them nothing is concluded from a plan."""
@@ -196,51 +81,85 @@ class Tangle:
         return sum(len(own.groups) + len(own.avoided) for own in self.segments)
 
 
-class Tangles:
-    """The tangles of segments on one surface.
+class _Surface:
+    """The surface as some segments see it: cells merged where their colors have no border.
+
+    What is merged and what is not makes no difference to the equations (docs/bounds/tangles.md,
+    "Few cells"), and there are far fewer cells than with all colors.
 
     Args:
-        merged: its cells, merged where nothing separates them in any color.
-        regions: its color regions.
+        merged: the cells, under names of their own.
+        parts: what each of them consists of.
+        regions: color regions by their numbers, those of the segments among them.
+        plan: the segments.
+        apart: cells with different values here are not merged.
+
+    Attributes:
+        merged: the cells merged.
+        parts: what each of them consists of.
+        regions: the color regions of the segments, in merged cells.
+        plan: the segments in merged cells.
     """
 
-    def __init__(self, merged: MergedCells, regions: Sequence[Region]) -> None:
-        self._domains = Domains(merged, regions)
+    def __init__(
+        self,
+        merged: MergedCells,
+        parts: Mapping[int, frozenset[int]],
+        regions: Mapping[int, Region],
+        plan: Sequence[Touching],
+        apart: Mapping[int, Hashable],
+    ) -> None:
+        colors: dict[int, set[int]] = {}
+        used = sorted({own.region for own in plan})
+        for number in used:
+            color, cells = regions[number]
+            for cell in cells:
+                colors.setdefault(cell, set()).add(color)
+        own_colors = {cell: frozenset(colors[cell]) for cell in sorted(colors)}
+        self.merged = merge_further(merged, own_colors, apart)
+        of = self.merged.merged_cell_of
+        self.parts = {
+            name: frozenset[int]().union(*(parts[cell] for cell in cells))
+            for name, cells in self.merged.cells().items()
+        }
+        self.regions: dict[int, Region] = {
+            number: (regions[number][0], frozenset(of[cell] for cell in regions[number][1]))
+            for number in used
+        }
+        self.plan = [
+            Touching(
+                own.region,
+                tuple(dict.fromkeys(of[cell] for cell in own.cells)),
+                frozenset(of[cell] for cell in own.avoided),
+            )
+            for own in plan
+        ]
+        self._domains = Domains(self.merged, self.regions)
         self._on_a_sphere = self._domains.surface.is_spheres
 
-    def find(self, plan: Sequence[Touching], deadline: Deadline) -> list[Tangle]:
-        """The tangles that a plan violates; empty if none is known.
+    def seen_by(self, plan: Sequence[Touching], apart: Mapping[int, Hashable]) -> _Surface:
+        """The same as fewer segments see it, whose plan is in merged cells."""
+        return _Surface(self.merged, self.parts, self.regions, plan, apart)
 
-        Up to a limit, these are all tangles of two segments; if there are none, those of three; if
-        there are none either, one larger tangle.
+    def in_parts(self, plan: Sequence[Touching]) -> list[Touching]:
+        """A plan in parts of merged cells: one of each that is touched, all that are avoided."""
+        return [
+            Touching(
+                own.region,
+                tuple(min(self.parts[cell]) for cell in own.cells),
+                frozenset(part for cell in own.avoided for part in self.parts[cell]),
+            )
+            for own in plan
+        ]
 
-        Args:
-            plan: segments.
-            deadline: when to stop.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
-        plan = _among_themselves(plan)
-        if not self._on_a_sphere or self._can_be_drawn(plan, deadline):
-            return []
-        found: list[Tangle] = []
-        for number in (2, 3):
-            for few in combinations(plan, number):
-                deadline.check()
-                if not self._can_be_drawn(own := _among_themselves(few), deadline):
-                    found.append(self._grown(self._fewest(own, deadline), deadline))
-                    if len(found) == MOST_TANGLES:
-                        return found
-            if found:
-                return found
-        return [self._grown(self._fewest(plan, deadline), deadline)]
-
-    def _can_be_drawn(self, plan: Sequence[Touching], deadline: Deadline) -> bool:
+    def can_be_drawn(self, plan: Sequence[Touching], deadline: Deadline) -> bool:
         """Whether the equations of a plan have a solution, or are too many to tell.
 
-        They have none, either, if what a segment avoids parts what it is to touch.
+        They have none, either, if what a segment avoids parts what it is to touch. On surfaces with
+        handles nothing is concluded.
         """
+        if not self._on_a_sphere:
+            return True
         domains = [self._domains.domain(s.region, s.avoided, s.cells[0]) for s in plan]
         if any(
             cell not in its.number
@@ -288,15 +207,17 @@ class Tangles:
                     crossings = sum(odd[place] >> own.number[cell] & 1 for cell, place in pairs)
                     yield tuple(sides), crossings % 2 == 1
 
-    def _fewest(self, plan: Sequence[Touching], deadline: Deadline) -> list[Touching]:
-        """What cannot be drawn of a plan: merged cells, touched or avoided, none to be spared.
+    def fewest(self, deadline: Deadline) -> list[Touching]:
+        """What cannot be drawn of the plan: merged cells, touched or avoided, none to be spared.
 
         At first a merged cell goes from what one segment touches and from what others avoid at
         once, since most that is avoided is so for the sake of the segment that touches it.
         """
 
+        plan = self.plan
+
         def tangled(touched: _Places, avoided: _Places) -> bool:
-            return not self._can_be_drawn(_reduced(plan, touched, avoided), deadline)
+            return not self.can_be_drawn(_reduced(plan, touched, avoided), deadline)
 
         def for_the_sake_of(touched: _Places) -> _Places:
             cells = {cell for _, cell in touched}
@@ -309,40 +230,52 @@ class Tangles:
         touched = _needed(touched, lambda some: tangled(some, avoided))
         return _reduced(plan, touched, avoided)
 
-    def _grown(self, plan: Sequence[Touching], deadline: Deadline) -> Tangle:
-        """The tangle of a plan that cannot be drawn, with as large groups as are found easily."""
+    def fewest_avoided(self, deadline: Deadline) -> list[Touching]:
+        """The plan, which cannot be drawn, with as few avoided merged cells as are found easily."""
+        touched = [(number, c) for number, own in enumerate(self.plan) for c in own.cells]
+        every = [(number, c) for number, own in enumerate(self.plan) for c in sorted(own.avoided)]
+        avoided = _needed(
+            every,
+            lambda some: not self.can_be_drawn(_reduced(self.plan, touched, some), deadline),
+        )
+        return _reduced(self.plan, touched, avoided)
+
+    def grown(self, deadline: Deadline) -> Tangle:
+        """The tangle of the plan, which cannot be drawn, with groups as large as easily found."""
+        plan = self.plan
         groups = [[[cell] for cell in own.cells] for own in plan]
         for number, own in enumerate(plan):
             for group in groups[number]:
                 taken = {cell for its in groups[number] for cell in its}
-                for cell in sorted(self._domains.cells[own.region] - own.avoided - taken):
+                for cell in sorted(self.regions[own.region][1] - own.avoided - taken):
                     choices = [
                         [[cell] if its is group else its for its in segment] for segment in groups
                     ]
-                    if self._none_can_be_drawn(plan, choices, deadline):
+                    if self._none_can_be_drawn(choices, deadline):
                         group.append(cell)
+
+        def in_parts(cells: Iterable[int]) -> frozenset[int]:
+            return frozenset[int]().union(*(self.parts[cell] for cell in cells))
+
         return Tangle(
             tuple(
-                TangledSegment(own.region, tuple(frozenset(group) for group in its), own.avoided)
+                TangledSegment(own.region, tuple(map(in_parts, its)), in_parts(own.avoided))
                 for own, its in zip(plan, groups, strict=True)
             )
         )
 
     def _none_can_be_drawn(
-        self,
-        plan: Sequence[Touching],
-        groups: Sequence[Sequence[Sequence[int]]],
-        deadline: Deadline,
+        self, groups: Sequence[Sequence[Sequence[int]]], deadline: Deadline
     ) -> bool:
         """Whether no choice of a merged cell of each group can be drawn."""
         count = 1
         for group in (group for segment in groups for group in segment):
             count *= len(group)
         return count <= MOST_CHOICES and not any(
-            self._can_be_drawn(
+            self.can_be_drawn(
                 [
                     Touching(own.region, cells, own.avoided)
-                    for own, cells in zip(plan, chosen, strict=True)
+                    for own, cells in zip(self.plan, chosen, strict=True)
                 ],
                 deadline,
             )
@@ -350,10 +283,87 @@ class Tangles:
         )
 
 
+class Tangles:
+    """The tangles of segments on one surface.
+
+    Args:
+        merged: its cells, merged where nothing separates them in any color.
+        regions: its color regions.
+    """
+
+    def __init__(self, merged: MergedCells, regions: Sequence[Region]) -> None:
+        self._merged = MergedCells(
+            merged.loops, merged.sides, merged.joinable, {cell: cell for cell in merged.loops}
+        )
+        self._parts = {cell: frozenset((cell,)) for cell in merged.loops}
+        self._regions = {
+            number: (color, frozenset(merged.merged_cell_of[cell] for cell in cells))
+            for number, (color, cells) in enumerate(regions)
+        }
+
+    def find(self, plan: Sequence[Touching], deadline: Deadline) -> list[Tangle]:
+        """The tangles that a plan violates; empty if none is known.
+
+        Up to a limit, these are all tangles of two segments; if there are none, those of three; if
+        there are none either, one larger tangle.
+
+        Args:
+            plan: segments.
+            deadline: when to stop.
+
+        Raises:
+            OutOfTime: the deadline came first.
+        """
+        plan = _among_themselves(plan)
+        whole = self._seen_by(plan, _signs(plan))
+        if whole.can_be_drawn(whole.plan, deadline):
+            return []
+        found: list[Tangle] = []
+        for number in (2, 3):
+            for few in combinations(whole.plan, number):
+                deadline.check()
+                own = _among_themselves(few)
+                near = whole.seen_by(own, _signs(own))
+                if not near.can_be_drawn(near.plan, deadline):
+                    found.append(self._tangle(near, deadline))
+                    if len(found) == MOST_TANGLES:
+                        return found
+            if found:
+                return found
+        return [self._tangle(whole, deadline)]
+
+    def _tangle(self, near: _Surface, deadline: Deadline) -> Tangle:
+        """One of a plan that cannot be drawn: small, then with large groups."""
+        plan = near.in_parts(near.fewest(deadline))
+        # What is avoided was merged as the whole plan has it, and a part of it may be enough.
+        close = self._seen_by(plan, _each(plan))
+        plan = close.fewest_avoided(deadline)
+        return close.seen_by(plan, _each(plan)).grown(deadline)
+
+    def _seen_by(self, plan: Sequence[Touching], apart: Mapping[int, Hashable]) -> _Surface:
+        return _Surface(self._merged, self._parts, self._regions, plan, apart)
+
+
 def _among_themselves(plan: Sequence[Touching]) -> list[Touching]:
     """Some segments, that avoid only what one of them touches."""
     touched = {cell for own in plan for cell in own.cells}
     return [Touching(own.region, own.cells, own.avoided & touched) for own in plan]
+
+
+def _signs(plan: Sequence[Touching]) -> dict[int, Hashable]:
+    """For each cell that a plan names which segments touch it, and which avoid it."""
+    signs: dict[int, list[tuple[int, bool]]] = {}
+    for number, own in enumerate(plan):
+        for cell in own.cells:
+            signs.setdefault(cell, []).append((number, True))
+        for cell in own.avoided:
+            signs.setdefault(cell, []).append((number, False))
+    return {cell: tuple(its) for cell, its in signs.items()}
+
+
+def _each(plan: Sequence[Touching]) -> dict[int, Hashable]:
+    """For each cell that segments of a plan avoid a value of its own."""
+    return {cell: cell for own in plan for cell in own.avoided}
 
 
 def _reduced(plan: Sequence[Touching], touched: _Places, avoided: _Places) -> list[Touching]:

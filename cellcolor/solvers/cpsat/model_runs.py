@@ -51,14 +51,18 @@ class Runner:
         its = self._options
         return make_portfolio(deadline or its.deadline, its.workers, its.seed, STRATEGIES, effort)
 
-    def single(self, effort: float | None = None, seed: int = 0) -> cp_model.CpSolver:
+    def single(
+        self, effort: float | None = None, seed: int = 0, deadline: Deadline | None = None
+    ) -> cp_model.CpSolver:
         """A solver with one worker, for models that are too small for a portfolio.
 
         Args:
             effort: deterministic seconds, None for all the time left.
             seed: added to the options' seed.
+            deadline: an earlier one than the options'.
         """
-        return make_cp_solver(self._options.deadline, 1, self._options.seed + seed, effort)
+        its = self._options
+        return make_cp_solver(deadline or its.deadline, 1, its.seed + seed, effort)
 
     def solve(
         self,

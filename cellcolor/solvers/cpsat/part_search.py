@@ -7,7 +7,7 @@ from math import isfinite
 
 from ortools.sat.python import cp_model
 
-from cellcolor.deadline import Deadline
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.bounds.hubs import hub_bound
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
@@ -32,6 +32,9 @@ LITTLE = 2
 WIDE_GAP, SHARE_OF_ROUTES = 2, 1 / 4
 """Segments above the bound from which other routes are tried before models; and what part of the
 time that is left one kind of them gets before the other has its turn."""
+
+SHARE_OF_PLANS = 1 / 2
+"""What part of the time that is then left plans get in such a turn."""
 
 MORE_TRIES = 10
 """Segments left out in vain for each segment, once other routes have their turns."""
@@ -141,9 +144,10 @@ class PartSearch(PartState):
         """Take turns, where more is missing than a model is likely to close."""
         in_vain = 0
         while in_vain < TURNS and self.hubs is None and self.segments - self.bound >= WIDE_GAP:
-            before = self.segments
+            before, bound = self.segments, self.bound
             self._take_turns(deadline)
-            in_vain = 0 if self.segments < before else in_vain + 1
+            closer = self.segments < before or self.bound > bound
+            in_vain = 0 if closer else in_vain + 1
 
     def improve_on(self, deadline: Deadline) -> None:
         """Take turns as long as there is time."""
@@ -151,7 +155,10 @@ class PartSearch(PartState):
             self._take_turns(deadline)
 
     def _take_turns(self, deadline: Deadline) -> None:
-        """Local search on a large part; on others segments left out, then windows. New seeds."""
+        """Local search on a large part; on others segments left out, then windows. New seeds.
+
+        Then plans, with more effort each time.
+        """
         deadline.check()
         self._turns += 1
         seed = self.options.seed + self._turns
@@ -171,6 +178,16 @@ class PartSearch(PartState):
                     self.costs,
                 ),
             )
+        if not self.done:
+            self.insist(deadline.share(SHARE_OF_PLANS))
+
+    def insist(self, deadline: Deadline) -> None:
+        """Plans with more effort, until their share of the time is over."""
+        try:
+            self.planning.insist(deadline)
+        except OutOfTime as error:
+            if isinstance(error, KeyboardInterrupt):
+                raise
 
     def _drop(self, seed: int, deadline: Deadline, tries: float) -> None:
         graph, painting = self.best

@@ -17,9 +17,9 @@ from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
 
-PLAN_EFFORT, MORE_EFFORT = 0.05, 2.0
+PLAN_EFFORT, MORE_EFFORT, GROWTH = 0.05, 2.0, 4
 """Deterministic seconds for a plan; most take a hundredth of the first number. The second one is
-for plans that were left undecided, before the full model is tried."""
+for plans that were left undecided, and grows by the factor with each further turn."""
 
 FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
@@ -30,12 +30,11 @@ LEVELS = (1, 0.1), (2, 0.1), (1, 0.4), (2, 0.4)
 the effort. Plans of many segments are ruled out by a full relaxation or by a small one, hardly ever
 by both; without any, as small plans are made, by neither."""
 
-FAR = 2
-"""How many times the bound a large part may have for its plans to be routed. Plans of what is
-farther from it only raise the bound."""
+LITTLE = 2
+"""Segments above the bound up to which it is tried what segments avoid."""
 
 ATTEMPTS = 3
-"""Plans to route before the full model has to decide."""
+"""Plans to route before the full model has to decide; with more effort only one of a large part."""
 
 
 class Planning:
@@ -51,6 +50,8 @@ class Planning:
         self._effort = PLAN_EFFORT
         self._undecided = False
         self._avoiding = False
+        self._routed_at = 0
+        self._deadline = part.options.deadline
 
     def route(self, deadline: Deadline) -> None:
         """Divisions by routing what is planned; where nothing can be planned the bound rises."""
@@ -65,33 +66,42 @@ class Planning:
         self._undecided = True
         with suppress(Undecided):
             self._route_all(planner, deadline)
-            self._undecided = False
 
     def go_on(self, deadline: Deadline) -> None:
         """Plan what was left undecided with more effort, unless hubs give a better bound."""
         if self._undecided:
-            self._plan_with_effort(deadline)
+            self._plan_with_effort(MORE_EFFORT, deadline)
 
     def avoid(self, deadline: Deadline) -> None:
-        """Plans that say what segments avoid, too, where one segment is left above the bound.
+        """Plans that say what segments avoid, too, where few segments are left above the bound.
 
-        The bound rises by one in seconds, if at all. If the gap is larger, models and other routes
-        use the time better.
+        The bound rises by one in seconds, if at all. If the gap is larger, other routes use the
+        time better.
         """
-        if self._part.segments == self._part.bound + 1:
+        if self._part.segments <= self._part.bound + LITTLE:
             self._avoiding = True
-            self._plan_with_effort(deadline)
+            self._plan_with_effort(MORE_EFFORT, deadline)
 
-    def _plan_with_effort(self, deadline: Deadline) -> None:
+    def insist(self, deadline: Deadline) -> None:
+        """Both again, as long as something is undecided, with more effort each time."""
+        if self._undecided:
+            effort = GROWTH * self._effort if self._thorough else MORE_EFFORT
+            self._plan_with_effort(effort, deadline)
+        elif not self._avoiding:
+            self.avoid(deadline)
+
+    def _plan_with_effort(self, effort: float, deadline: Deadline) -> None:
         if self.planner is not None and self._part.hubs is None:
-            self._effort = MORE_EFFORT
+            self._effort, self._undecided = effort, True
             with suppress(Undecided):
                 self._route_all(self.planner, deadline)
 
     def _route_all(self, planner: Planner, deadline: Deadline) -> None:
-        for attempt in range(ATTEMPTS):
+        self._deadline = deadline
+        for attempt in range(1 if self._part.large and self._thorough else ATTEMPTS):
             plan = self._plan_that_holds(planner, attempt, deadline)
-            for rings in (1, 2):
+            self._undecided = False
+            for rings in (1,) if self._part.large else (1, 2):
                 self._route(plan, rings, ROUNDS, attempt, deadline)
             if self._part.done:
                 return
@@ -115,13 +125,8 @@ class Planning:
                     self._part.cover_bound = self._part.bound  # nothing but the cells was heeded
                 continue
             self._part.planned = [segment.region for segment in plan]
-            # Looking for segments that cross takes longer than routing when none do. With 0 rings
-            # a cell is painted whole, with 1 it has room for cutting paths. What has been planned
-            # and not routed before is not likely to be routed now.
-            for rings in () if self._avoiding or (self._thorough and self._far) else (0, 1):
+            for rings in self._rings_before_conflicts():
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
-                if self._far and not self._thorough:
-                    raise Undecided  # local search first: on so large a part this takes too long
             if self._part.done:
                 return plan
             if not planner.find_conflicts(plan, deadline, avoiding=self._avoiding):
@@ -132,7 +137,7 @@ class Planning:
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
         # Too small for a portfolio.
         for level, share in LEVELS if self._thorough else ((None, 1.0),):
-            solver = self._part.runner.single(share * self._effort, seed)
+            solver = self._part.runner.single(share * self._effort, seed, self._deadline)
             if level is not None:
                 solver.parameters.linearization_level = level
             status = self._part.runner.solve(solver, model)
@@ -140,10 +145,19 @@ class Planning:
                 break
         return solver, status
 
-    @property
-    def _far(self) -> bool:
-        """Whether a large part is so far from its bound that routing what is planned is no use."""
-        return self._part.large and self._part.segments > FAR * self._part.bound
+    def _rings_before_conflicts(self) -> tuple[int, ...]:
+        """With how many rings of sectors a plan is routed before conflicts are looked for in it.
+
+        That takes longer than routing when there are none, except on large parts: there one plan
+        for each bound is enough of a start for local search. With 0 rings a cell is painted whole,
+        with 1 it has room for cutting paths.
+        """
+        if self._avoiding:
+            return ()
+        if not self._part.large:
+            return 0, 1
+        known, self._routed_at = self._routed_at, self._part.bound
+        return () if known == self._part.bound else (1,)
 
     @property
     def _thorough(self) -> bool:

@@ -192,11 +192,12 @@ class _Search:
             within(1 / 4, PartSearch.count_few_links),
             PartSearch.believe_exact,
             within(1 / 4, PartSearch.drop),
-            within(1 / 2, PartSearch.recolor_large),
+            within(1 / 4, PartSearch.recolor_large),
             within(1 / 2, lambda part, its: part.planning.go_on(its)),
             within(1 / 3, lambda part, its: part.planning.avoid(its)),
             within(3 / 4, PartSearch.narrow_gap),
             lambda part, its: part.models.solve_small(its),
+            within(1 / 3, PartSearch.insist),
             lambda part, its: part.models.solve(its),
             PartSearch.improve_on,
         ]

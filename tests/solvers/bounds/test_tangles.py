@@ -84,6 +84,20 @@ def test_a_handle_leads_past() -> None:
     assert tangles_of(with_handle).find(all_petals(with_handle), NEVER) == []
 
 
+def test_a_handle_that_no_segment_can_use_changes_nothing() -> None:
+    """The same handle in a fourth color: as the three segments see it, the surface is a plane."""
+    island = ISLAND_BETWEEN
+    (outer, inner), *_ = [cell.loops for cell in island.cells]
+    with_handle = Instance(
+        "handle",
+        (*island.colors, "fourth"),
+        (Cell(0, (RED, BLUE, GREEN, 3), ((*outer, 7), inner, (-7,))), *island.cells[1:]),
+        (*island.edges, Edge(7, 0, 0, (3,))),
+    )
+    (found,) = tangles_of(with_handle).find(all_petals(with_handle)[:3], NEVER)
+    assert len(found.segments) == 3
+
+
 def test_a_way_round_a_cell_that_a_segment_does_not_touch() -> None:
     tangles = tangles_of(ROUND_A_PETAL)
     blue, red = Touching(BLUE, (3, 6)), Touching(RED, (2, 4))

@@ -172,15 +172,23 @@ def test_what_segments_avoid_proves_the_last_one() -> None:
     search.planning.route(NEVER)
     search.drop(NEVER)
     assert (search.segments, search.surface_bound) == (7, 6)
-    search.planning.avoid(NEVER)
+    search.insist(NEVER)
     assert search.surface_bound == 7
 
 
-def test_a_large_part_begins_with_local_search() -> None:
-    """A large part is planned no further while its best division is far from the bound.
+def test_a_turn_of_plans_ends_with_its_share_of_the_time() -> None:
+    instance = decompose(MEDIUM["rim"](26))
+    (part,) = split(instance, drop_dominated(instance, left_out(instance)))
+    options = Options()
+    search = PartSearch(part, options, Runner(options), lambda: None)
+    search.cover(NEVER)
+    search.planning.route(NEVER)
+    search.insist(Deadline.after(0))
+    assert not search.done
 
-    Routes and windows came to 18 segments of this graph in minutes, 17 of the large part.
-    """
+
+def test_a_large_part_begins_with_local_search() -> None:
+    """Routes and windows came to 18 segments of this graph in minutes, 17 of the large part."""
     instance = Instance.read(INSTANCES / "hard" / "large_part_1.json")
     *_, part = split(instance, drop_dominated(instance, left_out(instance)))
     options = Options()
