@@ -223,10 +223,6 @@ class PlanSearch:
         if not left:
             return iter([_State(found, (), more)])
         regions_of = self._regions if more > 0 else dict.fromkeys(left, frozenset[ColorRegion]())
-        if self._costs is not None:
-            regions_of = {
-                c: frozenset(r for r in regions_of[c] if self._cost(r) <= more) for c in left
-            }
         cell = min(left, key=lambda c: (len(able[c]) + len(regions_of[c]), c))
         rest = tuple([c for c in left if c != cell])
         return self._touching(cell, able[cell], sorted(regions_of[cell]), _State(found, rest, more))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import pytest
@@ -11,6 +12,7 @@ from exhaustive_minima import literal_minimum, vertex_minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
+from ortools.sat.python import cp_model
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.claimed_numbers import claims, segments_of_whole_cells
@@ -22,10 +24,18 @@ from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
+from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab.families import blobs, planar_graph
+from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.checked import enumerate_schemes, solve
+from cellcolor.solvers.cpsat.model.dart_graph import dart_graph
+from cellcolor.solvers.cpsat.model.full import full_model, read_painting
+from cellcolor.solvers.cpsat.model.painting import Block, canonical, counted
+from cellcolor.solvers.cpsat.model_runs import Runner
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner
+from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.interface import Options, Start
 from examples import examples
 
@@ -125,10 +135,80 @@ def test_around_hubs_the_number_is_a_bound_of_the_cost() -> None:
     assert (hubs.of, hubs.value, solution.cost, solution.status) == ("cost", 15, 16, "optimal")
     outcomes = {v.bound.kind: v.outcome for v in check_solution(instance, solution).bounds}
     assert outcomes["hubs"] == "verified"
+    # Links save pieces, whatever these cost, so dear pieces prove no more than their number.
+    certificate = json.loads(json.dumps(hubs.certificate))
+    certificate["parts"][-1]["value"] += 1
+    more = replace(hubs, value=16, certificate=certificate)
+    costs = [2] * len(instance.colors)
+    verdict = verify_bound(instance, more, regions_of_cells(instance), costs=costs)
+    assert verdict.outcome == "refused"
     assert claims(instance, solution, check_solution(instance, solution).bounds) == {
         "cost_lower_bound": 16,
         "status": "optimal",
     }
+
+
+def test_a_plan_may_cost_less() -> None:
+    """Green and blue cost 8 here, and there are no segments that cost 9 together."""
+    costs = (20, 4, 4)
+    runner = Runner(Options(workers=1))
+
+    def run(model: cp_model.CpModel, seed: int) -> tuple[cp_model.CpSolver, Any]:
+        solver = runner.single(seed=seed)
+        return solver, runner.solve(solver, model)
+
+    planner = Planner(TWO, color_regions(TWO), 8, run, costs=costs)
+    plan = planner.plan(9, 0)
+    assert plan is not None and sorted(segment.region[0] for segment in plan) == [1, 2]
+
+
+@examples(15)
+@given(seed=SEEDS, costs=COSTS)
+def test_the_full_model_alone(seed: int, costs: list[int]) -> None:
+    """Its optimum, and the painting that is read from it, without any bound beside it."""
+    instance = planar_graph(seed, 3, 4, 3, self_edges=seed % 2 == 1)
+    _, own = weighed(instance, costs)
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    graph = dart_graph(instance, colors, dict.fromkeys(instance.live_edges, 1), ())
+    built = full_model(graph, color_regions(instance), costs=own)
+    runner = Runner(Options())
+    solver = runner.single()
+    assert runner.solve(solver, built.model) == cp_model.OPTIMAL
+    least = round(solver.objective_value)
+    assert least == literal_minimum(instance, own)
+    painting = read_painting(graph, built.variables, solver, own)
+    assert counted(graph, painting, own) == least
+
+
+def test_a_cell_alone_is_painted_in_its_cheapest_color() -> None:
+    single = replace(TWO, cells=(Cell(0, (0, 2), ()),), edges=())
+    graph = dart_graph(single, [frozenset({0, 2})], {}, ())
+    built = full_model(graph, color_regions(single), costs=(5, 1, 1))
+    runner = Runner(Options())
+    solver = runner.single()
+    runner.solve(solver, built.model)
+    ((block,),) = read_painting(graph, built.variables, solver, (5, 1, 1))
+    assert (block.color, round(solver.objective_value)) == (2, 1)
+
+
+@examples(10)
+@given(seed=SEEDS, costs=COSTS)
+def test_windows_make_a_division_cheaper(seed: int, costs: list[int]) -> None:
+    instance = decompose(blobs(seed, 9, 3))
+    _, own = weighed(instance, costs)
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    graph = dart_graph(instance, colors, dict.fromkeys(instance.live_edges, 1), ())
+    painting = canonical(graph, [[Block(min(its), set())] for its in colors])
+    runner = Runner(Options())
+
+    def run(model: cp_model.CpModel, seed: int) -> tuple[cp_model.CpSolver, Any]:
+        solver = runner.single(0.1, seed)
+        return solver, runner.solve(solver, model)
+
+    cost = counted(graph, painting, own)
+    for better in islice(improve(graph, painting, run, seed % 99, NEVER, own), 4):
+        assert counted(graph, better, own) < cost
+        cost = counted(graph, better, own)
 
 
 @examples(12)
