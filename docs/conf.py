@@ -65,7 +65,8 @@ nitpick_ignore_regex = [
     # only type checkers import there.
     (
         r"py:class",
-        r"Path(Like)?(\[str\])?|NDArray|Array|Mask|Telling|Scene|BuildResult|SearchSpace|cellcolor\.Drawing",
+        r"Path(Like)?(\[str\])?|NDArray|Array|Mask|Telling|Scene|BuildResult|SearchSpace|Count"
+        r"|cellcolor\.Drawing|cp_model\.\w+",
     ),
 ]
 

@@ -68,7 +68,7 @@ class Graphs:
         """The connected parts of the graph, the cells of each in search order.
 
         The paper chooses the next cell arbitrarily. Here it is a neighbour of the cells before it
-        that leaves the fewest choices (:meth:`_freedom`), so that the search branches little and
+        that leaves the fewest choices (``_freedom``), so that the search branches little and
         its frontier stays short.
         """
         unsolved = {cell.id for cell in self._instance.cells}
