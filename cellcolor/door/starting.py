@@ -253,13 +253,13 @@ def best_place(
     try:
         vertices = scene.object.surface(scene.folder, deadline).vertices
     except InputError as error:
-        found = error if error.file else error.in_file(str(mesh))
+        named = error if error.file else error.in_file(str(mesh))
         if part_keys["repair"] != "true" or error.field == "max_edge_m":
-            raise found from error
+            raise named from error
         # A scene repairs less than the command does.
         command = f"cellcolor repair {mesh} -o {mesh.stem}-repaired.obj"
         message = f"{error.message}; repair it first: {command}"
-        raise InputError(found.file, error.field, message) from error
+        raise InputError(named.file, error.field, message) from error
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     best: tuple[PreparedScene, float] | None = None
