@@ -17,7 +17,8 @@ from cellcolor.cli.progress import stages_of
 from cellcolor.cli.terminal import complain, print_json
 from cellcolor.cli.verdict_lines import say_better, say_plan, say_solution, say_trajectory
 from cellcolor.data.plan import Plan
-from cellcolor.data.solution import SchemeKey, Solution, read_schemes, scheme_key
+from cellcolor.data.schemes import read_schemes
+from cellcolor.data.solution import SchemeKey, Solution, scheme_key
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.verdicts import (
     CheckedBound,

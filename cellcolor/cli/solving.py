@@ -24,7 +24,8 @@ from cellcolor.cli.tables import nothing_to_cover, print_overview, print_solutio
 from cellcolor.cli.terminal import apart_from, complain, print_json, say, unheard
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
-from cellcolor.data.solution import SearchSpace, Solution, scheme_line
+from cellcolor.data.schemes import scheme_line
+from cellcolor.data.solution import SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture, kind_of_plot

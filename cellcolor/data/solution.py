@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
 from os import PathLike
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, NonNegativeFloat, NonNegativeInt, PositiveInt
 
@@ -23,9 +22,7 @@ from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
 from cellcolor.files.documents import (
     dump_lines,
-    is_json,
     parse_first_object,
-    parse_json,
     read_text,
     take_body,
     validate,
@@ -380,35 +377,6 @@ class Solution(Document):
             raise error.in_file(str(path)) from error
 
 
-def read_schemes(path: str | PathLike[str]) -> Iterator[Division]:
-    """The schemes that follow the solution in a file of JSON Lines; none in any other file.
-
-    Raises:
-        InputError: a line is not a scheme; the field names the line.
-    """
-    head, _, rest = read_text(path).partition("\n")
-    if not is_json(head):
-        return
-    for number, line in enumerate(rest.splitlines(), start=2):
-        try:
-            body = parse_json(line)
-            if body.pop("format", None) != _SchemeLine.FORMAT:
-                raise InputError(None, "format", f"must be {_SchemeLine.FORMAT!r}")
-            yield validate(adapter_of(_SchemeLine), body).cells
-        except InputError as error:
-            field = f"line {number}" + (f", {error.field}" if error.field else "")
-            raise InputError(str(path), field, error.message) from error
-
-
-@dataclass(frozen=True, slots=True)
-class _SchemeLine(Value):
-    """One line of JSON Lines after the solution."""
-
-    FORMAT: ClassVar[str] = "cellcolor/scheme"
-
-    cells: Division
-
-
 def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:
     """What is to be seen at cells no two of which can share a segment, a clause.
 
@@ -440,12 +408,6 @@ def division_document(division: Division) -> list[dict[str, Any]]:
         }
         for cell in division
     ]
-
-
-def scheme_line(division: Division) -> str:
-    """One line of JSON Lines for one optimal scheme."""
-    document = {"format": _SchemeLine.FORMAT, "cells": division_document(division)}
-    return json.dumps(document, ensure_ascii=False)
 
 
 def number_segments(

@@ -13,6 +13,7 @@ from pathlib import Path
 import cellcolor
 from cellcolor.checker.color_regions import regions_on_surface
 from cellcolor.checker.division import check_solution
+from cellcolor.data.bounds import greatest
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline, OutOfTime
@@ -75,9 +76,8 @@ class ProofCache:
                 if not report.valid:
                     return None
                 claimed = max(claimed, solution.surface_lower_bound)
-                for checked in report.bounds:
-                    if checked.bound.holds_for == "surface" and checked.outcome == "verified":
-                        verified = max(verified, checked.bound.value)
+                proved = [one.bound for one in report.bounds if one.outcome == "verified"]
+                verified = max(verified, greatest(proved, "surface"))
                 if report.segments is not None and (best is None or report.segments < upper):
                     best, upper = solution, min(upper, report.segments)
         except (InputError, OutOfTime):

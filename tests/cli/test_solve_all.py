@@ -20,7 +20,8 @@ import cellcolor.solvers.checked
 import cellcolor.solvers.cpsat.schemes.scheme_model
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import Division, Solution, read_schemes, scheme_key
+from cellcolor.data.schemes import read_schemes
+from cellcolor.data.solution import Division, Solution, scheme_key
 from cellcolor.deadline import OutOfTime
 
 ZEROS = PAPER / "crossing-zeros.json"

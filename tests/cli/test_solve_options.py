@@ -46,6 +46,16 @@ class TestMore:
         bounds = json.loads(capsys.readouterr().out)["bounds"]
         assert {bound.get("of") for bound in bounds} == {None, "cost"}
 
+    def test_a_bound_of_the_cost_beats_no_index(self, tmp_path: Path, capsys: Capture) -> None:
+        """It is told as one of the cost, and not compared with numbers of segments."""
+        target = tmp_path / "solution.json"
+        graph = INSTANCES / "random" / "hub_24.json"
+        assert run("solve", graph, "--color-cost", "c0=9", "-o", target) == 0
+        capsys.readouterr()
+        assert run("check", graph, target) == 0
+        out = capsys.readouterr().out
+        assert "at least cost 15 by hubs: verified" in out and "better than" not in out
+
     @pytest.mark.parametrize(
         ("arguments", "expected"),
         [
