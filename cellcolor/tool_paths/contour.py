@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
 from cellcolor.mesh.triangle_mesh import grouped
+from cellcolor.tool_paths.distances import evened
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.joined_loops import join_loops
 from cellcolor.tool_paths.level_lines import Sliced, level_lines, slice_along
@@ -14,6 +15,10 @@ from cellcolor.tool_paths.triangles import Triangles
 
 FINEST = 0.5
 """Longest edge of the meshes that level lines are drawn on, in spacings."""
+_EVENED = 0.3  # spacings; waves of six times that length are made half as high
+_SMOOTHED = 0.5  # spacings; deviation of the bell curve that a ragged border is smoothed with
+_MOVED = 0.3  # spacings; so far the smoothed border is off the true one at most
+_FINE = 0.1  # spacings; between the points that it is smoothed at
 _NARROWEST, _WIDEST = 0.85, 1.05  # between which spacings are made to fit, in wanted spacings
 _CORE = 0.7  # where a core reaches so far, in spacings, inside the last loop, there is one more
 
@@ -31,8 +36,43 @@ def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
     mesh = mesh.refined(FINEST * spacing)
     deadline.check()
     bordered = bool(mesh.border.any())
-    distances = mesh.from_border if bordered else mesh.distances_from(np.array([0]))
+    if bordered:
+        distances = mesh.distances_from(*_straight_border(mesh, spacing))
+    else:
+        distances = mesh.distances_from(np.array([0]))
+    distances = evened(mesh, distances, _EVENED * spacing)
+    # No line ends at the border.
+    distances = np.where(mesh.border, np.minimum(distances, _MOVED * spacing), distances)
     return lay_loops(mesh, distances, spacing, deadline)
+
+
+def _straight_border(mesh: Triangles, spacing: float) -> tuple[Index, Array]:
+    """The vertices of the border, and how far inside of a straighter one they are, m.
+
+    A border that runs between the vertices of a mesh is ragged. Lines at equal distances from it
+    would copy every notch inward, up to the middle.
+    """
+    vertices, offsets = [], []
+    for loop in map(np.array, mesh.border_loops()):
+        points = mesh.points[[*loop, loop[0]]]
+        along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+        count = max(8, int(np.ceil(along[-1] / (_FINE * spacing))))
+        grid = along[-1] * np.arange(count + 1) / count
+        even = np.stack([np.interp(grid[:-1], along, axis) for axis in points.T], axis=1)
+        waves = 2 * np.pi * np.fft.rfftfreq(count, along[-1] / count)
+        kept = np.exp(-((_SMOOTHED * spacing * waves) ** 2) / 2)[:, None]
+        smooth = np.fft.irfft(kept * np.fft.rfft(even, axis=0), count, axis=0)
+        tangent = np.roll(smooth, -1, axis=0) - np.roll(smooth, 1, axis=0)
+        there, ahead = (
+            np.stack([np.interp(along[:-1], grid, [*axis, axis[0]]) for axis in rows.T], axis=1)
+            for rows in (smooth, tangent)
+        )
+        inward = np.cross(ahead, mesh.normals[loop])  # loops go against the winding
+        inward /= np.maximum(np.linalg.norm(inward, axis=1, keepdims=True), 1e-12)
+        vertices.append(loop)
+        offsets.append(((points[:-1] - there) * inward).sum(axis=1))
+    most = _MOVED * spacing
+    return np.concatenate(vertices), np.clip(np.concatenate(offsets), -most, most)
 
 
 def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadline) -> Laid:
@@ -40,7 +80,7 @@ def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadl
 
     Args:
         mesh: a connected part of a segment, refined.
-        distances: (n,) 0 at the whole border, if there is one.
+        distances: (n,) at the border less than ``_NARROWEST`` / 2 spacings, m.
         spacing: between neighboring loops, m.
         deadline: when to give up.
     """

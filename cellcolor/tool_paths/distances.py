@@ -5,11 +5,15 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
+from scipy.sparse import csr_matrix, diags
 from scipy.sparse.csgraph import dijkstra
+from scipy.sparse.linalg import cg
 
 from cellcolor.arrays import Array, Index
 from cellcolor.tool_paths.triangles import Triangles
+
+_ROUNDS = 300
+_SLIVER = 1e-6  # of a length squared; triangles and parts of vertices count as no smaller
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +44,40 @@ def ways_from(graph: csr_matrix, sources: Index) -> Ways:
         graph, indices=sources, min_only=True, return_predecessors=True
     )
     return Ways(lengths, before.astype(np.int64), source.astype(np.int64))
+
+
+def evened(mesh: Triangles, values: Array, length: float) -> Array:
+    """A field (n,) near to another one whose level lines bend less.
+
+    Distances are found with errors as long as the edges of the mesh, and lines tremble with them.
+    Minimized are the squares of what is changed, and of the Laplacian times the length squared;
+    fields whose lines are straight and evenly apart stay as they are. The Laplacian at the border
+    is not asked about.
+
+    Args:
+        mesh: where the field is.
+        values: (n,) of it.
+        length: waves of six times that length are made half as high, m.
+    """
+    corners = mesh.points[mesh.corners]
+    areas = np.maximum(mesh.areas, _SLIVER * length**2)
+    rows, columns, weights = [], [], []
+    for corner in range(3):
+        here, one, other = (np.roll(corners, -corner, axis=1)[:, k] for k in range(3))
+        half = ((one - here) * (other - here)).sum(axis=1) / (4 * areas)  # of the cotangent
+        a, b = mesh.corners[:, corner - 2], mesh.corners[:, corner - 1]
+        rows += [a, b, a, b]
+        columns += [b, a, a, b]
+        weights += [-half, -half, half, half]
+    count = len(values)
+    pairs = np.concatenate(rows), np.concatenate(columns)
+    laplacian = csr_matrix((np.concatenate(weights), pairs), (count, count))
+    mass = np.maximum(mesh.vertex_areas, _SLIVER * length**2)
+    bends = diags(np.where(mesh.border, 0.0, length**2 / np.sqrt(mass))) @ laplacian
+    system = (diags(mass) + bends.T @ bends).tocsr()
+    # Jacobi's preconditioner; a few rounds do, since only short waves are damped.
+    first = diags(1.0 / system.diagonal())
+    return np.asarray(cg(system, mass * values, values, rtol=1e-8, maxiter=_ROUNDS, M=first)[0])
 
 
 def off_border(mesh: Triangles, room: float) -> Array:

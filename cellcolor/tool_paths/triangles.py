@@ -38,16 +38,21 @@ class Triangles(TriangleMesh):
 
         return MeshFastMarchingDistanceSolver(self.points, self.corners)
 
-    def distances_from(self, sources: Index) -> Array:
+    def distances_from(self, sources: Index, offsets: Array | None = None) -> Array:
         """(n,) distance of each vertex from the nearest source along the mesh, m.
+
+        Sources may have offsets (s,), m, where distances begin instead of 0.
 
         By fast marching (Kimmel and Sethian 1998): first order in the length of edges. A vertex
         that is no source has a neighbor that is nearer, so nothing but sources is a lowest place.
         """
+        offsets = np.zeros(len(sources)) if offsets is None else offsets
+        least = float(offsets.min(initial=0.0))
         found = self._marching.compute_distance(
-            [[(vertex, [])] for vertex in sources.tolist()], [[0.0]] * len(sources)
+            [[(vertex, [])] for vertex in sources.tolist()],
+            [[start] for start in (offsets - least).tolist()],
         )
-        distances = np.asarray(found, dtype=np.float64)
+        distances = np.asarray(found, dtype=np.float64) + least
         if not np.isfinite(distances).all():  # needle-like triangles may defeat it
             distances = np.asarray(dijkstra(self.graph(), indices=sources, min_only=True))
         return distances
