@@ -7,8 +7,9 @@
 number of segments covers is held against two computations that share nothing with the solvers:
 every set of cells left out, with the minimum of the others (equal in the search space ``paper``);
 and every coloring of the vertices, some of them left bare (never above what a point says is the
-most). Exit code 1 if one disagrees. ``scenes`` prints the front of every shipped scene, and the
-time it takes once the graph is known beside that of the minimum alone.
+most). So is the least sum of lift-offs and area at three prices. Exit code 1 if one disagrees.
+``scenes`` prints the front of every shipped scene, and the time it takes once the graph is known
+beside that of the minimum alone.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ KINDS = (
 )
 MOST_CELLS = 9  # every set of them is left out once
 REPEATED = 5
+CM2 = 1e4  # a weight of 1 counts as a square meter
 
 
 def brute(count: int, seed: int) -> int:
@@ -64,13 +66,28 @@ def brute(count: int, seed: int) -> int:
             ):
                 wrong += 1
                 print(f"draw {number}: vertices cover more with {point.segments} segments")
+        in_cells: dict[int, float] = {}
         if found.instance.most_live_loops < 2:
             by_cells += 1
-            for segments, weight in front_by_subsets(found.instance, per_cell.tolist()).items():
+            in_cells = front_by_subsets(found.instance, per_cell.tolist())
+            for segments, weight in in_cells.items():
                 most = max((p.covered_share for p in front if p.segments <= segments), default=0.0)
                 if abs(most * per_cell.sum() - weight) > 1e-6:
                     wrong += 1
                     print(f"draw {number}: cells cover {weight} with {segments} segments")
+        for price in np.random.default_rng(number).uniform(0, 8, 3):
+            choice = front.least_cost(CM2 * price)
+            by_hand = [
+                min(price * (k - 1) + per_cell.sum() - weight for k, weight in each.items() if k)
+                for each in (best, in_cells)
+                if each
+            ]
+            lower, *exact = (CM2 * cost for cost in by_hand)
+            cost = choice.cost_cm2
+            bad = (choice.proved and lower < cost - 1) or any(abs(cost - e) > 1 for e in exact)
+            if bad:
+                wrong += 1
+                print(f"draw {number}: a price of {price} makes {cost}, by hand {by_hand}")
     seconds = time.process_time() - begun
     print(
         f"{compared} surfaces, {points} points, {by_cells} of the surfaces by cells as well: "

@@ -29,7 +29,7 @@ from cellcolor.cli.options import (
     ranges,
 )
 from cellcolor.cli.progress import at_work, workers_for
-from cellcolor.cli.terminal import drawn_to, print_json, say, say_lines
+from cellcolor.cli.terminal import complain, drawn_to, print_json, say, say_lines
 from cellcolor.errors import InputError
 
 if TYPE_CHECKING:
@@ -115,6 +115,7 @@ def tradeoff(
     The share is one of the area that can be covered and is not left alone.
     """
     from cellcolor.cli.inputs import read_subject
+    from cellcolor.cli.tables import nothing_to_cover
     from cellcolor.door.asking import save_front
     from cellcolor.door.asking import tradeoff as front_of
     from cellcolor.questions.places import read_weights
@@ -126,6 +127,9 @@ def tradeoff(
         with at_work(source, "asking", "the time limit came before any division was found") as tell:
             subject = read_subject(source, search["time_limit"])
             front = front_of(subject, weights=given, progress=tell, **search)
+            if not front.points:
+                complain(f"{source}: {nothing_to_cover(front.instance)}")
+                return Exit.STOPPED
             rows: Sequence[FrontPoint | FrontChoice] = front.points
             if share is not None:
                 rows = [front.fewest_for(share)]

@@ -200,7 +200,7 @@ class _Asked:
         covered = float(areas[has_color].sum())
         reached = ~np.isnan(finest.stages.candidates.configurations[:, :, 0]).all(axis=1)
         shares = covered / max(float(areas[reached].sum()), covered, 1e-12), covered / areas.sum()
-        found: tuple[int | None, int, bool, str] = 0, 0, True, "nothing is reached"
+        found: tuple[int | None, int, bool, str] = None, 0, True, "nothing is reached"
         if not instance.nothing_to_cover:
             try:
                 solution = checked.solve(instance, self._options)

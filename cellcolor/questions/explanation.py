@@ -16,7 +16,8 @@ class RelaxedMinimum:
     Attributes:
         relaxed: what is left out or asked for less, in words; empty for the scene as it is.
         keys: where scene, setup or URDF have it.
-        segments: the fewest that were found; None if none were found in time.
+        segments: the fewest that were found; None if nothing is reached, or none were found in
+            time.
         at_least: no division has fewer segments.
         covered_share: the area with a color, as a share of the area where the arm has any
             configuration at all, whatever refuses it, 0 to 1.
@@ -33,6 +34,11 @@ class RelaxedMinimum:
     surface_share: float
     proved_for_surface: bool
     note: str = ""
+
+    @property
+    def fault(self) -> str:
+        """Why there is no number, or ""."""
+        return "" if self.segments is not None else self.note or "not solved in time"
 
     @property
     def lift_offs(self) -> int | None:
@@ -58,10 +64,12 @@ class RelaxedMinimum:
         }
 
     def __str__(self) -> str:
-        known = "not found in time" if self.lift_offs is None else count(self.lift_offs, "lift-off")
-        proof = "" if self.proved_for_surface or self.lift_offs is None else " (not proved)"
-        area = f"{100 * self.surface_share:.1f} % of the area"
         what = f"; {' and '.join(self.relaxed)}" if self.relaxed else ""
+        if self.lift_offs is None:
+            return self.fault + what
+        known = count(self.lift_offs, "lift-off")
+        proof = "" if self.proved_for_surface else " (not proved)"
+        area = f"{100 * self.surface_share:.1f} % of the area"
         return f"{known}{proof}, {area}{what}{f' ({self.note})' if self.note else ''}"
 
 
@@ -151,11 +159,11 @@ class Explanation:
 
     def _change(self, row: RelaxedMinimum) -> str:
         if row.lift_offs is None:
-            return "not solved in time"
+            return row.fault
         before, after = self.base.lift_offs, row.lift_offs
         number = f"still {count(after, 'lift-off')}"
         if before != after:
-            number = f"{before} → {count(after, 'lift-off')}"
+            number = f"{self.base.fault if before is None else before} → {count(after, 'lift-off')}"
         proof = "" if row.proved_for_surface else " (not proved)"
         shares = f"{100 * self.base.surface_share:.1f} → {100 * row.surface_share:.1f} %"
         if row.surface_share == self.base.surface_share:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -16,6 +17,7 @@ Pose = tuple[float, float, float, float, float, float]
 """Position in m and angles in rad, in the order of :data:`VARIABLES`."""
 
 _SAME_SHARE = 1e-9
+_FEW = 3  # reasons of refusals that are told
 
 
 def pose_in_words(pose: Pose, turned: str = " turned by", digits: str = ".4g") -> str:
@@ -27,6 +29,12 @@ def pose_in_words(pose: Pose, turned: str = " turned by", digits: str = ".4g") -
 def pose_document(pose: Pose) -> dict[str, list[float]]:
     """The members of a JSON object that say where a part stands."""
     return {"position_m": list(pose[:3]), "rpy_rad": list(pose[3:])}
+
+
+def _most_common(reasons: Counter[str]) -> str:
+    """The commonest reasons, each with its number, as in "nothing is reached: 5"."""
+    listed = [f"{reason}: {number}" for reason, number in reasons.most_common(_FEW)]
+    return "; ".join(listed) + "; …" * (len(reasons) > _FEW)
 
 
 @dataclass(frozen=True, slots=True)
@@ -186,9 +194,12 @@ class Placements:
         asked = f"{100 * self.cover:.1f} % of the area"
         if not enough:
             lines.append(f"  no placement that was tried covers {asked}")
-        refused = sum(bool(row.refused) for row in self.tried)
+        refused = Counter(row.refused for row in self.tried if row.refused)
         tried = count(len(self.tried), "placement")
-        lines.append(f"  {tried} tried that had to cover {asked}, {refused} of them refused")
+        why = f" ({_most_common(refused)})" if refused else ""
+        lines.append(
+            f"  {tried} tried that had to cover {asked}, {refused.total()} of them refused{why}"
+        )
         if not self.complete:
             lines.append("  the time limit came before everything was tried")
         return "\n".join(lines)

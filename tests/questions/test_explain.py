@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -36,7 +37,7 @@ from cellcolor.frontend.relaxing import (
 )
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Stages, judged
-from cellcolor.questions.explanation import Explanation
+from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from examples import examples
 
 pytestmark = pytest.mark.second
@@ -192,6 +193,23 @@ def test_what_is_known_of_a_freer_scene_changes_nothing_of_what_is_found(
     reasons = frozenset[str]().union(*(one.reasons or () for one in back))
     found = judged_asking_more(stricter, judged(without(prepared, things), clock), reasons, clock)
     assert same_answers(found.stages, judged(stricter, clock).stages)
+
+
+def test_a_scene_that_nothing_of_is_reached() -> None:
+    """No number of lift-offs is told, and less that reaches nothing saves none."""
+    here = RelaxedMinimum((), (), 3, 3, 1.0, 0.9, True)
+    nothing = RelaxedMinimum(
+        ("ground",), ("ground",), None, 0, 0.0, 0.0, True, "nothing is reached"
+    )
+    text = str(Explanation("x", here, (nothing,)))
+    assert "without ground: nothing is reached" in text and "lift-off," not in text.split("\n")[1]
+    assert "nothing is reached → 2 lift-offs" in str(
+        Explanation("x", nothing, (replace(here, relaxed=("ground",)),))
+    )
+    far = shipped("square", 40).varied(placement={"position_m": (2.5, 0.0, 0.0)}, ground=None)
+    found = cellcolor.explain(far)
+    assert [row.segments for row in found] == [None] * len(list(found))
+    assert str(found).startswith("square: nothing is reached\n") and found.sets == ()
 
 
 @pytest.mark.slow

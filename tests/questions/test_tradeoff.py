@@ -212,3 +212,6 @@ def test_the_command_prints_a_row_for_each_point(
     ):
         assert run("tradeoff", file, *wrong) == 2
         assert said in capsys.readouterr().err
+    file.write_text(STRIP.without_vertices(np.ones(len(STRIP.vertices), dtype=bool)).to_json())
+    assert run("tradeoff", file) == 3
+    assert "NOTHING CAN BE COVERED" in capsys.readouterr().err
