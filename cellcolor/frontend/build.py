@@ -98,6 +98,22 @@ class BuildResult:
         return self.stages.candidates.reason_names
 
     @property
+    def failures(self) -> dict[str, Mask]:
+        """(n, branches) of each test: the candidates that fail it, other tests or not.
+
+        Every test is made on every solution. A candidate is valid without some tests if it has a
+        solution and fails none of the others: masks of tests can be combined.
+        """
+        candidates = self.stages.candidates
+        solved = ~np.isnan(candidates.configurations[..., 0])
+        masks = {}
+        failed = self.prepared.judge.all_failures(candidates.configurations[solved])
+        for name, hit in failed.items():
+            masks[name] = np.zeros(solved.shape, dtype=bool)
+            masks[name][solved] = hit
+        return masks
+
+    @property
     def color_branch(self) -> tuple[int, ...]:
         """The branch of each color of the surface."""
         branch = self.stages.cleaned.coloring.branch

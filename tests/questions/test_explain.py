@@ -362,3 +362,21 @@ def test_every_row_of_the_shipped_scenes_from_scratch(
         built = from_scratch(scene, one, monkeypatch)
         solution = cellcolor.solve(built).solution
         assert rows[(one.name,)].segments == solution.segments, one
+
+
+@pytest.mark.second
+def test_masks_of_all_tests_say_what_is_valid_without_one() -> None:
+    scene = scene_of("wok_obstacle")
+    built = build_surface(scene)
+    masks = built.failures
+    solved = ~np.isnan(built.configurations[..., 0])
+    names = [name for name in built.reason_names if name in masks]
+    first = np.full(solved.shape, built.reason_names.index("no solution"))
+    first[solved] = 0
+    for name in reversed(names):
+        first[masks[name]] = built.reason_names.index(name)
+    assert np.array_equal(first, built.reasons)
+    others = np.any([masks[name] for name in names if name != "self collision"], axis=0)
+    freed = build_surface(changed(scene, LinkContact(None)))
+    assert np.array_equal(solved & ~others, freed.reasons == 0)
+    assert (masks["self collision"] & others).any()
