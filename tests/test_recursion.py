@@ -17,6 +17,7 @@ import cellcolor
 ALLOWED = {
     ("files/validation.py", "plain"): "how deeply the annotations of a dataclass nest",
     ("frontend/arm/link_mesh.py", "_below"): "the folders looked into, _DEEPEST",
+    ("questions/explaining.py", "_cutting"): "how often a list of things can be halved",
     ("frontend/tables.py", "_settled"): "how deeply TOML nests, which its reader limits",
     ("solvers/cpsat/schemes/cell_divisions.py", "decide"): "the darts of a cell, MOST_DARTS",
 }

@@ -190,6 +190,12 @@ def _build_surface(source: Path, output: Path) -> Instance:
     help="With --all, stop after this many schemes.  [default: 1000]",
 )
 @click.option(
+    "--diverse",
+    metavar="N",
+    type=click.IntRange(1, 1000),
+    help="With --all, list only this many schemes, as different from each other as possible.",
+)
+@click.option(
     "--refine-until-stable",
     "refine",
     is_flag=True,
@@ -226,6 +232,7 @@ def _check_solve(
     strands: int | None,
     every: bool,
     limit: int | None,
+    diverse: int | None,
     refine: bool,
     picture: Path | None,
     **given: Any,
@@ -235,6 +242,10 @@ def _check_solve(
         raise click.UsageError("--strands needs --search-space surface")
     if limit is not None and not every:
         raise click.UsageError("--limit needs --all")
+    if diverse is not None and not every:
+        raise click.UsageError("--diverse needs --all")
+    if diverse is not None and limit is not None:
+        raise click.UsageError("--diverse and --limit exclude each other")
     if every and search_space == "surface":
         raise click.UsageError("--all needs --search-space paper: schemes are defined only there")
     of_one_mesh = ("cover", "required", "left_alone", "warm_start")

@@ -25,7 +25,7 @@ from cellcolor.cli.terminal import apart_from, complain, print_json, say, unhear
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.schemes import scheme_line
-from cellcolor.data.solution import SearchSpace, Solution
+from cellcolor.data.solution import Division, SearchSpace, Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture, kind_of_plot
@@ -47,6 +47,7 @@ _SOLUTION = kind_of_format(Solution.FORMAT)
 _SURFACE = kind_of_format(LabelledSurface.FORMAT)
 _INSTANCE = kind_of_format(Instance.FORMAT)
 _SCHEMES = 1000  # that are listed unless --limit says otherwise
+_CHOSEN = "The schemes listed are those of {:,} that differ most from each other, by painted area."
 
 
 class Interrupted(OutOfTime, KeyboardInterrupt):
@@ -88,6 +89,7 @@ class Request:
     objective: Objective | None
     warm_start: Path | None
     limit: int | None
+    diverse: int | None
     refine: bool
     picture: Path | None
     time_limit: float | None
@@ -335,6 +337,21 @@ def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
         yield spool
 
 
+def _found_in_time(schemes: Iterator[Division]) -> list[Division]:
+    """All of them, or those found when the time ran out; then at least one.
+
+    Raises:
+        OutOfTime: there was no time for any.
+    """
+    found: list[Division] = []
+    try:
+        found.extend(schemes)
+    except OutOfTime:
+        if not found:
+            raise
+    return found
+
+
 def _with_schemes(
     instance: Instance,
     solution: Solution,
@@ -348,6 +365,7 @@ def _with_schemes(
     One more than the limit is looked for: only so is it known whether the limit cut any off.
     """
     from cellcolor.solvers.checked import enumerate_schemes
+    from cellcolor.solvers.diverse import most_different
     from cellcolor.solvers.interface import Start
 
     if solution.status != "optimal" or solution.segments is None:
@@ -361,9 +379,20 @@ def _with_schemes(
     known = None if solution.cells is None else Start(solution.cells, solution.seams)
     try:
         options, most = request.options(deadline), request.limit or _SCHEMES
-        for division in enumerate_schemes(
-            instance, options, request.solver, solution.segments, known, counted.append
-        ):
+        listed = enumerate_schemes(
+            instance,
+            options,
+            request.solver,
+            solution.segments,
+            known,
+            counted.append,
+            pool=request.diverse is not None,
+        )
+        if request.diverse is not None:
+            pool = _found_in_time(listed)
+            listed = iter(most_different(instance, pool, request.diverse))
+            notes = (*notes, _CHOSEN.format(len(pool)))
+        for division in listed:
             if found[0] == most:
                 complete = False
                 break
@@ -379,6 +408,8 @@ def _with_schemes(
     count, end = found
     if spool is not None:
         spool.truncate(end)
+    if request.diverse is not None:
+        complete = counted == [count]
     if not complete and counted:
         notes = (*notes, f"There are {counted[0]:,} optimal schemes; {count:,} of them are listed.")
     seconds = solution.seconds + time.monotonic() - started

@@ -279,9 +279,9 @@ def best_place(
             continue
         surface = prepared.surface
         step = -(-len(surface.vertices) // _MOST_ASKED)
-        found = prepared.arm.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
-        verdicts = prepared.judge(found.reshape(-1, prepared.robot.joints), deadline)
-        valid = (verdicts.reasons == VALID).reshape(found.shape[:2]).any(axis=1)
+        solved = prepared.arm.inverse(surface.vertices[::step], -surface.normals[::step], deadline)
+        verdicts = prepared.judge(solved.reshape(-1, prepared.robot.joints), deadline)
+        valid = (verdicts.reasons == VALID).reshape(solved.shape[:2]).any(axis=1)
         failed.update(prepared.judge.reason_names[code] for code in verdicts.reasons.tolist())
         share = float(valid.mean())
         if best is None or share > best[1]:

@@ -115,8 +115,8 @@ class TestAllSchemes:
         """What was found before the end of the time, or Ctrl-C, is written."""
         enumerate_schemes = cellcolor.solvers.checked.enumerate_schemes
 
-        def interrupted(*arguments: Any) -> Iterator[Division]:
-            yield next(iter(enumerate_schemes(*arguments)))
+        def interrupted(*arguments: Any, **options: Any) -> Iterator[Division]:
+            yield next(iter(enumerate_schemes(*arguments, **options)))
             if ctrl_c:
                 signal.raise_signal(signal.SIGINT)
             raise OutOfTime("time")
@@ -198,3 +198,25 @@ class TestAllSchemes:
         assert run("solve", path, "--all", "--json") == 0
         (line,) = json_lines(capsys.readouterr().out)
         assert (line["segments"], line["schemes"], line["complete"]) == (1, 1, True)
+
+
+class TestDiverse:
+    def test_a_few_of_very_many(self, tmp_path: Path, capsys: Capture) -> None:
+        file, out = tmp_path / "free.json", tmp_path / "few.jsonl"
+        file.write_text(_free(40, 2).to_json())
+        assert run("solve", file, "--all", "--diverse", 5, "-o", out, "--json") == 3
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (5, False)
+        assert any("differ most" in note for note in line["notes"])
+        assert len({scheme_key(division) for division in read_schemes(out)}) == 5
+        assert run("check", file, out) == 0
+
+    def test_all_of_a_few(self, capsys: Capture) -> None:
+        assert run("solve", ZEROS, "--all", "--diverse", 5, "--json") == 0
+        (line,) = json_lines(capsys.readouterr().out)
+        assert (line["schemes"], line["complete"]) == (3, True)
+
+    def test_what_does_not_go_together(self, capsys: Capture) -> None:
+        for options in (("--diverse", 2), ("--all", "--diverse", 2, "--limit", 3)):
+            assert run("solve", ZEROS, *options) == 2
+            assert "--diverse" in capsys.readouterr().err
