@@ -54,9 +54,8 @@ def most_different(instance: Instance, schemes: Sequence[Division], number: int)
         number: how many are wanted; fewer if there are no more different ones.
 
     Returns:
-        The chosen ones in the order of choice (farthest-point, or Gonzalez, selection): the least
-        difference between two of them is at least half of the greatest that any choice of so many
-        has.
+        The chosen ones in the order of choice (Gonzalez' farthest-point selection). The least
+        difference between two of them is at least half of what it is in any other choice.
     """
     painted = np.array([_colors(instance, division) for division in schemes])
     weights = _weights(instance)
