@@ -136,17 +136,25 @@ class Transfers:
     def _left(self, stroke: Stroke) -> tuple[Stroke, Array, Array]:
         """A stroke that begins and ends where the arm can leave it, and both retreats.
 
-        A closed one begins elsewhere. An open one loses a little at the end, or goes back over
-        itself as far as to a place that the arm can leave; if there is none, it stays as it is.
+        A closed one begins where a straight joint move leads home as well, if it does anywhere, so
+        that there is a way to every other stroke. An open one loses a little at the end, or goes
+        back over itself as far as to a place that the arm can leave; if there is none, it stays as
+        it is.
         """
         if stroke.is_closed(self._space):
             apart = np.linspace(0, len(stroke) - 1, _STARTS, endpoint=False).astype(int)
+            left: list[tuple[float, Stroke, Array]] = []
             for at in sorted(set(apart.tolist()), key=lambda at: min(at, len(stroke) - at)):
                 begun = stroke.begun_at(at, self._space)
                 onto = self._retreat(begun, 0)
                 if len(onto) > 1:
-                    wound = self._space.period * self._space.periods(begun.joints[-1] - onto[0])
-                    return begun, onto, onto + wound
+                    left.append((self._from_home(onto[-1]), begun, onto))
+                    if not left[-1][0]:
+                        break
+            if left:
+                _, begun, onto = min(left, key=lambda one: one[0])
+                wound = self._space.period * self._space.periods(begun.joints[-1] - onto[0])
+                return begun, onto, onto + wound
         onto = self._retreat(stroke, 0)
         if len(onto) == 1:
             stroke, onto = self._ended_elsewhere(stroke.reversed())
@@ -249,6 +257,13 @@ class Transfers:
             self._deadline.check()
             self._shares[key] = self._share(start, end)
         return self._shares[key]
+
+    def _from_home(self, end: Array) -> float:
+        """What share of a straight move between home and a configuration is not free."""
+        if self.home is None:
+            return 0.0
+        near = end - self._space.period * self._space.periods(end - self.home)
+        return self._blocked(self.home, near)
 
     def _detour(self, start: Array, end: Array) -> float:
         """How much longer than a straight move the way will probably be, s; 0 if that is free."""
