@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from itertools import compress
 from math import degrees
 from typing import ClassVar
 
@@ -382,6 +383,7 @@ class AddedTest(_WholeTest):
     """A test of validity that the scene adds."""
 
     test: str
+    key = "validity_test"
 
     @property
     def reasons(self) -> frozenset[str]:  # type: ignore[override]
@@ -392,8 +394,6 @@ class AddedTest(_WholeTest):
     def name(self) -> str:
         """Of the test."""
         return f"test of {self.test}"
-
-    key = "validity_test"
 
 
 def _remade(
@@ -424,11 +424,7 @@ def relaxations_of(prepared: PreparedScene) -> tuple[Relaxation, ...]:
         found.append(PartBody())
         found += [ToolBody(robot.tool_links)] if robot.tool_links else []
         limited = np.isfinite(robot.lower) | np.isfinite(robot.upper)
-        found += [
-            JointRange(name)
-            for name, limit in zip(robot.joint_names, limited, strict=True)
-            if limit
-        ]
+        found += map(JointRange, compress(robot.joint_names, limited))
         found += [LinkContact(None)] if robot.tested_pairs else []
         margins = prepared.setup.margins
         found += [Distance(key) for key in type(margins).model_fields if getattr(margins, key)]
