@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from cellcolor import memory
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.frontend import Scene, build_surface, forked, stages
+from cellcolor.frontend import Scene, build_surface, forked, links
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.reach import validity
@@ -138,7 +138,7 @@ def test_the_same_surface_to_the_last_byte(fine_scene, monkeypatch):
         return shares[-1]
 
     monkeypatch.setattr(validity, "share_out", noted)
-    monkeypatch.setattr(stages, "share_out", noted)
+    monkeypatch.setattr(links, "share_out", noted)
     several = build_surface(fine_scene)
     assert shares.count(4) >= 4  # candidates, links, room for the tip, links between vertices
     monkeypatch.setattr(forked, "_cores", lambda: 1)
