@@ -238,7 +238,8 @@ def _round_corners(mesh: Triangles) -> tuple[Array, Array]:
     # Away from both border edges that meet there, which at the end of a crack are the same.
     border = mesh.edges[mesh.triangles_at == 1]
     along = mesh.points[border[:, 1]] - mesh.points[border[:, 0]]
-    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    lengths = np.linalg.norm(along, axis=1, keepdims=True)
+    along /= np.where(lengths > 0, lengths, 1.0)  # vertices may coincide
     np.add.at(inward, border[:, 0], -along)
     np.add.at(inward, border[:, 1], along)
     least, most = np.full(len(mesh.points), np.inf), np.full(len(mesh.points), -1)

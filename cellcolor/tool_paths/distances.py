@@ -77,7 +77,10 @@ def evened(mesh: Triangles, values: Array, length: float) -> Array:
     system = (diags(mass) + bends.T @ bends).tocsr()
     # Jacobi's preconditioner; a few rounds do, since only short waves are damped.
     first = diags(1.0 / system.diagonal())
-    return np.asarray(cg(system, mass * values, values, rtol=1e-8, maxiter=_ROUNDS, M=first)[0])
+    found = cg(system, mass * values, values, rtol=1e-8, maxiter=_ROUNDS, M=first)[0]
+    # On triangles without area the weights are so uneven that it may not come near.
+    found = np.where(np.isfinite(found), found, values)
+    return np.asarray(np.clip(found, values - length, values + length))
 
 
 def off_border(mesh: Triangles, room: float) -> Array:
