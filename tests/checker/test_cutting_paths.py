@@ -24,6 +24,8 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 Triangles = list[tuple[int, int, int]]
 Loops = list[list[int]]
 

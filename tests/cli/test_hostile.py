@@ -18,7 +18,7 @@ from library import INSTANCES, PAPER
 
 from cellcolor.cli.terminal import shown
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 RING = PAPER / "ring.json"
 SCENE = (INSTANCES / "scenes" / "wok.toml").read_text(encoding="utf-8")

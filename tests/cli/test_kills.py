@@ -58,6 +58,7 @@ def test_a_hundred(name: str) -> None:
     kill(name, 100)
 
 
+@pytest.mark.slow
 def test_between_two_renames(tmp_path: Path) -> None:
     """What can happen only then: files of two builds, which are not shown together."""
     kills.prepare(tmp_path, kills.BUILD)

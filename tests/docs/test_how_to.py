@@ -91,6 +91,7 @@ def test_a_bound(clone: Path) -> None:
     assert (done.returncode, done.stdout) == (0, printed.text), done.stderr
 
 
+@pytest.mark.slow
 def test_a_family(clone: Path) -> None:
     chains, top, line, _ = found = blocks("add-a-family")
     for block in (chains, top, line):

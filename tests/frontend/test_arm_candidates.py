@@ -27,6 +27,8 @@ from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_it
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 
+pytestmark = pytest.mark.second
+
 SCENES = [
     "irb120_half_pipe",
     "kr6_half_pipe",

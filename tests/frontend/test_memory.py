@@ -30,6 +30,8 @@ from cellcolor.trajectory_checker.dense import poses_of
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.repeated import _near
 
+pytestmark = pytest.mark.second
+
 SMALL = 4_000_000  # bytes, so that little work has many parts
 
 Step = Callable[[], object]

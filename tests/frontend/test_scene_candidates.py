@@ -38,6 +38,8 @@ from cellcolor.frontend.contact.obstacle import CylinderObstacle
 from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.prepared import PreparedScene, prepare
 
+pytestmark = pytest.mark.second
+
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
 
 

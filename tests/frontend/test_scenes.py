@@ -20,6 +20,8 @@ from cellcolor.frontend.scene import Scene
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
+pytestmark = pytest.mark.second
+
 # Section VI of the paper; the square is not in it.
 LIFT_OFFS = {
     "hemisphere_flat": 3,

@@ -24,6 +24,8 @@ from cellcolor.motion.samples import DISTANCE, Samples, even_places, sampled
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.registry import PATTERNS
 
+pytestmark = pytest.mark.second
+
 CORNERS = np.array([[-0.05, -0.01, 0.0], [0.05, -0.01, 0.0], [0.0, 0.05, 0.0]])
 MOST = 0.5  # rad; docs/judging-trajectories.md: in contact, a longer step is a jump
 

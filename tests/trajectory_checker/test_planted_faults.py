@@ -9,7 +9,7 @@ from planted_faults import PLANTERS, found
 
 from cellcolor.trajectory_checker.check import check_trajectory
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 
 @pytest.mark.parametrize("make", [rasters.cap, rasters.square])

@@ -27,6 +27,8 @@ from cellcolor.frontend.arm.turned import TurnedKinematics
 from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.setup import RobotFiles, Turn
 
+pytestmark = pytest.mark.second
+
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 LOCKED = FILES.varied(locked_joint_6_rad=0.4)
 OUT, BACK, TILTED = "0 0 0.4", f"{np.pi} 0 0.4", "0.3 0 0"

@@ -22,7 +22,7 @@ from cellcolor.frontend.parts.repaired import repair_mesh
 from cellcolor.frontend.parts.shapes import grid_mesh
 from cellcolor.mesh.remesher import remesh
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 
 def lengths(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:

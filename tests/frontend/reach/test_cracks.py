@@ -19,7 +19,7 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import Options
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 CORNERS = [(x, y, z) for x in (-0.12, 0.12) for y in (-0.1, 0.1) for z in (-0.08, 0.08)]
 SIDES = ["2 4 1", "5 2 1", "1 4 3", "3 5 1", "2 8 4", "6 2 5"]

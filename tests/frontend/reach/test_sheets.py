@@ -305,6 +305,7 @@ def test_as_many_edges_as_are_compared_at_once_take_what_was_estimated(
     assert MEMORY / 12 < peak <= MEMORY
 
 
+@pytest.mark.slow
 def test_an_arm_without_names_is_driven_and_judged_like_the_others() -> None:
     """Painting, motion and judge follow sheets where they follow branches of other arms."""
     bare = plate(dh_arms.urdf("passing"), "eaik", vertices=60)

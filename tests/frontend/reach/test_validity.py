@@ -20,6 +20,8 @@ from cellcolor.frontend.reach.validity import turned_into_limits
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 
+pytestmark = pytest.mark.second
+
 Varied = Callable[..., Scene]
 
 

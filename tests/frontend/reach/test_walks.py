@@ -26,6 +26,8 @@ from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import stays_in_limits
 from cellcolor.frontend.reach.smooth import joint_step
 
+pytestmark = pytest.mark.slow
+
 NAMES = ["hemisphere_flat", "hemisphere_tilted", "half_pipe", "wok", "wok_obstacle", "square"]
 STEPS = 25
 MILLIMETER = 0.001
