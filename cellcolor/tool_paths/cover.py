@@ -17,7 +17,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
-from cellcolor.tool_paths.refused import Refusals, Refused, without_refused
+from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
 from cellcolor.tool_paths.region import Region, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
 from cellcolor.tool_paths.spurs import with_spurs
@@ -100,7 +100,7 @@ def cover(
         deadline.check()
         if progress is not None:
             progress(f"covering part {number + 1} of {len(regions)}")
-        parts, refused = [region.mesh], list[Refused]()
+        parts, refused = [region.mesh], list[RefusedPlace]()
         if refusals is not None:
             parts, refused = without_refused(
                 region.mesh, refusals, _REFUSED * spacing_m, _LEAST_AREA * spacing_m**2

@@ -41,7 +41,7 @@ class Refusals(Protocol):
 
 
 @dataclass(frozen=True)
-class Refused:
+class RefusedPlace:
     """A connected place that is left out.
 
     Attributes:
@@ -57,7 +57,7 @@ class Refused:
 
 def without_refused(
     mesh: Triangles, refusals: Refusals, finest: float, least_area: float
-) -> tuple[list[Triangles], list[Refused]]:
+) -> tuple[list[Triangles], list[RefusedPlace]]:
     """The parts of a mesh that are left, largest first, and what is left out.
 
     Args:
@@ -104,7 +104,9 @@ def without_refused(
     return [part for _, part in large], _places(mesh, why, codes, refusals.names)
 
 
-def _places(mesh: Triangles, why: Codes, codes: Codes, names: tuple[str, ...]) -> list[Refused]:
+def _places(
+    mesh: Triangles, why: Codes, codes: Codes, names: tuple[str, ...]
+) -> list[RefusedPlace]:
     """Triangles (m,) that are left out, those that meet and have the same reason as one place."""
     out = np.flatnonzero(why)
     # Triangles are joined over what they share: a corner, for one reason.
@@ -118,7 +120,7 @@ def _places(mesh: Triangles, why: Codes, codes: Codes, names: tuple[str, ...]) -
         members = out[place_of == number]
         corners = np.unique(mesh.corners[members])
         place = mesh.points[corners[np.argmax(deep[corners])]]
-        found.append(Refused(float(mesh.areas[members].sum()), place, names[why[members[0]]]))
+        found.append(RefusedPlace(float(mesh.areas[members].sum()), place, names[why[members[0]]]))
     return found
 
 
