@@ -367,7 +367,7 @@ def show(
         from cellcolor.door.plan_files import compare_plans
 
         compare_plans(files, output)
-        say(f"wrote {output}: {len(files)} plans")
+        say(f"wrote {output}: {count(len(files), 'plan')}")
         return Exit.DONE
     if len(files) > 2:
         raise click.UsageError("give one file to show, or one with its solution or plan")

@@ -132,11 +132,13 @@ def objective_of(
         name, _, cost = value.rpartition("=")
         if not name or not cost.isdecimal():
             raise click.BadParameter(f"must be COLOR=N, is {value!r}.")
+        if name in costs:
+            raise click.BadParameter(f"has the color {name!r} twice.")
         costs[name] = int(cost)
     try:
         return Objective(costs)
     except InputError as error:
-        raise click.BadParameter(error.message) from error
+        raise click.BadParameter(f"{error.message}: {', '.join(values)}.") from error
 
 
 def one_of(known: Callable[[], Any]) -> Callable[[click.Context, click.Parameter, str], str]:

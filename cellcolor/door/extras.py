@@ -28,7 +28,7 @@ _EXTRAS = {
     "ompl": "motion",
     "potpourri3d": "motion",
     "toppra": "motion",
-    "mcap": "motion",
+    "mcap_ros2": "motion",
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
@@ -41,7 +41,7 @@ DISTRIBUTIONS = (
         "ompl",
         "potpourri3d",
         "toppra",
-        "mcap",
+        "mcap-ros2-support",
     ),
     *("gpytoolbox", "matplotlib", "plotly"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),

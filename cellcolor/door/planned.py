@@ -126,7 +126,7 @@ class UnfinishedPlan:
         Args:
             folder: where; it is made if it is not there.
             export_step_s: the fixed time step of the files for controllers, s; None keeps the
-                samples of the trajectory (docs/formats/controllers.md).
+                samples of the trajectory (docs/formats/other-programs.md).
 
         Returns:
             Their names.

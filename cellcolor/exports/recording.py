@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import io
 import re
+from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
-from cellcolor.exports.cdr import Messages
+from cellcolor.arrays import Array
 from cellcolor.exports.interface import ArmAxes, NotForThisArm, PlannedMotion
-from cellcolor.exports.samples import Samples, stretches
+from cellcolor.exports.samples import stretches
 from cellcolor.exports.tool_poses import quaternions
 from cellcolor.files.writing import FileKind
 
@@ -118,11 +118,6 @@ uint8[] data"""
     + _GEOMETRY
     + _HEADER
 )
-_TOPICS = (
-    ("/joint_states", "sensor_msgs/msg/JointState", _JOINT_STATE),
-    ("/tf", "tf2_msgs/msg/TFMessage", _TRANSFORMS),
-    ("/markers", "visualization_msgs/msg/MarkerArray", _MARKERS),
-)
 _LINE_STRIP, _TRIANGLES = 4, 11
 
 
@@ -132,66 +127,51 @@ def recording(planned: PlannedMotion) -> bytes:
     Transforms are in the frame ``world``. The surface and the strokes are markers, at the start.
 
     Raises:
-        NotForThisArm: the package ``mcap`` is not installed, or the arm is not known.
+        NotForThisArm: the package ``mcap-ros2-support`` is not installed, or the arm is not known.
     """
     try:
-        from mcap.writer import Writer
+        from mcap_ros2.writer import Writer
     except ImportError as error:
-        raise NotForThisArm("a recording needs the package mcap") from error
+        raise NotForThisArm("a recording needs the package mcap-ros2-support") from error
     if planned.axes is None or planned.axes.slides:
         raise NotForThisArm("a recording needs an arm whose joints all turn")
     stream = io.BytesIO()
     writer = Writer(stream)
-    writer.start(profile="ros2", library="cellcolor")
-    channels = {}
-    for topic, kind, definition in _TOPICS:
-        schema = writer.register_schema(kind, "ros2msg", definition.encode())
-        channels[topic] = writer.register_channel(topic, "cdr", schema)
-    writer.add_message(channels["/markers"], 0, _markers(planned), 0)
+    states = writer.register_msgdef("sensor_msgs/msg/JointState", _JOINT_STATE)
+    frames = writer.register_msgdef("tf2_msgs/msg/TFMessage", _TRANSFORMS)
+    markers = writer.register_msgdef("visualization_msgs/msg/MarkerArray", _MARKERS)
+    writer.write_message("/markers", markers, {"markers": _markers(planned)}, 0, 0)
+    names = list(planned.axes.names)
     for own in stretches(planned.trajectory, planned.step_s or _STEP):
         begun = planned.trajectory.times[own.first] - planned.trajectory.times[0]
-        moments = np.round((own.times + begun) * 1e9).astype(np.int64)
-        states = _states(planned.axes, own, moments)
-        rows = zip(moments.tolist(), states, _transforms(planned.axes, own, moments), strict=True)
-        for moment, state, transforms in rows:
-            writer.add_message(channels["/joint_states"], moment, state, moment)
-            writer.add_message(channels["/tf"], moment, transforms, moment)
+        moments = np.round((own.times + begun) * 1e9).astype(np.int64).tolist()
+        x = np.zeros_like(own.normals)
+        x[np.arange(len(x)), np.argmin(np.abs(own.normals), axis=1)] = 1
+        x -= np.sum(x * own.normals, axis=1, keepdims=True) * own.normals
+        tips = quaternions(x / np.linalg.norm(x, axis=1, keepdims=True), own.normals)
+        poses = [*_frames(planned.axes, own.joints), (own.points, tips)]
+        for row, moment in enumerate(moments):
+            header = {"stamp": _stamp(moment), "frame_id": "world"}
+            state = {
+                "header": header,
+                "name": names,
+                "position": own.joints[row].tolist(),
+                "velocity": own.velocities[row].tolist(),
+                "effort": [],
+            }
+            writer.write_message("/joint_states", states, state, moment, moment)
+            transforms = [
+                {
+                    "header": header,
+                    "child_frame_id": name,
+                    "transform": {"translation": _xyz(points[row]), "rotation": _xyzw(turns[row])},
+                }
+                for name, (points, turns) in zip([*names, "tool_tip"], poses, strict=True)
+            ]
+            writer.write_message("/tf", frames, {"transforms": transforms}, moment, moment)
     writer.add_metadata(_MARK.decode(), {"made_by": "cellcolor"})
     writer.finish()  # type: ignore[no-untyped-call]
     return stream.getvalue()
-
-
-def _header(messages: Messages, moments: Index, frame: str = "world") -> None:
-    messages.numbers("i4", np.column_stack(np.divmod(moments, 1_000_000_000)))
-    messages.text(frame)
-
-
-def _states(axes: ArmAxes, own: Samples, moments: Index) -> list[bytes]:
-    messages = Messages(len(moments))
-    _header(messages, moments)
-    messages.numbers("u4", len(axes.names))
-    for name in axes.names:
-        messages.text(name)
-    messages.sequence("f8", own.joints)
-    messages.sequence("f8", own.velocities)
-    messages.sequence("f8", [])  # efforts
-    return messages.each()
-
-
-def _transforms(axes: ArmAxes, own: Samples, moments: Index) -> list[bytes]:
-    x = np.zeros_like(own.normals)
-    x[np.arange(len(x)), np.argmin(np.abs(own.normals), axis=1)] = 1
-    x -= np.sum(x * own.normals, axis=1, keepdims=True) * own.normals
-    tips = quaternions(x / np.linalg.norm(x, axis=1, keepdims=True), own.normals)
-    frames = [*_frames(axes, own.joints), (own.points, tips)]
-    messages = Messages(len(moments))
-    messages.numbers("u4", len(frames))
-    for name, (points, turns) in zip([*axes.names, "tool_tip"], frames, strict=True):
-        _header(messages, moments)
-        messages.text(name)
-        messages.numbers("f8", points)
-        messages.numbers("f8", turns)
-    return messages.each()
 
 
 def _frames(axes: ArmAxes, joints: Array) -> list[tuple[Array, Array]]:
@@ -208,47 +188,62 @@ def _frames(axes: ArmAxes, joints: Array) -> list[tuple[Array, Array]]:
     return found
 
 
-def _markers(planned: PlannedMotion) -> bytes:
+def _markers(planned: PlannedMotion) -> list[dict[str, Any]]:
     """The surface in the colors of its segments, and a line for each tool path."""
-    surface, paths = planned.surface, planned.paths.paths
+    surface = planned.surface
     fills = np.array([_rgba(fill) for fill in (*planned.fills, "#DDDDDD")])
     corners = surface.faces.ravel()
     colors = fills[planned.segment_of[corners]]  # -1 is the last one
-    messages = Messages(1)
-    messages.numbers("u4", 1 + len(paths))
-    _marker(messages, "surface", 0, _TRIANGLES, 1.0, surface.vertices[corners], colors)
-    for number, path in enumerate(paths):
-        line = path.points + 0.0005 * path.normals
-        _marker(messages, "tool paths", number, _LINE_STRIP, 0.001, line, np.empty((0, 4)))
-    return messages.each()[0]
+    found = [_marker("surface", 0, _TRIANGLES, 1.0, surface.vertices[corners], colors)]
+    found += [
+        _marker("tool paths", number, _LINE_STRIP, 0.001, path.points + 0.0005 * path.normals, None)
+        for number, path in enumerate(planned.paths.paths)
+    ]
+    return found
 
 
 def _marker(
-    messages: Messages, space: str, number: int, kind: int, scale: float, points: Array, of: Array
-) -> None:
-    """A marker at ``points`` (k, 3), each of its own color ``of`` (k, 4), or all dark."""
-    now = np.zeros(1, dtype=np.int64)
-    _header(messages, now)
-    messages.text(space)
-    messages.numbers("i4", [number, kind, 0])
-    messages.numbers("f8", [0, 0, 0, 0, 0, 0, 1, scale, scale, scale])  # pose and scale
-    messages.numbers("f4", [0.1, 0.1, 0.1, 1.0])
-    messages.numbers("i4", [0, 0])  # lifetime
-    messages.numbers("u1", 0)  # locked to its frame
-    for kind_of, rows in (("f8", points), ("f4", of)):
-        messages.numbers("u4", len(rows))
-        messages.numbers(kind_of, rows.ravel())
-    messages.text("")
-    _header(messages, now, "")
-    messages.text("")  # no texture
-    messages.sequence("u1", [])
-    messages.sequence("f4", [])
-    messages.text("")
-    messages.text("")  # no file of a mesh
-    messages.sequence("u1", [])
-    messages.text("")
-    messages.numbers("u1", 0)
+    space: str, number: int, kind: int, scale: float, points: Array, colors: Array | None
+) -> dict[str, Any]:
+    shades = [] if colors is None else [_shade(color) for color in colors.tolist()]
+    return {
+        "header": {"stamp": _stamp(0), "frame_id": "world"},
+        "ns": space,
+        "id": number,
+        "type": kind,
+        "action": 0,
+        "pose": {"position": _xyz(np.zeros(3)), "orientation": _xyzw(np.eye(4)[3])},
+        "scale": dict.fromkeys("xyz", scale),
+        "color": _shade([0.1, 0.1, 0.1, 1.0]),
+        "lifetime": _stamp(0),
+        "frame_locked": False,
+        "points": [_xyz(point) for point in points],
+        "colors": shades,
+        "texture_resource": "",
+        "texture": {"header": {"stamp": _stamp(0), "frame_id": ""}, "format": "", "data": b""},
+        "uv_coordinates": [],
+        "text": "",
+        "mesh_file": {"filename": "", "data": b""},
+        "mesh_resource": "",
+        "mesh_use_embedded_materials": False,
+    }
 
 
 def _rgba(fill: str) -> list[float]:
     return [*(byte / 255 for byte in bytes.fromhex(fill.removeprefix("#"))), 1.0]
+
+
+def _shade(color: list[float]) -> dict[str, float]:
+    return dict(zip("rgba", color, strict=True))
+
+
+def _stamp(moment: int) -> dict[str, int]:
+    return {"sec": moment // 1_000_000_000, "nanosec": moment % 1_000_000_000}
+
+
+def _xyz(point: Array) -> dict[str, float]:
+    return dict(zip("xyz", point.tolist(), strict=True))
+
+
+def _xyzw(turn: Array) -> dict[str, float]:
+    return dict(zip("xyzw", turn.tolist(), strict=True))

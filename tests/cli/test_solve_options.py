@@ -61,6 +61,7 @@ class TestMore:
         [
             (["--color-cost", "red"], "must be COLOR=N, is 'red'"),
             (["--color-cost", "red=0"], "greater than or equal to 1"),
+            (["--color-cost", "red=2", "--color-cost", "red=3"], "has the color 'red' twice"),
             (["--color-cost", "red=2", "--all"], "--color-cost excludes --all"),
             (["--color-cost", "red=2", "--fewest-cuts"], "fewest_cuts: goes with the fewest"),
             (["--color-cost", "red=2", "--solver", "cp-sat-ranks"], "is more than the solver"),

@@ -15,6 +15,8 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 
+pytestmark = pytest.mark.second
+
 FILES = {path.stem: path for path in sorted((TOP / "instances" / "arms").glob("*.toml"))}
 # One for each arm; the others are the same arms on other parts.
 ONE_EACH = [

@@ -19,6 +19,8 @@ from cellcolor.frontend.reach.validity import Judge, Verdicts
 from cellcolor.frontend.stage_clock import StageClock
 from cellcolor.frontend.stages import Stages, judged, run_stages, with_finer_borders
 
+pytestmark = pytest.mark.second
+
 
 def scene(name: str, **continuity: float) -> PreparedScene:
     plain = shipped(name, 90)

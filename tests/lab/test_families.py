@@ -26,6 +26,8 @@ from cellcolor.lab.families import (
 from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.interface import Options
 
+pytestmark = pytest.mark.second
+
 
 def test_blobs_are_a_function_of_their_seed() -> None:
     one, again, other = (blobs(seed, 9, 3, cracks=2, islands=1) for seed in (5, 5, 6))

@@ -17,6 +17,8 @@ from cellcolor.motion.samples import sampled
 from cellcolor.motion.windings import Parts, PartSteps, walls_of
 from cellcolor.tool_paths.cover import cover
 
+pytestmark = pytest.mark.second
+
 
 @pytest.fixture(scope="module")
 def ring() -> Planned:

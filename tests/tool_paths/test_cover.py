@@ -25,6 +25,8 @@ from cellcolor.tool_paths.region import regions_of
 from cellcolor.tool_paths.registry import PATTERNS, pattern_names
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 
 def covered(painting: Painting, pattern: str, spacing: float, **options: object) -> Covered:
     return cover(*painting, pattern=pattern, spacing_m=spacing, tool_radius_m=spacing, **options)

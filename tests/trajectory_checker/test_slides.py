@@ -19,6 +19,8 @@ from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.tolerances import OFF_SURFACE
 
+pytestmark = pytest.mark.second
+
 NAME = "joint_3"
 
 

@@ -13,6 +13,8 @@ from cellcolor.arrays import Array
 from cellcolor.frontend.arm.capsules import Capsule, capsule_around, capsules_around
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 
 def distances(capsule: Capsule, points: Array) -> Array:
     """From the axis, by the nearest of many points on it; at most a thousandth too large."""

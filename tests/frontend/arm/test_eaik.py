@@ -21,6 +21,8 @@ from cellcolor.frontend.arm.signs import BRANCHES
 from cellcolor.frontend.setup import RobotFiles
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 LOCKED = 0.4
 NAMED = ("kr6", "irb120", "puma560", "ur5e")
 NAMELESS = ("passing", "cuspidal")

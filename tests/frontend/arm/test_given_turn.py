@@ -30,6 +30,8 @@ from cellcolor.frontend.arm.ur import BRANCHES as UR_BRANCHES
 from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.setup import RobotFiles, Turn
 
+pytestmark = pytest.mark.second
+
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 FAMILIES: dict[str, type[InverseKinematics]] = {"ur": UrKinematics, "eaik": EaikKinematics}
 ARMS = [("ur", "ur5e"), ("eaik", "ur5e"), ("eaik", "kr6"), ("eaik", "puma560")]

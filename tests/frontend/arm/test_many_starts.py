@@ -23,6 +23,8 @@ from cellcolor.arrays import Array, Index
 from cellcolor.frontend.arm.signs import BRANCHES
 from cellcolor.frontend.setup import Setup
 
+pytestmark = pytest.mark.second
+
 CALIBRATED = "ur5e_calibrated"
 
 

@@ -49,6 +49,8 @@ from cellcolor.motion.scene_painting import color_costs
 from cellcolor.pictures.arm import draw_arm
 from examples import examples
 
+pytestmark = pytest.mark.second
+
 FILES = RobotFiles(arm_urdf="<", flange_link="flange", tool_urdf="<", tip_link="tool_tip")
 SCENE = TOP / "instances" / "planar" / "cobra600_pipe.toml"
 EVERY = (*ORDERS, *WITHOUT_TURN)

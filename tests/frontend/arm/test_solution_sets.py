@@ -15,6 +15,8 @@ pytest.importorskip("ssik")
 
 from solution_sets import KINDS, Arm, near_singular
 
+pytestmark = pytest.mark.second
+
 ARMS = ("ur5", "ur3e", "ur5e", "ur10e", "ur16e", "kr6", "irb120", "tx2_60")
 
 

@@ -17,6 +17,8 @@ from cellcolor.frontend.contact.obstacle import BoxObstacle
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 
+pytestmark = pytest.mark.second
+
 Varied = Callable[..., Scene]
 
 

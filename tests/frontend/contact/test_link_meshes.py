@@ -24,6 +24,8 @@ from cellcolor.frontend.contact.obstacle import BoxObstacle, CylinderObstacle, S
 from cellcolor.frontend.contact.solids import mesh_solid
 from cellcolor.frontend.parts.shapes import disc_mesh, spherical_cap
 
+pytestmark = pytest.mark.second
+
 Standing = list[tuple[coal.ShapeBase, coal.Transform3s]]
 GROUND, EXEMPT = -0.05, ("base_link", "shoulder_link")
 ASIDE = np.array([0.35, -0.1, 0.35])

@@ -14,6 +14,8 @@ from cellcolor.frontend.arm.capsules import capsule_around
 from cellcolor.frontend.contact.stand_in_report import StandInReport, report_on
 from cellcolor.frontend.setup import MeshCollision
 
+pytestmark = pytest.mark.second
+
 
 def reported(mesh: trimesh.Trimesh, chosen: MeshCollision) -> StandInReport:
     vertices, faces = np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64)

@@ -32,6 +32,8 @@ from cellcolor.frontend.reach.smooth import Measure, bytes_of_following, joint_s
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.setup import Continuity
 
+pytestmark = pytest.mark.second
+
 NEAR = 0.01  # m^3
 POLICY = Continuity(
     base_step_rad=0.1,

@@ -161,15 +161,21 @@ def test_progress_comes_closer_and_never_passes_the_minimum() -> None:
     assert best == sorted(best, reverse=True) and best[-1] == minimum
 
 
-def test_what_segments_avoid_proves_the_last_one() -> None:
-    """Where segments two and three at a time may pass through each other's cells, six are not ruled
-    out. But one that touches the cell between two of another color cannot get out of there."""
+def _routed_rim() -> PartSearch:
+    """The one part of a surface with 26 cells at its rim, covered and routed."""
     instance = decompose(MEDIUM["rim"](26))
     (part,) = split(instance, drop_dominated(instance, left_out(instance)))
     options = Options()
     search = PartSearch(part, options, Runner(options), lambda: None)
     search.cover(NEVER)
     search.planning.route(NEVER)
+    return search
+
+
+def test_what_segments_avoid_proves_the_last_one() -> None:
+    """Where segments two and three at a time may pass through each other's cells, six are not ruled
+    out. But one that touches the cell between two of another color cannot get out of there."""
+    search = _routed_rim()
     search.drop(NEVER)
     assert (search.segments, search.surface_bound) == (7, 6)
     search.insist(NEVER)
@@ -177,12 +183,7 @@ def test_what_segments_avoid_proves_the_last_one() -> None:
 
 
 def test_a_turn_of_plans_ends_with_its_share_of_the_time() -> None:
-    instance = decompose(MEDIUM["rim"](26))
-    (part,) = split(instance, drop_dominated(instance, left_out(instance)))
-    options = Options()
-    search = PartSearch(part, options, Runner(options), lambda: None)
-    search.cover(NEVER)
-    search.planning.route(NEVER)
+    search = _routed_rim()
     search.insist(Deadline.after(0))
     assert not search.done
 
