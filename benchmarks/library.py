@@ -21,12 +21,13 @@ from fnmatch import fnmatch
 from importlib.metadata import version
 from pathlib import Path
 
+from library_entries import INDEX, SOLUTIONS, Origin, entry_of, graph_files, graph_of
+
 from cellcolor.data.bounds import Bound, greatest
 from cellcolor.data.instance import Instance
 from cellcolor.data.library_index import LibraryIndex
 from cellcolor.data.solution import SearchSpace, Solution, Status
 from cellcolor.deadline import Deadline
-from cellcolor.lab.library import INDEX, SOLUTIONS, Origin, entry_of, graph_files, graph_of
 from cellcolor.machine import this_version
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options, Start

@@ -7,11 +7,14 @@ writes them into ``docs/_library``, as ``docs/conf.py`` does.
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 from cellcolor.data.library_index import KnownRange, LibraryEntry, LibraryIndex
-from cellcolor.lab.library import INDEX, graph_of
-from cellcolor.pictures.thumbnail import thumbnail
+
+sys.path += [str(Path(__file__).parent), str(Path(__file__).parents[1] / "benchmarks")]
+from library_entries import INDEX, graph_of
+from thumbnail import thumbnail
 
 LIBRARY = Path(__file__).parents[1] / "instances"
 FOLDER = Path(__file__).parent / "_library"

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import itertools
+import sys
+from dataclasses import replace
 
 import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
+from shipped import TOP, shipped
 
 from cellcolor.arrays import Array, Mask
-from cellcolor.lab.path_first import fewest_lift_offs, fewest_strokes
-from cellcolor.lab.raster import Raster
+from cellcolor.frontend import build_surface
+
+sys.path.append(str(TOP / "benchmarks"))
+from path_first import accepted, counted, fewest_lift_offs, fewest_strokes
+from raster import Raster
 
 ROWS = st.lists(st.lists(st.booleans(), min_size=3, max_size=3).filter(any), min_size=1, max_size=6)
 LOWER, UPPER, JUMP = np.array([-4.0, -7.0]), np.array([4.0, 7.0]), 2.2
@@ -107,3 +113,18 @@ def test_a_joint_that_winds_up_ends_a_stroke() -> None:
     assert [stroke.after - stroke.first for stroke in found] == [5, 6, 6, 3]
     begins = [stroke.joints[0, 0] for stroke in found]
     assert np.allclose(begins, np.array([0, 5, 11, 17]) - 2 * np.pi * np.arange(4))
+
+
+def test_strokes_of_the_square_and_a_jump_planted_in_them() -> None:
+    """One stroke covers the square; a full circle in the middle of it makes two."""
+    scene = shipped("square", 200)
+    built = build_surface(scene.with_setup(scene.setup.varied(motion=None)))
+    one = counted(built, 0.5, 0.06)
+    assert (one.optimistic, one.judged, len(one.strokes)) == (0, 0, 1)
+    joints = one.trajectory.joints.copy()
+    middle = len(joints) // 2
+    joints[middle:, 5] += 2 * np.pi
+    contact = accepted(built, replace(one.trajectory, joints=joints))
+    assert one.trajectory.contact[middle - 1 : middle + 2].all()
+    begins = np.flatnonzero(contact[1:] & ~contact[:-1])
+    assert begins.tolist() == [middle] and contact[0]

@@ -6,6 +6,7 @@ import hashlib
 import json
 import runpy
 import shutil
+import sys
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -22,9 +23,11 @@ from cellcolor.deadline import Deadline
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab import families
-from cellcolor.lab.library import INDEX, SOLUTIONS, Origin, entry_of, graph_of, problems
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.interface import STRANDS, Options
+
+sys.path.append(str(INSTANCES.parent / "benchmarks"))
+from library_entries import INDEX, SOLUTIONS, Origin, entry_of, graph_of, problems
 
 LIBRARY = LibraryIndex.read(INSTANCES / INDEX)
 

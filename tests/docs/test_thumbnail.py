@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import xml.etree.ElementTree as ElementTree
 
 import pytest
@@ -12,7 +13,9 @@ from cellcolor.data.cells_and_edges import OUTSIDE, Cell
 from cellcolor.data.instance import Instance
 from cellcolor.lab.families import hub
 from cellcolor.pictures.palette import LINES
-from cellcolor.pictures.thumbnail import thumbnail
+
+sys.path.append(str(INSTANCES.parent / "docs"))
+from thumbnail import thumbnail
 
 SVG = "{http://www.w3.org/2000/svg}"
 GRAPHS = [

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import sys
+
 import numpy as np
 import pytest
 import trimesh
+from shipped import TOP
 
 from cellcolor.arrays import Array
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.lab.families.meshes import grid_faces
-from cellcolor.lab.raster import Raster, raster
+
+sys.path.append(str(TOP / "benchmarks"))
+from raster import Raster, raster
 
 ANGLES = (0.0, 0.4, 1.0, np.pi / 2, 2.5)
 SPACING = 0.02
