@@ -1,4 +1,4 @@
-# The public names for type checkers and editors; a test holds them to those of __init__.py.
+# The public names. __init__.py reads them here: one a line, with the module that it comes from.
 
 from cellcolor.data.bounds import Bound as Bound
 from cellcolor.data.cells_and_edges import OUTSIDE as OUTSIDE

@@ -15,7 +15,7 @@ _Item = TypeVar("_Item")
 
 
 class OutOfTime(CellcolorError):
-    """The deadline came before the work was done."""
+    """The deadline came before the work was done. Whatever takes a deadline may raise this."""
 
 
 @dataclass(frozen=True, slots=True)

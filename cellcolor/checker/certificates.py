@@ -78,7 +78,6 @@ def verify_bound(
     """Verify a lower bound of the number of segments, or of their cost, by its certificate.
 
     Args:
-        instance: the topological graph.
         bound: one of a solution of it.
         regions: the color regions that each cell lies in, see
             :mod:`cellcolor.checker.color_regions`.

@@ -27,7 +27,6 @@ def number_problems(
     """What is wrong with a solution's numbers, each naming its member.
 
     Args:
-        instance: the topological graph.
         solution: its division has been found legal, if it has one.
         segments: of the division; None without one.
         costs: what a segment of each color costs; None without an objective.
@@ -56,9 +55,7 @@ def claims(
     That there is one segment where there is a cell needs no proof.
 
     Args:
-        instance: the topological graph.
         solution: a valid solution of it.
-        verdicts: on its bounds.
     """
     verified = [verdict.bound for verdict in verdicts if verdict.outcome == "verified"]
     least = min(1, len(instance.cells))

@@ -18,7 +18,6 @@ def cutting_paths(instance: Instance, division: Division, seams: Sequence[Seam] 
     not matter where seams lie, nor where darts in state 0 do.
 
     Args:
-        instance: the topological graph.
         division: a legal division of it.
         seams: the seams that the division's darts refer to.
     """

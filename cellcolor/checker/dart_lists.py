@@ -32,7 +32,6 @@ def live_lists(instance: Instance, seams: Sequence[Seam], strands: int) -> list[
     """Each cell's live darts as one cyclic list.
 
     Args:
-        instance: the topological graph.
         seams: how the loops of cells with several of them are connected, in order.
         strands: strands per live edge; a seam has its own number.
 

@@ -71,7 +71,6 @@ def check_division(
     """Hold a division against the instance (docs/semantics.md, sections 2, 3 and 5).
 
     Args:
-        instance: the topological graph.
         division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
         seams: the seams that the darts refer to.
         strands: strands per live edge.
@@ -121,7 +120,6 @@ def check_scheme(instance: Instance, division: Division) -> Report:
     Schemes know no seams: in cells with several loops sub-cells have to be such as can be drawn.
 
     Args:
-        instance: the topological graph.
         division: sub-cells, colors and darts in state 1 of every cell, segments numbered.
     """
     if instance.most_live_loops < 2:
@@ -167,14 +165,9 @@ def check_solution(
     nothing.
 
     Args:
-        instance: the topological graph.
-        solution: a solution of it.
         regions: the color regions that each cell lies in, if they are not to be read off the
             graph; for certificates.
         deadline: when certificates have to be verified.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     problems: list[str] = []
     costs = None

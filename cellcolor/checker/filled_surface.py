@@ -45,7 +45,6 @@ class FilledSurface:
     """Cells as polygons, glued along the edges across which some color goes on.
 
     Args:
-        instance: the topological graph.
         rooms: where segments can be: each a color, and cells in which it is available.
         count: called with the amount of work about to be done; raises if that is too much.
 

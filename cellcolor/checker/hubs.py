@@ -32,7 +32,6 @@ class Hubs:
     """Some cells that are taken away.
 
     Args:
-        instance: the topological graph.
         regions: the color regions that each cell lies in, without those that were left out.
         hubs: the cells.
     """

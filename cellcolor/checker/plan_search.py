@@ -128,7 +128,6 @@ class PlanSearch:
             regions: the color regions that each cell lies in; these cells have to be touched.
             conflicts: between segments.
             budget: how many choices may be tried.
-            deadline: when to give up.
             tangles: of segments.
             costs: what a segment of each color costs, 1 or more; None for 1 each.
         """
@@ -314,10 +313,8 @@ class PlanSearch:
         """The numbers of the segments that can touch a cell too, and each as it is then.
 
         Args:
-            found: the segments.
             numbers: those of the segments in each color region.
             connected: the conflicts of which some segment is the first, and the second, as bits.
-            cell: the cell.
         """
         able = []
         for region in self._regions[cell]:

@@ -52,7 +52,6 @@ def cannot_be_drawn(
     """Whether it is proved that segments cannot lie side by side, which needs a sphere.
 
     Args:
-        instance: the topological graph.
         segments: that touch an area of each of their groups.
         count: called with the amount of work about to be done; raises if that is too much.
     """

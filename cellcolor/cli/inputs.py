@@ -39,7 +39,6 @@ def open_file(path: Path, deadline: Deadline = NEVER, tolerance: str | None = No
     Libraries that catch everything can swallow a signal; it is raised before and after a build.
 
     Args:
-        path: of the file.
         deadline: when a build has to end.
         tolerance: of a scene's part, see :func:`with_tolerance`.
 

@@ -40,7 +40,6 @@ def print_solution(instance: Instance, solution: Solution) -> None:
     """One solution: its segments, then what is known about their number.
 
     Args:
-        instance: the topological graph.
         solution: a valid solution of it.
     """
     out = console()

@@ -157,7 +157,6 @@ class Certificate(ABC):
 
         Args:
             value: the bound's.
-            instance: the topological graph.
         """
 
     def witness(self, value: int) -> tuple[int, ...]:  # noqa: ARG002

@@ -95,7 +95,6 @@ class CandidateTable(WithArrays):
         """The table in the side file that ``build`` writes beside a scene's surface.
 
         Args:
-            surface: the labelled surface.
             path: its file, which the side file's name is relative to.
 
         Raises:

@@ -73,7 +73,6 @@ def cost_of(division: Division, costs: Sequence[int]) -> int:
     """What the segments of a division with numbered segments cost.
 
     Args:
-        division: the division.
         costs: what a segment of each color costs.
     """
     colors = {sub.segment: sub.color for cell in division for sub in cell.subcells}
@@ -381,7 +380,6 @@ def witness_in_words(instance: Instance, cells: tuple[int, ...]) -> str | None:
     """What is to be seen at cells no two of which can share a segment, a clause.
 
     Args:
-        instance: the topological graph.
         cells: as many as there are segments; with none there is nothing to be said.
     """
     if not cells:

@@ -62,7 +62,6 @@ class Borders:
     """All borders of a division of the mesh into areas.
 
     Args:
-        surface: the labelled surface.
         mesh: its mesh, the holes closed.
         cell_of: the cell of each vertex, virtual ones included; ``OUTSIDE`` where unreachable.
 
@@ -106,11 +105,7 @@ class Borders:
         return self._cell_of[u], self._cell_of[v], self.joinable(u, v)
 
     def curves(self, deadline: Deadline = NEVER) -> list[Curve]:
-        """The topological edges, each with an area other than ``OUTSIDE`` on its left.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
+        """The topological edges, each with an area other than ``OUTSIDE`` on its left."""
         curves: list[Curve] = []
         done: set[Step] = set()
         # Curves between corners first; what is left over then are closed curves without any.

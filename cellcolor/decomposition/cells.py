@@ -33,13 +33,11 @@ def decomposition_of(
     dual of the mesh: a vertex owns a third of each of its triangles.
 
     Args:
-        surface: the labelled surface.
         path: where it is stored, relative to the instance; None leaves the reference out.
         deadline: when to give up. The time grows in proportion to the mesh.
 
     Raises:
         InputError: a cell is not planar (its genus is not 0).
-        OutOfTime: the deadline came first.
     """
     deadline.check()
     mesh = ClosedMesh(surface)

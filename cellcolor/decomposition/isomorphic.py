@@ -28,9 +28,6 @@ def isomorphic(one: Instance, other: Instance, deadline: Deadline = NEVER) -> bo
         one: a topological graph.
         other: another.
         deadline: when to give up; asked between rounds, and not in the last step.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     import networkx as nx  # slow to import
 

@@ -34,8 +34,6 @@ def locate(
     """Find where an instance that was read from a file lies on its surface.
 
     Args:
-        surface: the labelled surface.
-        instance: its topological graph.
         vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable.
 
     Returns:

@@ -25,14 +25,9 @@ def wrong_cell(
     """A cell of a connected part whose borders are not those on the surface; None if all are.
 
     Args:
-        surface: the labelled surface.
         instance: a topological graph that is said to be of it.
         vertex_cell: the cell of each vertex, ``OUTSIDE`` where unreachable. Cells have to have the
             colors of their vertices; they may be smaller than they could be.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     mesh = ClosedMesh(surface)
     cell_of = [*vertex_cell, *[OUTSIDE] * (mesh.vertex_count - mesh.real_count)]

@@ -228,12 +228,9 @@ def build_surface(
 
     Args:
         scene: the scene, or the name of its file.
-        deadline: when to give up.
-        progress: told what is being done.
 
     Raises:
         InputError: the scene, its setup, a URDF or a mesh cannot be used; names file and field.
-        OutOfTime: the deadline came first.
     """
     clock = StageClock(deadline, progress)
     with clock.timed("preparation"):

@@ -142,12 +142,10 @@ def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> P
 
     Args:
         scene: a scene, or the name of its file.
-        deadline: when to give up.
 
     Raises:
         InputError: a file cannot be used, the object stands in a link that cannot move, or the
             scene asks for more vertices or points than fit; names file and field.
-        OutOfTime: the deadline came first.
     """
     if not isinstance(scene, Scene):
         scene = Scene.read(scene)
@@ -186,7 +184,6 @@ def named(prepared: PreparedScene, deadline: Deadline = NEVER) -> PreparedScene:
 
     Raises:
         InputError: the arm is cuspidal on the part, or there are too many sheets.
-        OutOfTime: the deadline came first.
     """
     if prepared.arm.named:
         return prepared

@@ -165,7 +165,6 @@ class Scene(FileTable):
 
         Raises:
             InputError: there is no such surface.
-            OutOfTime: the deadline came first.
         """
         surface = self.object.surface(self.folder, deadline)
         if self.cover is not None:

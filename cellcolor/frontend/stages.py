@@ -107,8 +107,6 @@ def judged_in_place(
     """All stages with the part where it should stand, where something may be known already.
 
     Args:
-        prepared: the scene.
-        clock: of the build.
         before: of the same scene on a surface whose vertices are the first ones of this one, with
             the same normals. Only new vertices and new mesh edges are asked about, to the same
             result.
@@ -236,8 +234,6 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
     """All stages, where something may be known already; raises like :func:`run_stages`.
 
     Args:
-        prepared: the scene.
-        clock: of the build.
         before: of the same scene on a surface whose vertices are the first ones of this one, with
             the same normals. Only new vertices and new mesh edges are asked about, to the same
             result.
@@ -289,8 +285,6 @@ def with_finer_borders(
     """The stages of a build, on a surface refined at borders as the setup says.
 
     Args:
-        prepared: the scene.
-        clock: of the build.
         found: its stages on this surface, where they are known.
 
     Returns:

@@ -88,9 +88,7 @@ def improvement_of(
     within the better segment is the largest.
 
     Args:
-        surface: the labelled surface.
         segment_of: (n,) the plan's segment of each vertex, -1 where it has no color.
-        better: a painting.
 
     Returns:
         None if the painting does not have fewer segments, or has them only since segments that

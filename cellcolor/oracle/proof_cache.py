@@ -52,7 +52,6 @@ class ProofCache:
         - the deadline comes first.
 
         Args:
-            surface: the labelled surface.
             seconds: the time limit that a new proof would have.
             deadline: when to give up reading and checking.
         """

@@ -84,12 +84,10 @@ def prove(
     """Find the range that the fewest segments of a labelled surface lie in, and the proof of it.
 
     Args:
-        surface: the labelled surface.
         deadline: when to return what is proved; both ends hold however early that is.
         strands: corridors that may cross one topological edge, None for the usual number; more
             may lower ``upper``.
         workers: CP-SAT's search workers, None for its portfolio.
-        seed: for all random choices.
 
     Raises:
         InputError: a cell of the surface is not planar, or an option is out of its range.

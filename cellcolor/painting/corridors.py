@@ -36,10 +36,6 @@ def within(
         nearby: the mesh.
         starts: distances to begin with, and vertices.
         reach: the largest distance, m.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     queue = list(starts)
     heapify(queue)

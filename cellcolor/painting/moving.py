@@ -51,14 +51,12 @@ def move_borders(
         tool_radius_m: radius of the footprint, m. None takes the mean length of a mesh edge: then
             a corridor of that width has a row of vertices inside.
         cost: (n, colors) cost of painting a vertex in a color, from 0 (best) to 1; None for 0.
-        deadline: when to give up.
 
     Returns:
         The painting with moved borders; its ``borders`` reports what has changed.
 
     Raises:
         InputError: the radius is not positive, or the cost has another shape or is not finite.
-        OutOfTime: the deadline came first.
         RefusedResult: the checker counts another number of segments than before.
     """
     surface = painted.surface

@@ -107,10 +107,8 @@ def paint(
     the colors of old ones, so that the topological graph stays what it was.
 
     Args:
-        surface: the labelled surface.
         decomposition: its topological graph, and where that lies on it.
         solution: a valid solution of that graph.
-        deadline: when to give up.
 
     Returns:
         A valid plan with at most as many segments as the solution, and exactly as many if these
@@ -118,7 +116,6 @@ def paint(
 
     Raises:
         InputError: the solution has no division, or it is not known where the graph's edges lie.
-        OutOfTime: the deadline came first.
         TooLarge: the refined mesh would not fit into memory.
         RefusedResult: the checker counts other segments than the solution says.
     """

@@ -70,7 +70,6 @@ class Refined:
         there was a single vertex there is one with a neighbor in every direction.
 
         Raises:
-            OutOfTime: the deadline came first.
             TooLarge: there would be more than ``MOST_VERTICES``.
         """
         marked = np.asarray(roomy[self.mesh.edges].any(axis=1))

@@ -51,13 +51,11 @@ def grow_trees(
             closed.
         cracked: whether a mesh edge has a crack, given in either direction.
         terminals: the vertices that each sub-cell has to contain; the sub-cells do not cross.
-        deadline: when to give up.
 
     Returns:
         ``{vertex: sub-cell}`` of the vertices on trees.
 
     Raises:
-        OutOfTime: the deadline came first.
         TooNarrow: there is no room, or two sub-cells have one terminal in common.
     """
     return _Trees(vertices, around, third, cracked, terminals, deadline).grown()

@@ -150,7 +150,6 @@ def render_map(
 
     Args:
         name: of the scene.
-        tiled: the map.
         here: where the scene has the part; a cross.
         best: the best placements; numbers.
         kind: ``png`` or ``svg``.

@@ -89,7 +89,6 @@ def by_solution(
     """The surface to draw a solution on, and every segment there in its own fill.
 
     Args:
-        surface: the surface.
         decomposition: its topological graph.
         solution: a valid solution of the graph, with a division.
 
@@ -202,7 +201,6 @@ def by_reason(
     """Every vertex in the fill of its reason for being out of reach.
 
     Args:
-        surface: the labelled surface.
         reasons_of: the verdict on every configuration that was tried.
         branch: show this branch alone. None shows for each vertex the branch that passed the most
             tests; then a vertex is reachable if it has any color.
@@ -248,7 +246,6 @@ def bare_labels(surface: LabelledSurface, first: int) -> Labels:
     """For every vertex (n,) the class that it has if it has no color: see :func:`bare_classes`.
 
     Args:
-        surface: the surface.
         first: the class "unreachable"; the next number is the class "given up".
     """
     labels = np.full(len(surface.vertices), first, dtype=np.int64)

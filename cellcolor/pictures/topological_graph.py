@@ -97,7 +97,6 @@ def _node(
     """A cell: a disc with its colors on the rim, its number, and its darts around that.
 
     Args:
-        cell: the cell.
         center: (2,) of the disc.
         radius: of the disc.
         angles: where each dart stands, rad.
@@ -128,7 +127,6 @@ def _places_on(surface: LabelledSurface, decomposition: Decomposition) -> Array:
     """The middles (cells, 2) of the cells, as seen from before the surface.
 
     Args:
-        surface: the surface.
         decomposition: its topological graph; each cell has a vertex.
     """
     cells = np.array(decomposition.vertex_cell, dtype=np.int64)

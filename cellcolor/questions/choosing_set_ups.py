@@ -125,7 +125,6 @@ def choose(
         cover: the share that has to be covered of the area that any of them reaches, 0 to 1.
         objective: what a change-over costs.
         options: deadline, workers and seed; the search space is ``paper``.
-        progress: told what is being done.
 
     Raises:
         InputError: nothing is reached, or the objective asks for something else as well.

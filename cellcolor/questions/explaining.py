@@ -44,7 +44,6 @@ def explained(
     """What each thing that a scene asks for costs.
 
     Args:
-        prepared: the scene.
         options: deadline, workers and seed of each solve.
         at: (3,) a point in the world, m; what each branch does at the vertex nearest to it is told
             as well.
@@ -315,7 +314,6 @@ def _reasons_at(prepared: PreparedScene, stages: Stages, point: Array) -> tuple[
     """What each branch does at the vertex nearest to a point (3,), and where its color ends.
 
     Args:
-        prepared: the scene.
         stages: of its surface.
         point: in the world, m.
     """

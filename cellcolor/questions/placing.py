@@ -154,7 +154,6 @@ def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
 
     Raises:
         InputError: the scene cannot be used.
-        OutOfTime: the deadline came first.
     """
     scene = scene.with_setup(scene.setup.varied(continuity={"border_length_m": None}))
     surface = scene.covered(deadline)
@@ -188,7 +187,6 @@ def minima_at(
         poses: where the part is put, or the arm's base.
         seconds: time limit; rows not reached by then are missing. Infinite for no limit.
         workers: of CP-SAT, None for its portfolio.
-        seed: of everything random.
         base: whether the arm's base is moved instead of the part.
 
     Raises:

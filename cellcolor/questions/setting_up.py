@@ -55,7 +55,6 @@ def candidates_of(
         scenes: with the same part.
         poses: other places.
         deadline: when to return those built so far.
-        progress: told what is being done.
         by_hand: whether somebody has named each place. Then one in which the part stands in
             something is a mistake, unless it is meant for another of several scenes.
 
@@ -108,7 +107,6 @@ def _built(prepared: PreparedScene, pose: Pose, deadline: Deadline) -> LabelledS
 
     Raises:
         InputError: it cannot stand there, or nothing of it is reached.
-        OutOfTime: the deadline came first.
     """
     there = prepared.at(Placement(position_m=pose[:3], rpy_rad=pose[3:]))
     within = stands_in(there)

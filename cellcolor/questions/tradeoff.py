@@ -45,11 +45,9 @@ def front_of(
     """What each number of lift-offs covers at most, up to the fewest that cover everything.
 
     Args:
-        instance: the topological graph.
         options: deadline, workers and seed; the search space is ``paper``.
         weights: of each cell; None for its area, or 1 for each where an area is not known.
         required: cells that have to be covered.
-        progress: told what is being done.
 
     Returns:
         The front. A point that was not proved in time says what is proved.
@@ -94,9 +92,7 @@ def few_that_cover(
     Only the cells of the best color regions are solved, so there may be fewer.
 
     Args:
-        instance: the topological graph.
         share: that has to be covered, 0 to 1.
-        options: deadline, workers and seed.
         weights: of each cell.
 
     Returns:

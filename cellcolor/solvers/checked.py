@@ -87,7 +87,6 @@ def solve(
     """Color an instance with the fewest segments, or those that cost least.
 
     Args:
-        instance: the topological graph.
         options: search space, limits, seed, objective.
         solver: a name that the registry has.
         progress: called with the best so far and the lower bound.
@@ -193,7 +192,6 @@ def enumerate_schemes(
     """Every optimal scheme (docs/semantics.md, section 3), each once, as they are found.
 
     Args:
-        instance: the topological graph.
         options: time limit and seed; the search space is ``paper``.
         solver: a name that the registry has.
         segments: the minimum.
@@ -203,7 +201,6 @@ def enumerate_schemes(
 
     Raises:
         InputError: there is no such solver, or it lists no schemes, or none of this instance.
-        OutOfTime: the time limit came first.
         TooLarge: the model would not fit into memory.
         RefusedResult: the checker refuses what the solver found.
     """

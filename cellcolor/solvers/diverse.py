@@ -49,7 +49,6 @@ def most_different(instance: Instance, schemes: Sequence[Division], number: int)
     each dart stands for an equal part of the cell; where areas are unknown, cells count alike.
 
     Args:
-        instance: the topological graph.
         schemes: of it, at least one.
         number: how many are wanted; fewer if there are no more different ones.
 

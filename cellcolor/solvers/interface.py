@@ -174,11 +174,9 @@ class SchemeSolver(Solver, Protocol):
         """Every scheme (docs/semantics.md, section 3) with the fewest segments, each once.
 
         Args:
-            instance: the topological graph.
             options: how to search.
             segments: the fewest, which have been proved before.
 
         Raises:
-            OutOfTime: the deadline came first.
             TooLarge: the search would not fit into memory.
         """

@@ -23,9 +23,7 @@ def make_cp_solver(
     """A CP-SAT solver with limits.
 
     Args:
-        deadline: when to stop.
         workers: its search workers; one searches in OR-Tools' default strategy.
-        seed: for everything that is random.
         effort: the limit for each worker in OR-Tools' deterministic time, which measures the work
             done and not the clock; None for as long as there is time.
     """
@@ -51,9 +49,7 @@ def make_portfolio(
     """A CP-SAT solver for a model that is worth several strategies, whatever the workers.
 
     Args:
-        deadline: when to stop.
         workers: its search workers, None for ``PORTFOLIO``.
-        seed: for everything that is random.
         strategies: OR-Tools' names of those for ``FEW_WORKERS`` or fewer.
         effort: see :func:`make_cp_solver`.
     """
@@ -73,7 +69,6 @@ def solve_interruptibly(
 
     Args:
         solver: made by :func:`make_cp_solver`.
-        model: what to solve.
         found: called with the objective of each better solution, in a thread of the solver.
 
     Returns:

@@ -116,11 +116,7 @@ def instances(most_cells: int = 10, most_colors: int = 5) -> st.SearchStrategy[I
 
 
 def valid_plans(surface: LabelledSurface) -> st.SearchStrategy[Plan]:
-    """Plans in which every vertex has one of its colors; most are far from optimal.
-
-    Args:
-        surface: the labelled surface.
-    """
+    """Plans in which every vertex has one of its colors; most are far from optimal."""
     choices = [st.sampled_from(own) if own else st.none() for own in surface.vertex_colors]
     return st.tuples(*choices).map(Plan)
 
@@ -131,9 +127,6 @@ def broken_plans(surface: LabelledSurface) -> st.SearchStrategy[Plan]:
     A wrong vertex has no color though some reach it, a color that does not reach it, or a number
     that is no color's; each sort of fault that the surface has a place for is as likely as the
     others.
-
-    Args:
-        surface: the labelled surface.
     """
     every = range(len(surface.colors))
     wrong: list[dict[int, list[int | None]]] = [{}, {}, {}]

@@ -59,7 +59,6 @@ def judge_area(
         rows: (c,) those of ``dense`` in contact, with their places and branches.
         tells: whether the trajectory can say what it leaves out.
         touching: (c,) whether the tip is on the surface there; nothing else covers anything.
-        deadline: when to give up.
     """
     rows, branches = rows[touching], branches[touching]
     located = Located(*(getattr(located, field.name)[touching] for field in fields(located)))

@@ -111,14 +111,11 @@ def at_vertices(
     the task leaves it free. If the setup gives the turn, it is compared.
 
     Args:
-        built: the scene.
         vertex: (k,) vertices.
         joints: (k, joints) in rad, finite.
-        deadline: when to give up.
 
     Raises:
         InputError: the arm has another number of joints.
-        OutOfTime: the deadline came first.
     """
     robot, surface = built.robot, built.stages.surface
     _check_width(robot, joints)
@@ -176,13 +173,10 @@ def touches(built: BuildResult, path: ContactPath, deadline: Deadline = NEVER) -
     """Where a path touches the vertices: the samples in contact whose tips are at one.
 
     Args:
-        built: the scene.
         path: its samples.
-        deadline: when to give up.
 
     Raises:
         InputError: the arm has another number of joints.
-        OutOfTime: the deadline came first.
     """
     _check_width(built.robot, path.joints)
     tips, _ = poses_of(built.robot, path.joints, deadline)

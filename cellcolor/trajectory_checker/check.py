@@ -56,13 +56,10 @@ def check_trajectory(
             do counts as stated.
         minimum_lift_offs: what its lift-offs are compared with.
         limits: what it has to cover and may repeat; the usual ones without.
-        deadline: when to give up.
-        progress: told what is being done.
 
     Raises:
         InputError: the scene was prepared with another mesh than the labelled surface, the
             trajectory is of another arm, or the setup's velocities are.
-        OutOfTime: the deadline came first.
         TooLarge: surface or trajectory would not fit into memory.
     """
     report, prepared = progress or (lambda _: None), built.prepared

@@ -100,7 +100,6 @@ def excused(
         stated: the segments of which the trajectory states to leave something out.
         rows: (c,) those of ``dense`` in contact; ``branches`` (c,) of these.
         missed: (n,) the vertices to be asked about.
-        deadline: when to give up.
     """
     right = np.zeros(len(fine.vertices), dtype=bool)
     segment = trajectory.segment[dense.sample[rows]]

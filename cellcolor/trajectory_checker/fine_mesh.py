@@ -128,7 +128,6 @@ class FineMesh:
         Args:
             points: (k, 3) in m.
             outward: (k, 3) against the tool's axis.
-            deadline: when to give up.
         """
         triangle = np.zeros(len(points), dtype=np.int64)
         weights = np.zeros((len(points), 3))

@@ -122,11 +122,9 @@ def branches_of(
     Joints are compared modulo full circles. A last joint that only turns the tool is ignored.
 
     Args:
-        prepared: the scene.
         dense: the trajectory with all configurations that are judged.
         rows: (c,) the configurations.
         across: (c, 3) the tool's x axis, which matters if the setup gives the tool's turn.
-        deadline: when to give up.
     """
     found, compared = np.full(len(rows), -1), prepared.robot.task.joints
     for part in chunks(len(rows), 64 * compared * prepared.arm.slots):

@@ -23,7 +23,6 @@ def completed(table: TrajectoryTable, robot: Robot, deadline: Deadline = NEVER) 
 
     Raises:
         InputError: it has another number of joints.
-        OutOfTime: the deadline came first.
     """
     joints, count = table.joints, len(table.joints)
     if joints.shape[1] != robot.joints:

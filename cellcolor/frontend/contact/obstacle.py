@@ -43,11 +43,9 @@ class Obstacle(Placement):
 
         Args:
             folder: what the names of files in the table are relative to.
-            deadline: when to give up.
 
         Raises:
             InputError: there is no such obstacle.
-            OutOfTime: the deadline came first.
         """
 
     def solid(self, folder: Path = Path(), deadline: Deadline = NEVER) -> Solid:
@@ -303,7 +301,6 @@ class BoxGridObstacle(Obstacle):
         Raises:
             InputError: the file cannot be read, a line has not three whole numbers, a number is
                 too far from 0, or there is none; names the line.
-            OutOfTime: the deadline came first.
         """
         path = folder / self.file
         rows = []

@@ -219,11 +219,7 @@ class Solid:
 
 
 def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Solid:
-    """A triangle mesh in its own frame.
-
-    Raises:
-        OutOfTime: the deadline came first.
-    """
+    """A triangle mesh in its own frame."""
     deadline.check()
     model = mesh_model(vertices, faces)
     deadline.check()

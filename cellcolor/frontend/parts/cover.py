@@ -96,12 +96,10 @@ class Cover(Table):
         Args:
             whole: the object, in its own frame.
             folder: what ``faces_file`` is relative to.
-            deadline: when to give up.
 
         Raises:
             InputError: no face is chosen, or every face of a closed object; the patch is no
                 manifold; there is no such component or face.
-            OutOfTime: the deadline came first.
         """
         chosen = self.chosen(whole, folder)
         deadline.check()

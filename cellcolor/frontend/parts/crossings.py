@@ -23,9 +23,6 @@ def crossing_pairs(vertices: Array, faces: Faces, deadline: Deadline = NEVER) ->
 
     Returns:
         None if there are too many faces, or they are too uneven in size, for that to be affordable.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     if len(faces) > MOST_FACES:
         return None

@@ -161,13 +161,11 @@ def inspect_mesh(
         vertices: (n, 3) in its unit.
         faces: (m, 3).
         unit: ``m``, ``mm``, ``cm`` or ``in``; None takes the likely one, meters where that is open.
-        deadline: when to give up.
         tell: told what is being looked at.
 
     Raises:
         InputError: it cannot be looked through: coordinates that are not finite, a face of no
             vertex, no face with an area, too many faces, no such unit.
-        OutOfTime: the deadline came first.
     """
     check_known_size(len(faces))
     if unit is not None and unit not in UNITS:

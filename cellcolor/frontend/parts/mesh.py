@@ -55,14 +55,12 @@ def mesh_surface(
             consistent. A closed mesh is turned outside out. For an open one the side that most
             faces have is kept; only its owner knows which side is the outside. Remaining faults
             (edges that are not manifold, holes) stay.
-        deadline: when to give up.
 
     Raises:
         InputError: no triangles, coordinates that are not finite, two vertices in one place, faces
             without area, vertices without faces, edges or vertices that are not manifold,
             inconsistent winding, a closed mesh inside out; names the element. More vertices than
             fit, before or after halving edges.
-        OutOfTime: the deadline came first.
     """
     deadline.check()
     unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))

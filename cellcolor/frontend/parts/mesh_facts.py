@@ -143,7 +143,6 @@ def facts_of(
 
     Raises:
         InputError: coordinates that are not finite, a face of no vertex, no face with an area.
-        OutOfTime: the deadline came first.
     """
     tell("looking for unused faces")
     refusal = _refusal(vertices, faces, deadline)

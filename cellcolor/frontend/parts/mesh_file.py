@@ -64,7 +64,6 @@ def load_mesh(
 
     Raises:
         InputError: missing or unreadable file, or the mesh cannot be used; names file and element.
-        OutOfTime: the deadline came first.
     """
     try:
         vertices, faces = read_mesh(file, deadline)
@@ -151,7 +150,6 @@ def read_obj(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
     Raises:
         InputError: unreadable, a face of fewer than three corners, an index of no vertex, what is
             not a number; names the line.
-        OutOfTime: the deadline came first.
     """
     points, corners = array("d"), array("q")
     try:

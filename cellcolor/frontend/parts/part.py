@@ -23,11 +23,9 @@ class Part(Table):
 
         Args:
             folder: what the names of files in the table are relative to.
-            deadline: when to give up.
 
         Raises:
             InputError: there is no such surface.
-            OutOfTime: the deadline came first.
         """
 
 

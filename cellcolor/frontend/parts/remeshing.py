@@ -78,13 +78,11 @@ def remeshed(
 
     Args:
         length: wanted, in the unit of the vertices.
-        tell: told what is being done.
 
     Raises:
         InputError: too many vertices would come of it, or too few; the library has failed, was out
             of memory, or has torn holes.
         ModuleNotFoundError: gpytoolbox is not installed.
-        OutOfTime: the deadline came first.
     """
     mesh = TriangleMesh(vertices, faces)
     area = float(mesh.areas.sum())
@@ -178,10 +176,6 @@ def unfolded(
         faces: (m, 3) of a manifold.
         angle: between the normals of two faces, rad, from which on they are folded.
         reach: the vertex's place stays that near to the surface.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     patch = _Patch(vertices, faces, angle, reach)
     gone = 0

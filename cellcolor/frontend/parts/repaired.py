@@ -144,13 +144,10 @@ def repair_mesh(
         fill_holes_m: holes with a border up to that length are filled.
         least_share: components with less than this share of the largest one's area are dropped.
         edge_length_m: wanted of all edges; None leaves them.
-        deadline: when to give up.
-        tell: told what is being done.
 
     Raises:
         InputError: the mesh cannot be made good, or is too large; says why.
         ModuleNotFoundError: it is to be remeshed, and gpytoolbox is not installed.
-        OutOfTime: the deadline came first.
     """
     check_known_size(len(faces))
     points = np.asarray(vertices, dtype=np.float64) * meters_per_unit

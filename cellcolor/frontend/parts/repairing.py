@@ -77,12 +77,8 @@ def mended(
     components are dropped; the winding is made consistent between new neighbors;
     holes are filled; closed components are turned outward.
 
-    Args:
-        tell: told what is being done.
-
     Raises:
         InputError: coordinates that are not finite, a face of no vertex, nothing left.
-        OutOfTime: the deadline came first.
     """
     _check(vertices, faces)
     changes: list[Change] = []

@@ -35,11 +35,9 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
     Args:
         surface: with the normals of its faces, weighted with their angles.
         radius: m.
-        deadline: when to give up.
 
     Raises:
         InputError: the radius holds too many triangles; names the key.
-        OutOfTime: the deadline came first.
     """
     if not radius:
         return surface

@@ -99,7 +99,6 @@ def refine(mesh: TriangleMesh, longest: float, deadline: Deadline = NEVER) -> Tr
 
     Raises:
         InputError: there would be too many vertices; that is checked in advance.
-        OutOfTime: the deadline came first.
     """
     check_refinement(len(mesh.points), mesh.lengths, float(mesh.areas.sum()), longest)
     while True:
@@ -117,7 +116,6 @@ def bisected(surface: Surface, marked: Mask, field: str) -> Surface:
     New vertices come after the given ones. Their normals are halfway between those of the ends.
 
     Args:
-        surface: the surface.
         marked: (k,) which of its edges, in the order of
             :meth:`~cellcolor.frontend.parts.surface.Surface.edges`.
         field: the key to name in the error.

@@ -70,7 +70,6 @@ def limit_colors(
     Args:
         robot: with the limits.
         coloring: colors modulo full circles.
-        cracks: of it.
         configurations: (n, branches, joints) in rad.
         edges: (k, 2) all mesh edges.
         linked: (k, branches) the links.

@@ -87,9 +87,6 @@ class PreparedArm:
         """All branches (n, branches, joints) in rad, or all solutions if they have no names.
 
         See :class:`~cellcolor.frontend.arm.inverse.InverseKinematics`.
-
-        Raises:
-            OutOfTime: the deadline came first.
         """
         parts = []
         for rows in chunks(len(points), self._bytes_of_solving):
@@ -147,11 +144,7 @@ class PreparedArm:
         branches: NDArray[np.intp],
         deadline: Deadline = NEVER,
     ) -> tuple[Array, Array]:
-        """Well-conditioned configurations; see :data:`~cellcolor.frontend.reach.smooth.Probe`.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
+        """Well-conditioned configurations; see :data:`~cellcolor.frontend.reach.smooth.Probe`."""
         deadline.check()
         found = self.follow(points, directions, branches)
         limits = self.conditioning if self.setup.constraints.conditioning else None

@@ -66,7 +66,6 @@ def in_sheets(arm: PreparedArm, surface: Surface, judge: Judge, deadline: Deadli
 
     Raises:
         InputError: linked solutions are two of one vertex, or there are too many sheets.
-        OutOfTime: the deadline came first.
     """
     bare = arm.bare
     found = bare.inverse(surface.vertices, -surface.normals, deadline)

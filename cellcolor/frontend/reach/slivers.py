@@ -66,10 +66,6 @@ def clean(
         coloring: the colors of all valid nodes.
         areas: (n,) of the vertices, m^2.
         policy: thresholds, as shares of the surface's area.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     node_color = coloring.node_color
     cell_of = _cells(edges, linked, node_color)
@@ -135,9 +131,6 @@ class _CellGraph:
 
         Returns:
             the areas of the cells that changed.
-
-        Raises:
-            OutOfTime: the deadline came first.
         """
         changed: list[float] = []
         # Small cells that may have such a neighbor; all others are known to have none.

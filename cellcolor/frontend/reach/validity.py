@@ -155,7 +155,6 @@ class Judge:
                 then what cannot touch is not tested. The verdicts are the same.
 
         Raises:
-            OutOfTime: the deadline came first.
             TooLarge: the verdicts would not fit into the machine's memory.
         """
         count = len(configurations)

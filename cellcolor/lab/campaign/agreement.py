@@ -68,7 +68,6 @@ def compare_solvers(instance: Instance, time_limit: float) -> Finding:
     """Every solver's minimum and, where it is defined, set of optimal schemes.
 
     Args:
-        instance: the topological graph.
         time_limit: seconds for each solve and for each set of schemes.
 
     Raises:
@@ -112,7 +111,6 @@ def compare_on_mesh(
 
     Args:
         surface: a small mesh.
-        instance: its topological graph.
         time_limit: seconds for each solve.
 
     Returns:

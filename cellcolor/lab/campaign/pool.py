@@ -119,7 +119,6 @@ def outcomes_of_campaign(
 
     Args:
         count: how many; the first ones are the same whatever the count.
-        seed: for all random choices.
         time_limit: seconds for each solve.
         workers: who looks at them.
     """

@@ -30,7 +30,6 @@ def blobs(
     it has none.
 
     Args:
-        seed: for all random choices.
         size: points along each side of the grid, two or more.
         colors: how many, one or more.
         waves: how many waves of a field fit across the grid, or nearly; more waves, more cells.

@@ -19,7 +19,6 @@ def planar_graph(
     cells share, some are dead.
 
     Args:
-        seed: for all random choices.
         cells: how many, one or more.
         edges: between cells, at least ``cells - 1``.
         colors: how many, one or more.

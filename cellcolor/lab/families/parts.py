@@ -45,7 +45,6 @@ def part(seed: int, cells: int = 1000, colors: int = 300) -> LabelledSurface:
     cracks within a few vertices. Large cells get many loops and a hundred darts or more.
 
     Args:
-        seed: for all random choices.
         cells: how many there are, some dozens or more.
         colors: how many there are, at most half of the cells.
 

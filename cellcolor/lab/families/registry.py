@@ -38,7 +38,6 @@ def _bearable(recipe: _Recipe, seed: int, *, several_loops: bool | None = False)
 
     Args:
         recipe: makes one after the other, of random numbers.
-        seed: of these.
         several_loops: whether some cell has to have several live loops; None if either will do.
     """
     rng = random.Random(f"small {seed}")

@@ -38,7 +38,6 @@ def voronoi(
     region is first divided into smaller regions.
 
     Args:
-        seed: for everything that is random.
         shape: of the surface, see :data:`cellcolor.lab.families.meshes.SHAPES`.
         size: about the square root of the number of vertices, six or more.
         regions: how many Voronoi regions, one or more, before islands, holes and cuts.

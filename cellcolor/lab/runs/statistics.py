@@ -78,7 +78,6 @@ def strongest(rows: Sequence[Row], *, rivals: bool) -> str | None:
     """Who proves the most minima, and of these who has the lower PAR2; None if there is nobody.
 
     Args:
-        rows: of all.
         rivals: among the others than ``cp-sat``, its variants left out; else among ``cp-sat`` with
             any number of workers.
     """

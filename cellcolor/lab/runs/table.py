@@ -44,7 +44,6 @@ def read_table(path: str | PathLike[str], kind: type[_R]) -> list[_R]:
     A last line that does not end was cut off while it was written, and is left out.
 
     Args:
-        path: of the file.
         kind: a dataclass; its fields are the columns.
 
     Raises:
@@ -69,7 +68,6 @@ class TableFile(Generic[_R]):
         rows: all there are, those of earlier sessions first.
 
     Args:
-        path: of the file.
         kind: a dataclass; its fields are the columns.
 
     Raises:

@@ -101,7 +101,6 @@ def start_up_timings(
 
     Args:
         file: a small one, for ``solve``.
-        repetitions: of each.
         command: for the record.
         run: runs a command.
     """

@@ -72,12 +72,7 @@ def cell_schemes(
     """Every way to divide and paint a cell that agrees with its solved neighbours.
 
     Args:
-        cell: the cell.
         known: for each dart, what the cell beyond it has decided.
-        deadline: when to stop.
-
-    Raises:
-        OutOfTime: the deadline has passed.
     """
     return _CellSearch(cell, known, deadline).schemes()
 

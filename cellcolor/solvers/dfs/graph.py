@@ -43,7 +43,6 @@ class Graphs:
     """The cells of an instance in search order, each as one cyclic list of darts.
 
     Args:
-        instance: the instance.
         strands: how many parallel strands every live edge has.
     """
 

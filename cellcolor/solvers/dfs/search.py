@@ -26,7 +26,6 @@ class Search:
     Args:
         cells: the cells, in the order in which they are solved.
         region: the region of each (cell, color).
-        deadline: when to stop.
         costs: what a segment of each color costs; None for 1 each. With costs, budget, bound and
             what is yielded are of what the segments cost.
 
@@ -202,11 +201,7 @@ def _bits(of: int) -> Iterator[int]:
 
 
 def _hitting(sets: frozenset[int], price: Sequence[int], deadline: Deadline) -> int:
-    """The least price of bits that hit each of the given bit sets.
-
-    Raises:
-        OutOfTime: the deadline has passed.
-    """
+    """The least price of bits that hit each of the given bit sets."""
     best = sum(min(price[place] for place in _bits(one)) for one in sets)
     trail = [iter([(sets, 0)])]
     while trail:
@@ -303,7 +298,6 @@ def zeros_fit(cells: Sequence[GraphCell], schemes: Sequence[CellScheme]) -> bool
 
     Args:
         cells: cells that no live edge connects to others.
-        schemes: the scheme of each of them.
     """
     clauses: list[tuple[Literal, Literal]] = []
     shows: dict[DartName, list[tuple[int, Literal]]] = {}

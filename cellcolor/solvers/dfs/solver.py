@@ -89,7 +89,6 @@ class ReferenceSolver:
             InputError: a cell has several live loops, or edges have strands: schemes are defined
                 for neither.
             ValueError: ``segments`` is not the minimum.
-            OutOfTime: the deadline came first.
         """
         if options.search_space != "paper" or options.strands != 1:
             raise InputError(

@@ -48,7 +48,6 @@ class Problem:
         Raises:
             InputError: a cell has several loops with live darts.
             TooLarge: a model would not fit into memory.
-            OutOfTime: the deadline came first.
         """
         loops = only_loops(instance)
         allowed = drop_dominated(instance, left_out(instance, deadline))

@@ -39,11 +39,7 @@ class Encoding(ABC):
 
     @abstractmethod
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
-        """Write the model.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
+        """Write the model."""
 
     @abstractmethod
     def links(self) -> Iterable[tuple[Pair, cp_model.IntVar]]:
