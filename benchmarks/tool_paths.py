@@ -4,8 +4,9 @@
 
 Each scene is built at that many vertices (1000 and 2000), solved, painted and covered at 10 mm.
 ``docs/tool-paths.md`` has what it printed, ``docs/measured/motions.md`` the two columns on lines:
-how far a path is from itself smoothed over 2 cm where it turns by less than 20 degrees within that
-(root mean square), and turns over 60 degrees in a meter of path. Time is processor time.
+how far a path is from the parabola that fits it best over 2 cm, where it turns by less than 20
+degrees within that (root mean square), and turns over 60 degrees in a meter of path. Time is
+processor time.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scipy.signal import savgol_filter
 
 import cellcolor
 from cellcolor.arrays import Array
@@ -44,10 +46,9 @@ def bends(paths: list[Array]) -> tuple[float, float]:
         if len(grid) <= WINDOW:
             continue
         even = np.stack([np.interp(grid, along, axis) for axis in points.T], axis=1)
-        mean = np.ones(WINDOW) / WINDOW
-        smooth = np.stack([np.convolve(axis, mean, "valid") for axis in even.T], axis=1)
         half = WINDOW // 2
         middle = even[half:-half]
+        smooth = savgol_filter(even, WINDOW, 2, axis=0)[half:-half]
         tangent = np.gradient(smooth, axis=0)
         tangent /= np.linalg.norm(tangent, axis=1, keepdims=True) + 1e-15
         off = middle - smooth

@@ -19,7 +19,8 @@ from cellcolor.errors import RefusedResult
 
 _STEP = 0.01  # of the path's parameter, per sample; TOPP-RA's tolerances suit such a scale
 _FASTEST = 10.0  # s^-1, of the parameter; where neither tool nor joints move
-_ROUNDS = 4  # of TOPP-RA; then the whole motion is stretched
+_ROUNDS = 12  # of TOPP-RA; then the whole motion is stretched
+_EXACT = 6  # of them slow down by what the accelerations ask for, later ones by more
 _MARGIN = 0.97  # of the accelerations; differences of samples exceed the derivatives a little
 
 
@@ -62,7 +63,7 @@ def timed(
     fastest = _STEP / least
     # At a sample the steps on both sides of it have to be possible.
     cap = np.minimum(np.append(fastest, np.inf), np.insert(fastest, 0, np.inf))
-    for _ in range(_ROUNDS):
+    for number in range(_ROUNDS):
         rates = _rates(joints, cap, speeds)
         steps = np.maximum(2 * _STEP / (rates[1:] + rates[:-1]), least)
         times = np.concatenate([[0.0], np.cumsum(steps)])
@@ -70,7 +71,7 @@ def timed(
         excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
         if excess.max() <= 1.0:
             break
-        slower = np.sqrt(np.maximum(excess / _MARGIN, 1.0))
+        slower = np.maximum(excess / _MARGIN, 1.0) ** (0.5 if number < _EXACT else 1.0)
         around = np.maximum(
             slower, np.maximum(np.append(slower[1:], 1), np.insert(slower[:-1], 0, 1))
         )

@@ -8,8 +8,8 @@ from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Index
 from cellcolor.deadline import Deadline
-from cellcolor.tool_paths.contour import FINEST
-from cellcolor.tool_paths.distances import off_border
+from cellcolor.tool_paths.contour import EVENED, FINEST
+from cellcolor.tool_paths.distances import evened, off_border
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.level_lines import LevelLine, level_lines, slice_along
 from cellcolor.tool_paths.sweep import sweep_field
@@ -31,6 +31,7 @@ def lay_back_and_forth(mesh: Triangles, spacing: float, deadline: Deadline) -> L
         mesh = slice_along(mesh, mesh.from_border, np.array([_INSET * spacing])).mesh
     mesh, field = sweep_field(mesh)
     deadline.check()
+    field = evened(mesh, field, EVENED * spacing)
     low, high = float(field.min()), float(field.max())
     count = max(1, round((high - low) / spacing))
     levels = low + (high - low) * (np.arange(count) + 0.5) / count

@@ -15,7 +15,8 @@ from cellcolor.tool_paths.triangles import Triangles
 
 FINEST = 0.5
 """Longest edge of the meshes that level lines are drawn on, in spacings."""
-_EVENED = 0.3  # spacings; waves of six times that length are made half as high
+EVENED = 0.3
+"""Spacings. Waves of six times that length are made half as high."""
 _SMOOTHED = 0.5  # spacings; deviation of the bell curve that a ragged border is smoothed with
 _MOVED = 0.3  # spacings; so far the smoothed border is off the true one at most
 _FINE = 0.1  # spacings; between the points that it is smoothed at
@@ -40,7 +41,7 @@ def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
         distances = mesh.distances_from(*_straight_border(mesh, spacing))
     else:
         distances = mesh.distances_from(np.array([0]))
-    distances = evened(mesh, distances, _EVENED * spacing)
+    distances = evened(mesh, distances, EVENED * spacing)
     # No line ends at the border.
     distances = np.where(mesh.border, np.minimum(distances, _MOVED * spacing), distances)
     return lay_loops(mesh, distances, spacing, deadline)

@@ -9,17 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
 from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
 from cellcolor.tool_paths.region import Region, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
+from cellcolor.tool_paths.rounding import Line, rounded
 from cellcolor.tool_paths.spurs import with_spurs
 from cellcolor.tool_paths.triangles import Triangles
 
@@ -27,6 +27,8 @@ _TRIANGLES = 24  # for each square of the spacing, about
 _MOST_TRIANGLES = 4_000_000
 _REFUSED = 0.25  # spacings: sides of triangles at the border of what is refused
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
+_TURNED = 1e-6  # rad; a border that turns by less is straight, and has no direction to keep off to
+_STRAIGHT = 1e-8  # m; a point so little beside the way past it is left out
 _INWARD = 2e-5  # m; so far off the border points are put that lie on it
 _INWARD_SHARE = 0.1  # of the way into the triangle, at most
 
@@ -117,8 +119,9 @@ def cover(
                 uncovered.append(Uncovered(region.segment, area, place, cause))
                 continue
             laid = with_spurs(lay(part, spacing_m, deadline), spacing_m, deadline)
-            own, left = measure(laid, region.segment, spacing_m)
-            path, beside = _path(region, laid)
+            line = rounded(laid, spacing_m, deadline)
+            own, left = measure(line, region.segment, spacing_m)
+            path, beside = _path(region, line)
             paths.append(path)
             along_border.append(beside)
             measures.append(own)
@@ -178,7 +181,7 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
         raise InputError(None, "spacing_m", message)
 
 
-def _path(region: Region, laid: Laid) -> tuple[ToolPath, Index]:
+def _path(region: Region, line: Line) -> tuple[ToolPath, Index]:
     """The path in the world, a hair inside the region where it runs along the border.
 
     On the border itself rounding decides on which side of a crack a point lies. Each step stays in
@@ -189,22 +192,21 @@ def _path(region: Region, laid: Laid) -> tuple[ToolPath, Index]:
     Returns:
         The path, and the numbers of its points that were put inside.
     """
-    mesh = laid.mesh
-    walk = np.array(laid.walk, dtype=np.int64)
-    faces = mesh.faces_of_walk(walk)
-    triangle = np.empty(len(mesh.edges), dtype=np.int64)
-    triangle[mesh.edge_of_side] = np.arange(len(mesh.corners))[:, None]
-    number = mesh.find(np.stack([walk[:-1], walk[1:]], axis=1))
-    beside = np.where(mesh.triangles_at[number] == 1, triangle[number], -1)
+    mesh, walk = line.mesh, line.vertices
+    faces = mesh.faces[line.triangles]
+    along = np.flatnonzero((walk[:-1] >= 0) & (walk[1:] >= 0))
+    number = mesh.find(np.stack([walk[along], walk[along + 1]], axis=1))
+    on_border = np.zeros(len(faces), dtype=bool)
+    on_border[along] = mesh.triangles_at[number] == 1
     angles, around = _round_corners(mesh)
-    points, normals = [mesh.points[walk[0]]], [mesh.normals[walk[0]]]
+    points, normals = [line.points[0]], [line.normals[0]]
     owns: list[Any] = []
     moved: list[int] = []
-    for step, other in enumerate(beside.tolist()):
+    for step, beside in enumerate(on_border.tolist()):
         ends, face = walk[step : step + 2], faces[step]
-        if other >= 0:
-            third = mesh.points[np.setdiff1d(mesh.corners[other], ends)[0]]
-            before = step and beside[step - 1] >= 0 and faces[step - 1] == face
+        if beside:
+            third = mesh.points[np.setdiff1d(mesh.corners[line.triangles[step]], ends)[0]]
+            before = step and on_border[step - 1] and faces[step - 1] == face
             if before and angles[ends[0]] < np.pi:
                 for rows in (points, normals, owns):
                     rows.pop()
@@ -215,15 +217,33 @@ def _path(region: Region, laid: Laid) -> tuple[ToolPath, Index]:
                 points.append(mesh.points[end] + share * way)
                 normals.append(mesh.normals[end])
                 owns.append(face)
-        points.append(mesh.points[ends[1]] + around[ends[1]])
-        normals.append(mesh.normals[ends[1]])
+        off = around[ends[1]] if ends[1] >= 0 else 0.0
+        points.append(line.points[step + 1] + off)
+        normals.append(line.normals[step + 1])
         owns.append(face)
-        if around[ends[1]].any():
+        if np.any(off):
             moved.append(len(points) - 1)
+    kept = _bends(np.array(points), np.array(owns))
+    kept[moved] = True
     path = ToolPath(
-        region.segment, region.color, np.array(points), np.array(normals), np.array(owns)
+        region.segment,
+        region.color,
+        np.array(points)[kept],
+        np.array(normals)[kept],
+        np.array(owns)[kept[:-1]],
     )
-    return path, np.array(moved, dtype=np.int64)
+    return path, np.cumsum(kept)[moved] - 1
+
+
+def _bends(points: Array, owns: Array) -> Mask:
+    """Which points (k,) are needed: those where the triangle (k - 1,) or the direction changes."""
+    needed = np.ones(len(points), dtype=bool)
+    before, after = points[1:-1] - points[:-2], points[2:] - points[1:-1]
+    whole = np.linalg.norm(before + after, axis=1)
+    off = np.linalg.norm(np.cross(before, after), axis=1)
+    onward = (before * after).sum(axis=1) > 0
+    needed[1:-1] = (owns[1:] != owns[:-1]) | (off > _STRAIGHT * whole) | ~onward
+    return needed
 
 
 def _round_corners(mesh: Triangles) -> tuple[Array, Array]:
@@ -249,7 +269,7 @@ def _round_corners(mesh: Triangles) -> tuple[Array, Array]:
     np.minimum.at(first, corners, faces)
     np.maximum.at(most, corners, faces)
     sizes = np.linalg.norm(inward, axis=1)
-    turned = mesh.border & (angles > np.pi) & (first == most) & (sizes > 0)
+    turned = mesh.border & (angles > np.pi + _TURNED) & (first == most) & (sizes > 0)
     far = np.where(turned, np.minimum(_INWARD, _INWARD_SHARE * least), 0.0)
     return angles, far[:, None] * inward / np.where(sizes > 0, sizes, 1.0)[:, None]
 

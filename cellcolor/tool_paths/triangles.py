@@ -70,12 +70,6 @@ class Triangles(TriangleMesh):
             (np.concatenate([values, values]), (ends.T.ravel(), ends[:, ::-1].T.ravel())), (n, n)
         )
 
-    def faces_of_walk(self, walk: Index) -> Index:
-        """A triangle of the surface that each step of a path lies in."""
-        faces = np.empty(len(self.edges), dtype=np.int64)
-        faces[self.edge_of_side.ravel()] = np.repeat(self.faces, 3)
-        return faces[self.find(np.stack([walk[:-1], walk[1:]], axis=1))]
-
     def refined(self, longest: float) -> Triangles:
         """Halve edges until none is longer, m; triangles stay conforming."""
         mesh = self

@@ -150,6 +150,27 @@ def test_a_straight_way_is_passed_at_the_speed_that_was_asked_for() -> None:
     assert times[-1] == pytest.approx(20 + 0.05 / 8, rel=2e-3)
 
 
+def test_many_sharp_bends_slow_down_only_what_is_beside_them() -> None:
+    """Between them the tool is as fast as was asked for: nothing is stretched as a whole."""
+    rng = np.random.default_rng(1)
+    bends = 200 * np.arange(1, 25)
+    slopes = np.zeros((5000, 6))
+    for start in bends:
+        width = int(rng.integers(2, 20))
+        slopes[start : start + width] = rng.uniform(-0.02, 0.02, (width, 6))
+    joints = np.cumsum(slopes, axis=0)
+    points = np.zeros((5000, 3))
+    points[:, 0] = 0.001 * np.arange(5000)
+    times = timed(joints, Speeds(np.full(6, 3.0), np.full(6, 10.0)), points, 0.05)
+    speeds = 0.001 / np.diff(times)
+    far = np.abs(np.arange(4999)[:, None] - np.array([0, *bends, 4999])).min(axis=1) > 60
+    assert far.sum() > 1000
+    assert speeds[far] == pytest.approx(0.05)
+    velocity = np.diff(joints, axis=0) / np.diff(times)[:, None]
+    change = np.diff(velocity, axis=0) / ((times[2:] - times[:-2]) / 2)[:, None]
+    assert np.abs(change).max() <= 10.0 + 1e-6
+
+
 def wall(configurations: np.ndarray) -> np.ndarray:
     """Free unless the first joint is near 1 and the second below 1."""
     blocked = (np.abs(configurations[:, 0] - 1) < 0.2) & (configurations[:, 1] < 1)

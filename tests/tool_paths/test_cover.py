@@ -42,6 +42,7 @@ def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str) -> No
 @pytest.mark.slow
 @pytest.mark.parametrize("pattern", PATTERNS)
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.sampled_from([0.04, 0.1, 0.25]))
+@example(2417, "torus", 0.04)  # a path's turning point on a straight border
 @example(1, "disc", 0.25)  # two segments of a quarter of the spacing squared, to the last digit
 @examples(20)
 def test_many_paths_stay_on_their_segments(
@@ -186,7 +187,8 @@ def test_the_checker_finds_what_is_wrong() -> None:
     walled = PathChecker(painting.surface, painting.segment_of, slit(8, 3, range(2, 6)))
     assert "leaves" in walled.problems(path)[0]
     other = painting.segment_of.copy()
-    other[27] = 1
+    # A corner of the triangle that a step in the middle of the path lies in.
+    other[painting.surface.faces[path.faces[len(path.faces) // 2]]] = 1
     assert "leaves" in PathChecker(painting.surface, other).problems(path)[0]
 
 
