@@ -47,6 +47,7 @@ def kill(name: str, count: int) -> None:
     assert faults == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["solve -o", "campaign -o, all wrong"])
 def test_a_few(name: str) -> None:
     kill(name, 3)

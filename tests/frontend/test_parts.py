@@ -95,6 +95,7 @@ def test_the_bracket_has_sharp_edges() -> None:
     assert (turn < 1).mean() > 0.6
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", some_slow(MESHES))
 def test_files_are_what_the_script_makes(name: str, tmp_path: Path) -> None:
     script = TOP / "benchmarks" / "parts" / "make.py"

@@ -74,6 +74,7 @@ class Killing(ClusterWorkers):
         return super().submit(Task(odd_jobs.kill_the_worker_once_before, arguments, task.limits))
 
 
+@pytest.mark.slow
 def test_placements_are_the_same_with_a_worker_lost(address: str, tmp_path: Path) -> None:
     from shipped import shipped
 

@@ -129,7 +129,9 @@ def same_answers(found: Stages, other: Stages) -> bool:
 
 
 @pytest.mark.second
-@pytest.mark.parametrize("name", ["wok_obstacle", "hemisphere_tilted"])
+@pytest.mark.parametrize(
+    "name", ["wok_obstacle", pytest.param("hemisphere_tilted", marks=pytest.mark.slow)]
+)
 def test_each_row_is_that_of_the_scene_with_the_thing_changed(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -152,7 +154,7 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
     assert changing >= 3
 
 
-@pytest.mark.second
+@pytest.mark.slow
 @examples(8)
 @given(
     name=st.sampled_from(["wok_obstacle", "hemisphere_tilted"]),

@@ -96,7 +96,7 @@ def test_the_best_come_first_and_cover_enough(found: Placements) -> None:
         assert tuple(others) == found.here.pose[2:]
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_two_processes_find_the_same(found: Placements) -> None:
     other = place(jobs=2)
     assert list(other) == list(found)
@@ -157,7 +157,7 @@ class Losing(Workers):
         """Nothing is left to end."""
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_a_lost_process_loses_no_placement(found: Placements) -> None:
     assert list(place(jobs=Losing(1))) == list(found)
     with pytest.raises(cellcolor.CellcolorError, match="could not be tried: killed"):

@@ -121,7 +121,7 @@ def test_a_share_is_covered_with_no_fewer_set_ups(seed: int, count: int, share: 
         assert choice.solution.segments == min(least)
 
 
-@pytest.mark.second
+@pytest.mark.slow
 @examples(6)
 @given(seed=st.integers(0, 10**6), price=st.integers(1, 5))
 def test_a_change_over_has_its_price(seed: int, price: int) -> None:

@@ -150,6 +150,7 @@ def test_what_only_says_that_it_touches_covers_nothing() -> None:
     assert verdict.covered.covered_share < 0.75 * whole.covered.covered_share
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("most", [0.02, 0.005])
 def test_denser_samples_change_no_verdict(most: float) -> None:
     assert judged(resampled(cap().trajectory, most)).faults == ()
