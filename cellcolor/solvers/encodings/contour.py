@@ -11,27 +11,19 @@ circle, its tour would fall into two, inside and outside, which only costs more.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from ortools.sat.python import cp_model
 
-from cellcolor.deadline import Deadline
-from cellcolor.solvers.encodings.problem import Pair, Problem
+from cellcolor.solvers.encodings.problem import Pair
 from cellcolor.solvers.encodings.solving import Encoding, EncodingSolver
 
 
 class Contour(Encoding):
-    """The model; each constraint group is a method, in the order in which they are called."""
+    """The model with a tour around each tree."""
 
-    def __init__(self, problem: Problem, deadline: Deadline) -> None:
-        self.problem, self.deadline = problem, deadline
-        self.model = model = cp_model.CpModel()
-        # Per edge and color: the edge is joined in that color, and the join is counted.
-        self.joined = {
-            (edge, color): model.new_bool_var(f"joined_{edge}_{color}")
-            for edge, colors in problem.colors.items()
-            for color in sorted(colors)
-        }
+    def _variables(self) -> None:
+        problem, model = self.problem, self.model
         # Per edge: its join is not counted, the tours leave it out.
         self.idle = {edge: model.new_bool_var(f"idle_{edge}") for edge in problem.colors}
         # Per two darts of a cell, in either order: in one sub-cell the second is next after the
@@ -51,21 +43,15 @@ class Contour(Encoding):
         cells = range(len(problem.cells))
         self.root = {cell: model.new_bool_var(f"root_{cell}") for cell in cells}
         self.alone = [model.new_bool_var(f"alone_{cell}") for cell in cells]
-        for group in (
+
+    def _groups(self) -> tuple[Callable[[], None], ...]:
+        return (
             self._one_color,
             self._tours,
             self._roots,
             self._equal_colors,
             self._no_crossing,
-            # Redundant: they are implied by there being few segments, and make proofs quick.
-            self._cover,
-            self._most_links,
-            self._homes,
-            self._first_petal,
-        ):
-            deadline.check()
-            group()
-        model.minimize(sum(self.root.values()) + sum(self.alone))
+        )
 
     def links(self) -> Iterator[tuple[Pair, cp_model.IntVar]]:
         """What leads on along a sub-cell; where its circle closes nothing new is connected."""
@@ -175,16 +161,10 @@ class Contour(Encoding):
             self.model.add_at_most_one(some + rest)
 
     def _homes(self) -> None:
-        """A segment that reaches the home of its color region has its root there."""
         for cell in sorted(self.problem.homes):
             self.model.add_exactly_one(self.root[cell], self.alone[cell])
 
     def _first_petal(self) -> None:
-        """Among the petals around a sub-cell, only the first can be the root, unless it is a home.
-
-        A petal, a cell with a single live dart, is never divided: a tree with its root in one petal
-        can have it in any other one as well.
-        """
         for (i, j), arc in self.links():
             if self.problem.later_petal(i, j):
                 self.model.add_implication(arc, ~self.root[self.problem.cell_of[-j]])

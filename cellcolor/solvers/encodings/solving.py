@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections import defaultdict
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib.metadata import version
 from math import ceil
 from typing import ClassVar
@@ -26,10 +26,8 @@ STRATEGIES = "core", "default_lp"
 
 
 class Encoding(ABC):
-    """A model whose objective is the number of segments."""
+    """A model whose objective is the number of segments; each constraint group is a method."""
 
-    problem: Problem
-    model: cp_model.CpModel
     joined: dict[tuple[int, int], cp_model.IntVar]
     """For each edge and color: the edge is joined in that color, and the join is counted."""
     root: dict[int, cp_model.IntVar]
@@ -37,15 +35,47 @@ class Encoding(ABC):
     alone: list[cp_model.IntVar]
     """For each cell: no join of it is counted, so it is a segment by itself."""
 
-    @abstractmethod
     def __init__(self, problem: Problem, deadline: Deadline) -> None:
         """Write the model."""
+        self.problem, self.deadline = problem, deadline
+        self.model = model = cp_model.CpModel()
+        self.joined = {
+            (edge, color): model.new_bool_var(f"joined_{edge}_{color}")
+            for edge, colors in problem.colors.items()
+            for color in sorted(colors)
+        }
+        self._variables()
+        # Cover and links are redundant: they are implied by there being few segments, and homes
+        # and petals leave some division with as few. All four make proofs quick.
+        redundant = self._cover, self._most_links, self._homes, self._first_petal
+        for group in (*self._groups(), *redundant):
+            deadline.check()
+            group()
+        model.minimize(sum(self.root.values()) + sum(self.alone))
+
+    @abstractmethod
+    def _variables(self) -> None:
+        """Make all other variables."""
+
+    @abstractmethod
+    def _groups(self) -> tuple[Callable[[], None], ...]:
+        """The constraint groups, in the order in which they are called."""
 
     @abstractmethod
     def links(self) -> Iterable[tuple[Pair, cp_model.IntVar]]:
         """Literals of pairs of darts: the second one follows the first in their sub-cell."""
 
-    # Redundant: these two are implied by there being few segments, and make proofs quick.
+    @abstractmethod
+    def _homes(self) -> None:
+        """A segment that reaches the home of its color region has its root there."""
+
+    @abstractmethod
+    def _first_petal(self) -> None:
+        """Among the petals around a sub-cell, only the first can be the root, unless it is a home.
+
+        A petal, a cell with a single live dart, is never divided: a tree with its root in one petal
+        can have it in any other one as well.
+        """
 
     def _cover(self) -> None:
         """Each color region in use holds a root, and each cell touches one in use or is alone.
@@ -70,6 +100,79 @@ class Encoding(ABC):
         for cell, links in links_of.items():
             darts = self.problem.cells[cell]
             self.model.add(sum(links) <= most_links([self.problem.colors_of(d) for d in darts]))
+
+
+class Trees(Encoding):
+    """A segment as a tree of sub-cells: in each but the root one dart leads up to the parent.
+
+    What ``pointers`` and ``ranks`` have in common: chains of darts in one color that do not cross.
+    """
+
+    up: dict[int, cp_model.IntVar]
+    """Per dart: the parent of its sub-cell lies across it."""
+
+    @abstractmethod
+    def _link(self, one: int, other: int) -> list[cp_model.IntVar]:
+        """The literals that make neighbours of two darts in list order."""
+
+    def _counted(self, dart: int) -> cp_model.LinearExpr:
+        """1 if the dart's join is counted: its edge then has a child on one of its sides."""
+        return self.up[dart] + self.up[-dart]
+
+    def _one_color(self) -> None:
+        """An edge is joined in one color at most. If it is, one side is the other's parent."""
+        for edge, colors in self.problem.colors.items():
+            self.model.add(sum(self.joined[edge, c] for c in sorted(colors)) == self._counted(edge))
+            self.model.add_at_most_one(self.up[edge], self.up[-edge])
+
+    def _one_chain(self) -> None:
+        """A sub-cell is a chain: each of its darts has one neighbour after it and one before it."""
+        after: dict[int, list[cp_model.IntVar]] = defaultdict(list)
+        before: dict[int, list[cp_model.IntVar]] = defaultdict(list)
+        for one, other in self.problem.pairs():
+            after[one] += self._link(one, other)
+            before[other] += self._link(one, other)
+        for links in (after, before):
+            for dart, found in links.items():
+                self.model.add(sum(found) <= self._counted(dart))
+
+    def _equal_colors(self) -> None:
+        """Neighbours in a sub-cell are joined in one and the same color."""
+        for one, other in self.problem.pairs():
+            for here, there in ((one, other), (other, one)):
+                for color in sorted(self.problem.colors_of(here)):
+                    same = self.joined.get((abs(there), color))
+                    for link in self._link(one, other):
+                        clause = [~link, ~self.joined[abs(here), color]]
+                        self.model.add_bool_or(clause if same is None else [*clause, same])
+
+    def _no_crossing(self) -> None:
+        """Cutting paths do not cross, so neither do links.
+
+        Take a dart and a later one. A link that comes from before the first and ends at the second
+        goes over the first; a link from the first to beyond the second would cross that. So at most
+        one of all these is there: two of the first kind share their end, two of the second their
+        start.
+        """
+        for cell in self.problem.cells:
+            for place, dart in enumerate(cell):
+                self.deadline.check()
+                for there in range(place + 1, len(cell)):
+                    over = [link for d in cell[:place] for link in self._link(d, cell[there])]
+                    out = [link for d in cell[there + 1 :] for link in self._link(dart, d)]
+                    if over and out:
+                        self.model.add_at_most_one(over + out)
+
+    def _homes(self) -> None:
+        for cell in sorted(self.problem.homes):
+            for dart in self.problem.cells[cell]:
+                self.model.add(self.up[dart] == 0)
+
+    def _first_petal(self) -> None:
+        for one, other in self.problem.pairs():
+            if self.problem.later_petal(one, other):
+                for link in self._link(one, other):
+                    self.model.add_implication(link, ~self.up[other])
 
 
 class EncodingSolver:
