@@ -17,7 +17,7 @@ from cellcolor.files.paths import path_of
 from cellcolor.files.writing import Output, kind_of_format, write
 
 if TYPE_CHECKING:
-    from cellcolor.door.drawing import Drawing
+    import cellcolor
     from cellcolor.questions.refinement import Refinement
 
 
@@ -92,7 +92,7 @@ class Result:
         kind = kind_of_format(Solution.FORMAT)
         write([Output(path_of(path), kind, [self.solution.to_json().encode()])])
 
-    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> Drawing:
+    def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
         """Draw the segments on the surface, or the graph where there is no surface.
 
         Args:
@@ -102,7 +102,7 @@ class Result:
         Raises:
             InputError: the extra ``viz`` is not installed, or the file cannot be written.
         """
-        import cellcolor
+        import cellcolor  # the whole package's face, which only somebody who looks at it needs
 
         return cellcolor.show(self, path, **view)
 
