@@ -189,14 +189,8 @@ def picture_of(view: View) -> Picture:
         InputError: there is no such picture, it needs another option, or it does not take one.
     """
     picture = make_picture(view.name)
-    options: dict[str, object] = {
-        "color": view.color,
-        "vertex": view.vertex,
-        "branch": view.branch,
-        "solution": view.solution,
-        "plan": view.plan,
-    }
-    for part, given in options.items():
+    for part in ("color", "vertex", "branch", "solution", "plan"):
+        given = getattr(view, part)
         if given is None and part in picture.needs:
             raise InputError(None, part, f"the picture {view.name} needs it")
         if given is not None and part not in picture.needs + picture.takes:
@@ -250,14 +244,9 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
     if "surface" in picture.needs and not subject.names_surface:
         message = f"{subject.why_no_surface}; only the graph can be shown (--graph)"
         raise InputError(file, "surface", message)
-    asked: dict[str, object] = {
-        "color": view.color,
-        "vertex": view.vertex,
-        "branch": view.branch,
-        "solution": view.solution,
-        "build": subject.built,
-    }
-    missing = {part for part, given in asked.items() if given is None}
+    optional = ("color", "vertex", "branch", "solution")
+    missing = {part for part in optional if getattr(view, part) is None}
+    missing |= {"build"} if subject.built is None else set()
     if not subject.names_surface:
         missing |= {"surface", "decomposition"}
     parts = {part: make[part]() for part in make if part in picture.needs}

@@ -24,7 +24,7 @@ from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach.continuity import Coloring, find_cracks
 from cellcolor.frontend.reach.limit_colors import LimitColors, limit_colors
-from cellcolor.frontend.report import BuildReport, make_report, survey
+from cellcolor.frontend.report import BuildReport, color_reports, count_reasons, survey
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
@@ -301,22 +301,29 @@ def _limit_colors(
 def _report(
     prepared: PreparedScene, stages: Stages, limits: LimitColors, seconds: dict[str, float]
 ) -> BuildReport:
-    surface = prepared.surface
+    surface, candidates, cleaned = prepared.surface, stages.candidates, stages.cleaned
+    areas, names = surface.vertex_areas(), candidates.reason_names
+    reached = candidates.valid.any(axis=1)
+    # Codes are in the order of the tests.
+    farthest = candidates.reasons.max(axis=1)[~reached]
     remarks = prepared.kinematics.remarks(surface.vertices, -surface.normals)
-    return make_report(
-        survey(prepared.surface, prepared.kinematics.viewpoints),
-        prepared.surface,
-        stages.candidates,
-        stages.cleaned.coloring,
-        stages.branches,
-        len(stages.cleaned.cracks),
-        seconds,
-        prepared.notes + remarks,
-        tuple(map(report_on, prepared.robot.stand_ins)),
-        stages.cleaned.report,
-        None if stages.named else _INJECTIVE,
-        _rounding_in_words(surface, prepared.setup.task) if surface.faceted else None,
-        _limits_in_words(limits) if limits.positions else None,
+    return BuildReport(
+        survey=survey(surface, prepared.kinematics.viewpoints),
+        vertices=len(areas),
+        reachable=int(reached.sum()),
+        area_m2=float(areas.sum()),
+        reachable_area_m2=float(areas[reached].sum()),
+        candidates=count_reasons(candidates.reasons.ravel(), names),
+        unreachable=count_reasons(farthest, names, 1),
+        colors=color_reports(surface, cleaned.coloring, stages.branches),
+        cracks=len(cleaned.cracks),
+        seconds=seconds,
+        notes=prepared.notes + remarks,
+        stand_ins=tuple(map(report_on, prepared.robot.stand_ins)),
+        slivers=cleaned.report,
+        injectivity=None if stages.named else _INJECTIVE,
+        rounding=_rounding_in_words(surface, prepared.setup.task) if surface.faceted else None,
+        limits=_limits_in_words(limits) if limits.positions else None,
     )
 
 

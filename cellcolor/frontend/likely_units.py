@@ -22,21 +22,20 @@ _REACHES = 20  # a wing of 10 m is a part; what is larger than this, or as far a
 _PLAUSIBLE = 0.2  # of the reach: a tool of that radius is a large one
 
 
-def check_part(part: Surface, scene: Scene, reach: float, key: str = "object") -> None:
+def check_part(part: Surface, scene: Scene, reach: float) -> None:
     """Reject a part that is far too large for an arm, or far too distant.
 
     Args:
         part: in the world, m.
         scene: that it is from.
         reach: of the arm, m.
-        key: of the scene that describes the part.
 
     Raises:
         InputError: names the key, the size or distance, and what was probably meant.
     """
     largest = float(np.ptp(part.vertices, axis=0).max())
     if largest > _REACHES * reach:
-        field, meant = _unit_of(scene, key)
+        field, meant = _unit_of(scene)
         message = (
             f"the part is {size_of(part)}, {largest / reach:.0f} times the arm's reach "
             f"({reach:.3g} m): {meant}"
@@ -50,21 +49,21 @@ def check_part(part: Surface, scene: Scene, reach: float, key: str = "object") -
         if np.linalg.norm(place) > away / 2:
             message = f"{far}: {looks_like_millimeters(*place)}"
             raise InputError(None, "placement.position_m", message)
-        raise InputError(None, key, f"{far}: its own coordinates are that far from its origin")
+        raise InputError(None, "object", f"{far}: its own coordinates are that far from its origin")
 
 
-def _unit_of(scene: Scene, key: str) -> tuple[str, str]:
+def _unit_of(scene: Scene) -> tuple[str, str]:
     """The key that gives a part its size, and what it was probably meant to be."""
-    part = getattr(scene, key)
+    part = scene.object
     unit = getattr(part, "meters_per_unit", None)
     if unit is not None:
-        return f"{key}.meters_per_unit", f"{unit / 1000:g} if the file is in millimeters"
+        return "object.meters_per_unit", f"{unit / 1000:g} if the file is in millimeters"
     given = {name: getattr(part, name) for name in type(part).model_fields if name.endswith("_m")}
     sizes = {name: size for name, size in given.items() if isinstance(size, (int, float))}
     if not sizes:
-        return key, "are its coordinates in millimeters?"
+        return "object", "are its coordinates in millimeters?"
     largest = max(sizes, key=lambda name: sizes[name])
-    return f"{key}.{largest}", looks_like_millimeters(sizes[largest])
+    return f"object.{largest}", looks_like_millimeters(sizes[largest])
 
 
 def check_setup(setup: Setup, part: Surface, scene: Scene, reach: float) -> None:

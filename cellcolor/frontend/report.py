@@ -21,7 +21,6 @@ from cellcolor.frontend.contact.stand_in_report import StandInReport
 from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.reach.slivers import SliverReport
-from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.frontend.reach.validity_tests import STANDARD_TESTS
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -151,57 +150,26 @@ def _table(title: str, counts: dict[str, int]) -> list[str]:
     return [title] + [f"  {reason:<18} {number:>7}" for reason, number in counts.items()]
 
 
-def make_report(
-    where: Survey,
-    surface: Surface,
-    candidates: Candidates,
-    coloring: Coloring,
-    branch_names: tuple[str, ...],
-    cracks: int,
-    seconds: dict[str, float],
-    notes: tuple[str, ...],
-    stand_ins: tuple[StandInReport, ...],
-    slivers: SliverReport | None = None,
-    injectivity: str | None = None,
-    rounding: str | None = None,
-    limits: str | None = None,
-) -> BuildReport:
-    """Count what a build found."""
-    areas = surface.vertex_areas()
-    reached = candidates.valid.any(axis=1)
-    # Codes are in the order of the tests.
-    farthest = candidates.reasons.max(axis=1)[~reached]
+def color_reports(
+    surface: Surface, coloring: Coloring, branch_names: tuple[str, ...]
+) -> tuple[ColorReport, ...]:
+    """What each color reaches."""
     vertex, branch = np.nonzero(coloring.node_color >= 0)
     color = coloring.node_color[vertex, branch]
     sizes = np.bincount(color, minlength=len(coloring.names)).tolist()
-    domains = np.bincount(color, areas[vertex], minlength=len(coloring.names)).tolist()
-    colors = [
+    areas = surface.vertex_areas()[vertex]
+    domains = np.bincount(color, areas, minlength=len(coloring.names)).tolist()
+    return tuple(
         ColorReport(name, branch_names[number], size, area)
         for name, number, size, area in zip(
             coloring.names, coloring.branch, sizes, domains, strict=True
         )
-    ]
-    return BuildReport(
-        survey=where,
-        vertices=len(areas),
-        reachable=int(reached.sum()),
-        area_m2=float(areas.sum()),
-        reachable_area_m2=float(areas[reached].sum()),
-        candidates=_counts(candidates.reasons.ravel(), candidates.reason_names, 0),
-        unreachable=_counts(farthest, candidates.reason_names, 1),
-        colors=tuple(colors),
-        cracks=cracks,
-        seconds=seconds,
-        notes=notes,
-        stand_ins=stand_ins,
-        slivers=slivers,
-        injectivity=injectivity,
-        rounding=rounding,
-        limits=limits,
     )
 
 
-def _counts(reasons: NDArray[np.uint8], names: tuple[str, ...], first: int) -> dict[str, int]:
+def count_reasons(
+    reasons: NDArray[np.uint8], names: tuple[str, ...], first: int = 0
+) -> dict[str, int]:
     """How often each reason occurs, from the code ``first`` on, by its name."""
     counts = np.bincount(reasons, minlength=len(names)).tolist()
     return dict(zip(names[first:], counts[first:], strict=True))

@@ -279,13 +279,8 @@ def _held(
 _WITH_SLIVERS = 4  # times as long are mesh edges at borders that the sliver policy takes away
 
 
-def with_finer_borders(
-    prepared: PreparedScene, clock: StageClock, found: Judged | None = None
-) -> tuple[PreparedScene, Stages]:
+def with_finer_borders(prepared: PreparedScene, clock: StageClock) -> tuple[PreparedScene, Stages]:
     """The stages of a build, on a surface refined at borders as the setup says.
-
-    Args:
-        found: its stages on this surface, where they are known.
 
     Returns:
         The scene with the last surface, and the results of the stages on it.
@@ -294,14 +289,18 @@ def with_finer_borders(
         InputError: there would be too many vertices, or as the stages do.
         OutOfTime: the deadline came first.
     """
-    *_, (prepared, last) = border_levels(prepared, clock, found)
+    *_, (prepared, last) = border_levels(prepared, clock)
     return prepared, last.stages
 
 
 def border_levels(
     prepared: PreparedScene, clock: StageClock, found: Judged | None = None
 ) -> Iterator[tuple[PreparedScene, Judged]]:
-    """Each surface on the way to finer borders and its stages; see :func:`with_finer_borders`."""
+    """Each surface on the way to finer borders and its stages; see :func:`with_finer_borders`.
+
+    Args:
+        found: the stages on this surface, where they are known.
+    """
     longest = prepared.setup.continuity.border_length_m
     found = found or judged(prepared, clock)
     yield prepared, found

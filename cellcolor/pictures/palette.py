@@ -50,21 +50,19 @@ WARNING = "#CC3311"
 """Red, for cracks and for a vertex that is picked out."""
 
 
-def assign(neighbors: Mapping[int, Set[int]], palette: tuple[str, ...] = AREAS) -> list[str]:
-    """A fill for each area 0, 1, …; neighbors differ as long as the palette has enough fills.
+def assign(neighbors: Mapping[int, Set[int]]) -> list[str]:
+    """A fill for each area 0, 1, …; neighbors differ as long as there are enough fills.
+
+    No fill is used twice unless there are more areas than fills.
 
     Args:
         neighbors: the areas next to each area; every area is a key.
-        palette: the fills. None is used twice unless there are more areas than fills.
-
-    Returns:
-        One fill for each area, in their order.
     """
-    uses = [0] * len(palette)
+    uses = [0] * len(AREAS)
     chosen: dict[int, int] = {}
     for area in sorted(neighbors):
         near = {chosen[other] for other in neighbors[area] if other in chosen}
-        best = min(range(len(palette)), key=lambda c: (c in near, uses[c], c))
+        best = min(range(len(AREAS)), key=lambda c: (c in near, uses[c], c))
         uses[best] += 1
         chosen[area] = best
-    return [palette[chosen[area]] for area in sorted(chosen)]
+    return [AREAS[chosen[area]] for area in sorted(chosen)]

@@ -160,10 +160,7 @@ class Refinement:
 
 
 def refined_until_stable(
-    built: BuildResult,
-    solve: Callable[[Instance], Solution],
-    deadline: Deadline,
-    progress: Callable[[str], None] | None = None,
+    built: BuildResult, solve: Callable[[Instance], Solution], deadline: Deadline
 ) -> tuple[BuildResult, Refinement]:
     """Solve the scene on finer and finer meshes.
 
@@ -171,7 +168,6 @@ def refined_until_stable(
         built: the scene on its own mesh.
         solve: solves a graph by the deadline.
         deadline: when to return the steps so far.
-        progress: is told what is being done.
 
     Returns:
         The scene on the finest mesh that was solved, and all steps.
@@ -191,7 +187,7 @@ def refined_until_stable(
         try:
             _check_room(built)
             finer = _finer(built.prepared, longest, border)
-            clock = StageClock(deadline, progress)
+            clock = StageClock(deadline, None)
             built_finer = result_of(*with_finer_borders(finer, clock), clock)
             step = _step(built_finer, solve, deadline, longest, border, steps[-1], began)
         except OutOfTime:

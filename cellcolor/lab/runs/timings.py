@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -95,17 +95,15 @@ def start_up_timings(
     file: Path,
     repetitions: int,
     command: str,
-    run: Callable[[Sequence[str], Limits], Ended] = watch,
 ) -> Iterator[Timing]:
     """How long Python, ``import cellcolor`` and two commands take, in turn.
 
     Args:
         file: a small one, for ``solve``.
         command: for the record.
-        run: runs a command.
     """
     for repetition in range(repetitions):
         for subject, arguments in START_UP.items():
             files = (str(file),) if arguments[-1] == "solve" else ()
-            ended = run([sys.executable, *arguments, *files], _LIMITS)
+            ended = watch([sys.executable, *arguments, *files], _LIMITS)
             yield timing(subject, "cellcolor", repetition, ended, command)
