@@ -268,7 +268,6 @@ class Instance(Document):
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Instance:
-        """An instance from a parsed JSON object."""
         instance = super().from_document(document)
         if document["version"] == 1:
             # The old fingerprint depends on the order of colors, which an instance does not keep.

@@ -355,7 +355,6 @@ class Solution(Document):
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> Solution:
-        """A solution from a parsed JSON object."""
         body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
         if document["version"] == 1 and isinstance(body.get("instance"), dict):
             body["instance"] = body["instance"] | {"of": "text"}

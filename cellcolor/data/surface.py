@@ -289,7 +289,6 @@ class LabelledSurface(WithArrays, Document):
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> LabelledSurface:
-        """A surface from a parsed JSON object."""
         body = take_body(document, cls.FORMAT, cls.SINCE_VERSION_2)
         raw = validate(adapter_of(_SurfaceFile), body)
         return cls(

@@ -127,7 +127,6 @@ class ToolPaths(WithArrays, Document):
 
     @classmethod
     def from_document(cls, document: dict[str, Any]) -> ToolPaths:
-        """Tool paths from a parsed JSON object."""
         raw = validate(adapter_of(_ToolPathsFile), take_body(document, cls.FORMAT))
         paths = []
         for number, path in enumerate(raw.paths):

@@ -76,7 +76,6 @@ class _WholeTest(Relaxation):
     reasons: ClassVar[frozenset[str]]
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """The test left out."""
         return _remade(prepared, prepared.workplace, self.reasons)
 
 
@@ -91,26 +90,21 @@ class JointRange(Relaxation):
 
     @property
     def name(self) -> str:
-        """Of the joint."""
         return f"limits of {self.joint}"
 
     @property
     def key(self) -> str:
-        """In the arm's URDF."""
         return f"joint[{self.joint}].limit"
 
     most = 2 * np.pi  # a full circle on both sides
 
     def by(self, amount: float) -> JointRange:
-        """Both limits farther out."""
         return replace(self, wider=amount)
 
     def said_of(self, amount: float) -> str:
-        """In degrees."""
         return f"{self.name} wider by {degrees(amount):.3g}° on both sides"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """Its limits moved."""
         robot = prepared.robot
         here = np.array([name == self.joint for name in robot.joint_names])
         lower = np.where(here, robot.lower - self.wider, robot.lower)
@@ -129,11 +123,9 @@ class LinkContact(Relaxation):
 
     @property
     def name(self) -> str:
-        """Of both links."""
         return "contact between " + (" and ".join(self.pair) if self.pair else "links")
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """They may touch."""
         robot = prepared.robot
         pairs = tuple(
             (i, j)
@@ -181,12 +173,10 @@ class Threshold(Relaxation):
 
     @property
     def name(self) -> str:
-        """Of the threshold."""
         return f"threshold of the {_OF_THRESHOLD[self.threshold]}"
 
     @property
     def key(self) -> str:
-        """Of the setup."""
         return f"thresholds.{self.given}"
 
     most = 100.0
@@ -196,11 +186,9 @@ class Threshold(Relaxation):
         return replace(self, share=1 - amount / 100)
 
     def said_of(self, amount: float) -> str:
-        """In percent."""
         return f"{self.name} lower by {amount:.3g} %"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """With what is left of the threshold."""
         least = prepared.arm.conditioning
         lowered = {self.threshold: self.share * getattr(least, self.threshold)}
         arm = replace(prepared.arm, conditioning=replace(least, **lowered))
@@ -220,15 +208,12 @@ class GroundPlane(Relaxation):
     most = 1.0  # few arms reach farther down
 
     def by(self, amount: float) -> GroundPlane:
-        """The ground lower by an amount in m."""
         return replace(self, lower=amount)
 
     def said_of(self, amount: float) -> str:
-        """In millimeters."""
         return f"ground lower by {1e3 * amount:.3g} mm"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """Without ground, or with a lower one."""
         place, ground = prepared.workplace, None
         if np.isfinite(self.lower) and place.ground is not None:
             ground = replace(place.ground, offset_m=place.ground.offset_m - self.lower)
@@ -256,17 +241,14 @@ class ObstacleBody(Relaxation):
 
     @property
     def key(self) -> str:
-        """Of the scene."""
         return f"obstacle[{self.number - 1}]"
 
     most = 0.5  # beyond that distance it might as well be gone
 
     def by(self, amount: float) -> ObstacleBody:
-        """The obstacle farther from the part by an amount in m."""
         return replace(self, farther=amount)
 
     def said_of(self, amount: float) -> str:
-        """In millimeters."""
         return f"{self.name} {1e3 * amount:.3g} mm farther from the part"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
@@ -307,7 +289,6 @@ class ToolBody(Relaxation):
     key = "robot.tool_urdf"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """Without the collision shapes of the tool."""
         robot = prepared.robot
         kept = [i for i, body in enumerate(robot.bodies) if body.link not in self.links]
         number = {old: new for new, old in enumerate(kept)}
@@ -339,11 +320,9 @@ class ToolLength(Relaxation):
     most = 0.04
 
     def by(self, amount: float) -> ToolLength:
-        """So much longer."""
         return replace(self, longer=amount)
 
     def said_of(self, amount: float) -> str:
-        """In millimeters."""
         return f"tool {1e3 * amount:.3g} mm longer"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
@@ -363,16 +342,13 @@ class Distance(Relaxation):
 
     @property
     def name(self) -> str:
-        """As in "the distance to obstacles"."""
         return f"distance {self.margin.removesuffix('_m').replace('_', ' ')}"
 
     @property
     def key(self) -> str:
-        """Of the setup."""
         return f"margins.{self.margin}"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
-        """Without that distance."""
         setup = prepared.arm.setup.varied(margins={self.margin: 0.0})
         arm = replace(prepared.arm, setup=setup)
         return _remade(prepared, replace(prepared.workplace, arm=arm))
@@ -392,7 +368,6 @@ class AddedTest(_WholeTest):
 
     @property
     def name(self) -> str:
-        """Of the test."""
         return f"test of {self.test}"
 
 

@@ -42,12 +42,10 @@ class ClusterWorkers(Workers):
 
     @property
     def slots(self) -> int:
-        """How many tasks are done at a time, now."""
         threads: dict[str, int] = self._client.nthreads()
         return sum(threads.values())
 
     def submit(self, task: Task, /) -> Future[Ended]:
-        """Hand in a piece of work."""
         future: Future[Ended] = self._executor.submit(_work, task)
         return future
 

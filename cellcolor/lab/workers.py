@@ -96,11 +96,9 @@ class LocalWorkers(Workers):
 
     @property
     def slots(self) -> int:
-        """How many pieces of work are done at a time."""
         return self._jobs
 
     def submit(self, task: Task, /) -> Future[Ended]:
-        """Hand in a piece of work."""
         work = (task.function, task.arguments, task.limits, self._stop.is_set)
         return self._watchers.submit(run_alone, *work)
 

@@ -143,21 +143,6 @@ def missing(robot: Robot, solutions: Array) -> Index:
     return lost
 
 
-def remark_on_calibration(robot: Robot, off: tuple[float, float], solutions: Array) -> str:
-    """A sentence for the report.
-
-    Args:
-        off: the largest angle in rad and the largest distance in m of an axis from the ideal one.
-        solutions: (n, s, joints) of all vertices, NaN for none.
-    """
-    angle, distance = math.degrees(off[0]), 1000 * off[1]
-    return (
-        f"calibrated arm, axes up to {angle:.2g} degrees and {distance:.2g} mm off the ideal one: "
-        "solved by Newton's method from the ideal one's solutions; "
-        f"{remark_on_missing(robot, solutions)}"
-    )
-
-
 def remark_on_missing(robot: Robot, solutions: Array) -> str:
     """How many solutions (n, s, joints) of all vertices are missing at least, in words."""
     lost = missing(robot, solutions)
@@ -220,6 +205,15 @@ class NearIdeal:
             found = self._all(points, directions)
             return found if self.signs is None else found[:, self.sign_of]
         return self._one_each(points, directions, self.sign_of[branches], branches)[:, None]
+
+    def remarks(self, solutions: Array) -> tuple[str, ...]:
+        """How the arm is solved, and how many of its solutions (n, s, joints) are missing."""
+        angle, distance = math.degrees(self.off[0]), 1000 * self.off[1]
+        return (
+            f"calibrated arm, axes up to {angle:.2g} degrees and {distance:.2g} mm off the ideal "
+            "one: solved by Newton's method from the ideal one's solutions; "
+            f"{remark_on_missing(self.robot, solutions)}",
+        )
 
     def _one_each(
         self, points: Array, directions: Array, signs: NDArray[np.intp], branches: NDArray[np.intp]

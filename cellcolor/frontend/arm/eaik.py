@@ -29,7 +29,6 @@ from cellcolor.frontend.arm.calibrated import (
     Axes,
     NearIdeal,
     idealized,
-    remark_on_calibration,
 )
 from cellcolor.frontend.arm.inverse import (
     InverseKinematics,
@@ -112,10 +111,7 @@ class EaikKinematics(InverseKinematics):
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """How a calibrated arm is solved, and what is missing."""
-        if self._near is None:
-            return ()
-        found = self.solve(points, directions)
-        return (remark_on_calibration(self._robot, self._near.off, found),)
+        return () if self._near is None else self._near.remarks(self.solve(points, directions))
 
     def _closed_form(
         self,

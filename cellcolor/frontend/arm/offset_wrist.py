@@ -114,7 +114,6 @@ class OffsetWrist(InverseKinematics):
         directions: Array,
         branches: NDArray[np.intp] | None = None,  # noqa: ARG002
     ) -> Array:
-        """See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`."""
         parts = [np.empty((0, 0, 6))]
         batches = list(chunks(len(points), 4096 * _ANGLES))
         for rows in batches:

@@ -237,7 +237,6 @@ class TurnedKinematics(InverseKinematics):
         return found
 
     def taken(self, directions: Array) -> Array:
-        """Those of the arm's family."""
         return self.own.taken(directions)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:

@@ -27,7 +27,6 @@ from cellcolor.frontend.arm.calibrated import (
     Axes,
     NearIdeal,
     idealized,
-    remark_on_calibration,
 )
 from cellcolor.frontend.arm.inverse import (
     MUST_LIE,
@@ -312,10 +311,7 @@ class UrKinematics(InverseKinematics):
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
         """How a calibrated arm is solved, and what is missing."""
-        if self._near is None:
-            return ()
-        found = self.solve(points, directions)
-        return (remark_on_calibration(self._robot, self._near.off, found),)
+        return () if self._near is None else self._near.remarks(self.solve(points, directions))
 
 
 def _near_ideal(robot: Robot, geometry: UrGeometry, locked: float) -> NearIdeal:

@@ -132,7 +132,6 @@ class SheetKinematics(InverseKinematics):
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
     ) -> Array:
-        """See :meth:`~cellcolor.frontend.arm.inverse.InverseKinematics.solve`."""
         count = 1 if branches is not None else len(self.branches)
         if branches is None:
             branches = np.tile(np.arange(count), len(points))
@@ -167,11 +166,9 @@ class SheetKinematics(InverseKinematics):
         return found
 
     def taken(self, directions: Array) -> Array:
-        """Those of the arm's family."""
         return self.own.taken(directions)
 
     def remarks(self, points: Array, directions: Array) -> tuple[str, ...]:
-        """Those of the arm's family."""
         return self.own.remarks(points, directions)
 
 
