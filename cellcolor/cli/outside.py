@@ -105,31 +105,18 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
 def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
     """The solution, seen by the checker, with nothing in it that the answer does not prove."""
     from cellcolor.checker.division import check_solution
-    from cellcolor.data.solution import InstanceReference, Solution, count_segments
+    from cellcolor.data.solution import count_segments
+    from cellcolor.solvers.checked import solution_of
+    from cellcolor.solvers.interface import Answer, Options
 
     segments = count_segments(found.division)
     if found.segments is not None and segments > found.segments:
         message = f"says {found.segments}, its division has {count(segments, 'segment')}"
         raise InputError(None, "objective", message)
     claim = "The external solver claims that no division has fewer segments; this is not a proof."
-    solution = Solution(
-        instance=InstanceReference(instance.name, instance.sha256),
-        search_space="paper",
-        strands=1,
-        solver=f"outside ({kind})",
-        status="feasible",
-        segments=segments,
-        lift_offs=max(0, segments - 1),
-        lower_bound=0,
-        surface_lower_bound=0,
-        proved_for_surface=segments == 0,
-        seams=found.seams,
-        cells=found.division,
-        seconds=0.0,
-        bounds=(),
-        coverage=instance.coverage,
-        notes=(claim,) if found.claims_optimum else (),
-    )
+    notes = (claim,) if found.claims_optimum else ()
+    answered = Answer(found.division, found.seams, (), notes=notes)
+    solution = solution_of(instance, Options(), f"outside ({kind})", answered, 0.0)
     report = check_solution(instance, solution)
     if not report.valid:
         raise InputError(None, None, f"is not a legal division: {report.problems[0]}")

@@ -124,20 +124,20 @@ def solve(
         # Covering nothing of a surface in 0 segments would be no answer to anybody's question.
         note = "No point of the surface can be covered: there is nothing to divide."
         answer = Answer(None, (), (), notes=(*answer.notes, note))
-    solution = _solution(instance, options, solver, answer, time.monotonic() - start, costs)
+    solution = solution_of(instance, options, solver, answer, time.monotonic() - start, costs)
     # Its certificates have been verified just now.
     bare = tuple(replace(bound, certificate=None) for bound in solution.bounds or ())
     _insist(check_solution(instance, replace(solution, bounds=bare)), solver)
     return solution
 
 
-def _solution(
+def solution_of(
     instance: Instance,
     options: Options,
     solver: str,
     answer: Answer,
     seconds: float,
-    costs: tuple[int, ...] | None,
+    costs: tuple[int, ...] | None = None,
 ) -> Solution:
     """What follows from an answer: its segments are counted, its status is what it has proved."""
     needed = _needed(answer.bounds, "segments")

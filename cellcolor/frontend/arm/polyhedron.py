@@ -9,12 +9,11 @@ from itertools import product
 
 import numpy as np
 import trimesh
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, QhullError
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.memory import chunks
+from cellcolor.mesh.triangle_mesh import grouped
 
 _PAIR = 256  # bytes that a point and a face take
 
@@ -84,8 +83,7 @@ class Polyhedron:
 def one_of_each_part(vertices: Array, faces: Index) -> Array:
     """A vertex (parts, 3) of each part of a mesh whose faces hang together."""
     pairs = np.concatenate([faces[:, :2], faces[:, 1:]])
-    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(vertices),) * 2)
-    part = connected_components(graph, directed=False)[1]
+    part = grouped(len(vertices), pairs)
     used = np.unique(faces)
     return np.asarray(vertices[used[np.unique(part[used], return_index=True)[1]]])
 
