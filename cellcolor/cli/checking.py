@@ -29,7 +29,7 @@ from cellcolor.data.verdicts import (
     SegmentRange,
     SolutionVerdict,
 )
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.leaving_out import left_alone
 from cellcolor.door.reading import format_of_claim, read_trajectory
@@ -175,7 +175,7 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
         valid=not problems,
         problems=tuple(problems),
         segments=report.segments,
-        lift_offs=None if report.segments is None else max(0, report.segments - 1),
+        lift_offs=None if report.segments is None else lift_offs_of(report.segments),
         status=solution.status,
         solver=solution.solver,
         bounds=tuple(map(_checked, report.bounds)),

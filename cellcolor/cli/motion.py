@@ -26,7 +26,7 @@ from cellcolor.cli.options import (
 )
 from cellcolor.cli.progress import at_work, stages_of
 from cellcolor.cli.terminal import complain, say, say_lines
-from cellcolor.data.wording import count, listed
+from cellcolor.data.wording import count, listed, segments_and_lift_offs
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.files.writing import Output, check_output, is_stream, kind_of_format, write
@@ -101,8 +101,7 @@ def paint(
     write_painted(painted, output, inputs)
     added = len(painted.surface.vertices) - len(subject.surface.vertices)
     refined = f", {count(added, 'vertex', 'vertices')} added" if added else ""
-    lift_offs = count(max(0, painted.segments - 1), "lift-off")
-    say(f"wrote {output}: {count(painted.segments, 'segment')}, {lift_offs}{refined}")
+    say(f"wrote {output}: {segments_and_lift_offs(painted.segments)}{refined}")
     say(f"wrote {plan_path}")
     for line in _about(painted):
         say(f"  {line}")

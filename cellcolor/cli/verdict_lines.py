@@ -9,7 +9,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.data.verdicts import PlanVerdict, SolutionVerdict
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, segments_and_lift_offs
 from cellcolor.door.shipped import library
 
 _FAULTS = 3  # of each kind
@@ -27,9 +27,9 @@ def say_plan(name: str, verdict: PlanVerdict) -> None:
         say(f"  {problem}{where}")
     if len(verdict.problems) > _VERTICES:
         say(f"  {len(verdict.problems) - _VERTICES} more")
-    if verdict.segments is None or verdict.lift_offs is None:
+    if verdict.segments is None:
         return
-    say(f"  {count(verdict.segments, 'segment')}, {count(verdict.lift_offs, 'lift-off')}")
+    say(f"  {segments_and_lift_offs(verdict.segments)}")
     if verdict.lower_bound is None:
         return
     lower, upper = verdict.lower_bound, verdict.upper_bound
@@ -56,8 +56,8 @@ def say_solution(name: str, verdict: SolutionVerdict) -> None:
     say(f"{name}: {'valid' if verdict.valid else 'not valid'}")
     for problem in verdict.problems:
         say(f"  {problem}")
-    if verdict.segments is not None and verdict.lift_offs is not None:
-        say(f"  {count(verdict.segments, 'segment')}, {count(verdict.lift_offs, 'lift-off')}")
+    if verdict.segments is not None:
+        say(f"  {segments_and_lift_offs(verdict.segments)}")
     say(f"  status {verdict.status}")
     if verdict.schemes is not None:
         say(f"  {count(verdict.schemes, 'scheme')}")

@@ -11,6 +11,16 @@ def count(number: int, thing: str, things: str | None = None) -> str:
     return f"{number} {thing if number == 1 else things or thing + 's'}"
 
 
+def lift_offs_of(segments: int) -> int:
+    """One between each two segments; where nothing is covered there is none either."""
+    return max(0, segments - 1)
+
+
+def segments_and_lift_offs(segments: int) -> str:
+    """``2 segments, 1 lift-off``."""
+    return f"{count(segments, 'segment')}, {count(lift_offs_of(segments), 'lift-off')}"
+
+
 def listed(things: Iterable[object]) -> str:
     """``3``, ``3 and 4``, ``3, 4 and 7``; ``none`` if there is none."""
     *first, last = list(map(str, things)) or ["none"]

@@ -15,6 +15,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.data.trajectory import Trajectory
 from cellcolor.data.trajectory_csv import TrajectoryTable
 from cellcolor.data.trajectory_verdict import TrajectoryVerdict
+from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline, TimeLimit
 from cellcolor.door.extras import extras_for
 from cellcolor.door.leaving_out import left_alone as without_place
@@ -146,7 +147,7 @@ def judge_trajectory(
         given,
         timed=timed,
         tells=tells,
-        minimum_lift_offs=max(0, bounds.lower - 1) if bounds.exact else None,
+        minimum_lift_offs=lift_offs_of(bounds.lower) if bounds.exact else None,
         deadline=deadline,
         progress=progress,
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from cellcolor.data.plan import Plan
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.verdicts import PlanViolation
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, lift_offs_of, segments_and_lift_offs
 from cellcolor.errors import InputError
 from cellcolor.oracle.improvement import Improvement
 from cellcolor.oracle.ranges import ProvenRange
@@ -60,7 +60,7 @@ class Verdict:
     @property
     def lift_offs(self) -> int | None:
         """``max(0, segments - 1)``; None when the plan is not valid."""
-        return None if self.segments is None else max(0, self.segments - 1)
+        return None if self.segments is None else lift_offs_of(self.segments)
 
     @property
     def optimal(self) -> bool | None:
@@ -117,11 +117,11 @@ class Verdict:
         return cellcolor.show(self.surface, path, plan=self.plan)
 
     def __str__(self) -> str:
-        if self.segments is None or self.lift_offs is None:
+        if self.segments is None:
             more = len(self.problems) - 1
             rest = f" (and {count(more, 'other problem')})" if more > 0 else ""
             return f"not valid: {self.problems[0]}{rest}"
-        found = f"{count(self.segments, 'segment')}, {count(self.lift_offs, 'lift-off')}"
+        found = segments_and_lift_offs(self.segments)
         if self.bounds is None:
             return found
         if self.optimal:

@@ -16,7 +16,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.value import same_members
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, segments_and_lift_offs
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.decomposition import Decomposition
 from cellcolor.decomposition.borders import Borders, ClosedMesh
@@ -78,10 +78,9 @@ class Painted:
         return interpolated(self.between, values)
 
     def __str__(self) -> str:
-        lift_offs = count(max(0, self.segments - 1), "lift-off")
         vertices = count(len(self.surface.vertices), "vertex", "vertices")
-        segments = count(self.segments, "segment")
-        return f"{self.surface.name}: painted in {segments}, {lift_offs}, on {vertices}"
+        segments = segments_and_lift_offs(self.segments)
+        return f"{self.surface.name}: painted in {segments}, on {vertices}"
 
     def __repr__(self) -> str:
         return f"<{type(self).__name__} {self}>"

@@ -18,7 +18,7 @@ from cellcolor.data.plan import Plan
 from cellcolor.data.shares import GIVEN_UP, UNREACHABLE, percent, shares_of
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.wording import count, listed
+from cellcolor.data.wording import count, listed, segments_and_lift_offs
 from cellcolor.decomposition import Decomposition
 from cellcolor.errors import InputError
 from cellcolor.painting.paint import paint
@@ -132,9 +132,8 @@ def by_solution(
         notes.append(f"Divided: {named}. {drawn if decomposition.curves else 'Not painted.'}")
     if added := len(fine.vertices) - len(surface.vertices):
         notes.append(f"The mesh is refined for this: {count(added, 'vertex', 'vertices')} more.")
-    lift_offs = count(solution.lift_offs or 0, "lift-off")
     view = SurfaceView(
-        f"{surface.name}: {count(segments, 'segment')}, {lift_offs}",
+        f"{surface.name}: {segments_and_lift_offs(segments)}",
         labels,
         classes,
         # Borders separate these numbers: one for each pair of cell and segment, so that cuts are
@@ -181,8 +180,7 @@ def draw_plan(surface: LabelledSurface, plan: Plan) -> Picture3D:
     notes = ["A plan: one color per vertex. Shares of the surface."]
     if segments > len(AREAS):
         notes.append("Fills repeat: the numbers identify the segments.")
-    lift_offs = count(max(0, segments - 1), "lift-off")
-    title = f"{surface.name}: plan with {count(segments, 'segment')}, {lift_offs}"
+    title = f"{surface.name}: plan with {segments_and_lift_offs(segments)}"
     return draw_surface(
         surface, SurfaceView(title, labels, classes, cracks=cracks, notes=tuple(notes))
     )

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, lift_offs_of
 
 
 @dataclass(frozen=True)
@@ -43,7 +43,7 @@ class RelaxedMinimum:
     @property
     def lift_offs(self) -> int | None:
         """One between each two segments."""
-        return None if self.segments is None else max(0, self.segments - 1)
+        return None if self.segments is None else lift_offs_of(self.segments)
 
     def same_as(self, other: RelaxedMinimum) -> bool:
         """Whether number and area are the same."""

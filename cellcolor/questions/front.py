@@ -10,7 +10,7 @@ from typing import Any
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.errors import InputError
 
 _ROUNDING = 1e-9
@@ -43,7 +43,7 @@ class FrontPoint:
     @property
     def lift_offs(self) -> int:
         """One between each two segments."""
-        return max(0, self.segments - 1)
+        return lift_offs_of(self.segments)
 
     @property
     def proved(self) -> bool:

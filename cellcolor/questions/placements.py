@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, lift_offs_of
 
 VARIABLES = ("x", "y", "z", "roll", "pitch", "yaw")
 """Of a placement: the position in m, and extrinsic x, y, z angles in rad, as in a scene."""
@@ -93,7 +93,7 @@ class PlacedMinimum:
     @property
     def lift_offs(self) -> int | None:
         """One between each two segments."""
-        return None if self.segments is None else max(0, self.segments - 1)
+        return None if self.segments is None else lift_offs_of(self.segments)
 
     def value(self, variable: str) -> float:
         """Of one of :data:`VARIABLES`."""

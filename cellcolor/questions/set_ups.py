@@ -8,7 +8,7 @@ from typing import Any
 
 from cellcolor.data.solution import Solution
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.wording import count
+from cellcolor.data.wording import count, lift_offs_of
 from cellcolor.questions.placements import Pose, pose_document, pose_in_words
 
 
@@ -128,7 +128,7 @@ class SetUpPlan:
         lines += [f"  {one.number}. {one}" for one in self.set_ups]
         alone = self.alone
         if len(self.set_ups) > 1 or alone.covered_share < self.covered_share:
-            lift_offs = count(max(0, alone.segments - 1), "lift-off")
+            lift_offs = count(lift_offs_of(alone.segments), "lift-off")
             lines.append(f"  one set-up alone: {alone}, {lift_offs}")
         if self.refused:
             lines.append(f"  {count(len(self.refused), 'candidate')} refused: {self.refused[0]}")

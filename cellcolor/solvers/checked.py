@@ -23,6 +23,7 @@ from cellcolor.data.solution import (
     cost_of,
     count_segments,
 )
+from cellcolor.data.wording import lift_offs_of
 from cellcolor.deadline import Deadline
 from cellcolor.errors import InputError, RefusedResult
 from cellcolor.solvers.bounds.cover import hard_cells
@@ -164,7 +165,7 @@ def solution_of(
         solver=solver,
         status=status,
         segments=segments,
-        lift_offs=None if segments is None else max(0, segments - 1),
+        lift_offs=None if segments is None else lift_offs_of(segments),
         lower_bound=lower_bound,
         surface_lower_bound=surface_bound,
         proved_for_surface=segments == surface_bound,
