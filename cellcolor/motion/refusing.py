@@ -69,3 +69,10 @@ class ArmRefusals:
             near = (apart <= self._around) & (codes == 0)
             codes[near] = np.array([code for _, code in self._failed])[nearest[near]]
         return codes
+
+    def tested(self, point: Array, normal: Array) -> Array:
+        """The point (3,) itself if its own test fails, otherwise the failed sample nearest."""
+        if not self._failed or self._known.get(bytes(np.append(point, normal))):
+            return point
+        failed = np.array([place for place, _ in self._failed])
+        return np.asarray(failed[np.linalg.norm(failed - point, axis=1).argmin()])

@@ -39,6 +39,10 @@ class Refusals(Protocol):
         """Why points (k, 3) of the segment, with unit normals (k, 3), are refused, (k,)."""
         ...
 
+    def tested(self, point: Array, normal: Array) -> Array:
+        """The place (3,) of the test that refuses a point: the point itself, or one beside it."""
+        ...
+
 
 @dataclass(frozen=True)
 class RefusedPlace:
@@ -46,7 +50,7 @@ class RefusedPlace:
 
     Attributes:
         area_m2: how large it is.
-        place: a refused point (3,) of it, far from all that is not refused, m.
+        place: a point (3,) of it where the test has failed, m; far from all that is not refused.
         why: the reason.
     """
 
@@ -101,16 +105,14 @@ def without_refused(
         else:
             large.append((area, part))
     large.sort(key=lambda one: -one[0])
-    return [part for _, part in large], _places(mesh, why, codes, refusals.names)
+    return [part for _, part in large], _places(mesh, why, codes, refusals)
 
 
-def _places(
-    mesh: Triangles, why: Codes, codes: Codes, names: tuple[str, ...]
-) -> list[RefusedPlace]:
+def _places(mesh: Triangles, why: Codes, codes: Codes, refusals: Refusals) -> list[RefusedPlace]:
     """Triangles (m,) that are left out, those that meet and have the same reason as one place."""
     out = np.flatnonzero(why)
     # Triangles are joined over what they share: a corner, for one reason.
-    keys = mesh.corners[out] * len(names) + why[out][:, None]
+    keys = mesh.corners[out] * len(refusals.names) + why[out][:, None]
     shared = np.unique(keys, return_inverse=True)[1].reshape(-1, 3)
     pairs = np.column_stack([np.repeat(np.arange(len(out)), 3), len(out) + shared.ravel()])
     place_of = grouped(len(out) + int(shared.max(initial=-1)) + 1, pairs)[: len(out)]
@@ -119,8 +121,10 @@ def _places(
     for number in np.unique(place_of).tolist():
         members = out[place_of == number]
         corners = np.unique(mesh.corners[members])
-        place = mesh.points[corners[np.argmax(deep[corners])]]
-        found.append(RefusedPlace(float(mesh.areas[members].sum()), place, names[why[members[0]]]))
+        deepest = corners[np.argmax(deep[corners])]
+        place = refusals.tested(mesh.points[deepest], mesh.normals[deepest])
+        reason = refusals.names[why[members[0]]]
+        found.append(RefusedPlace(float(mesh.areas[members].sum()), place, reason))
     return found
 
 

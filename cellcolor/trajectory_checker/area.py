@@ -12,7 +12,13 @@ from cellcolor.data.trajectory_verdict import CoveredArea
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.build import BuildResult
 from cellcolor.trajectory_checker.claims import judge_left_out
-from cellcolor.trajectory_checker.covered import excused, patches, reach, reachable_areas
+from cellcolor.trajectory_checker.covered import (
+    excused,
+    failing_places,
+    patches,
+    reach,
+    reachable_areas,
+)
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
@@ -118,7 +124,10 @@ def judge_area(
         length_m=length,
         length_times_spacing_per_area=length * spacing / total if total else 0.0,
     )
-    judge_left_out(trajectory, fine, areas, near, right, missed, spacing, faults)
+    failing = failing_places(
+        built.prepared, trajectory, trajectory.segment[dense.sample[rows]], branches, fine, deadline
+    )
+    judge_left_out(trajectory, fine, areas, near, right, missed, failing, spacing, faults)
     _note_uncovered(fine, areas, uncovered, missed & ~right, total, spacing, limits, faults)
     if covered.mean_visits > limits.most_mean_visits:
         text = (

@@ -49,13 +49,14 @@ def judge_left_out(
     reached: Mask,
     right: Mask,
     asked: Mask,
+    failing: Mask,
     spacing: float,
     faults: FaultList,
 ) -> None:
     """Note stated places that could have been covered, and stated areas that are not true.
 
-    A stated place counts as rightly left out if its nearest vertex is, or one that an edge or two
-    join with it: the planner tests other points than the vertices of the fine mesh.
+    A stated place is rightly left out if its nearest vertex is, or if the segment's own branches
+    fail there: the planner tests other points than the vertices of the fine mesh.
 
     Args:
         trajectory: what is judged.
@@ -64,6 +65,7 @@ def judge_left_out(
         reached: (n,) which vertices are covered.
         right: (n,) which are rightly left out.
         asked: (n,) of which that was asked; the others are closely covered.
+        failing: (p,) at which stated places the segment's branches fail.
         spacing: the setup's, between passes, m.
         faults: where they are noted.
     """
@@ -74,7 +76,7 @@ def judge_left_out(
     if out > _AREA_SHARE * stated + np.pi * spacing**2:
         text = f"{stated:.6f} m² are stated to be left out, and {out:.6f} m² are"
         faults.add("claim", text)
-    for part in trajectory.left_out:
+    for part, fails in zip(trajectory.left_out, failing.tolist(), strict=True):
         place = np.array(part.place)
         if not 0 <= part.area_m2 <= total:
             text = f"segment {part.segment}: {part.area_m2:.6f} m² left out of {total:.6f} m²"
@@ -84,12 +86,6 @@ def judge_left_out(
         if apart[at] > spacing:
             text = f"segment {part.segment}: a stated left-out place is not on the surface"
             faults.add("claim", text, place=place)
-        elif (
-            asked[at]
-            and not reached[at]
-            and areas[at] > 0
-            and not right[at]
-            and not right[fine.near[[at]].indices].any()
-        ):
+        elif asked[at] and not reached[at] and areas[at] > 0 and not right[at] and not fails:
             text = f"segment {part.segment}: stated as left out ({part.reason}), but reachable"
             faults.add("claim", text, place=place)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
+from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
@@ -116,6 +117,40 @@ def excused(
             asked = asked[prepared.judge(found, deadline).reasons != VALID]
         right[asked] = True
     return right
+
+
+def failing_places(
+    prepared: PreparedScene,
+    trajectory: Trajectory,
+    segment: Index,
+    branches: Index,
+    fine: FineMesh,
+    deadline: Deadline,
+) -> Mask:
+    """At which of the places that are stated to be left out (p,) no branch of the segment is valid.
+
+    A segment that is not driven at all has every branch.
+
+    Args:
+        segment: (c,) of each row in contact; ``branches`` (c,) of these.
+    """
+    failing = np.zeros(len(trajectory.left_out), dtype=bool)
+    if not len(failing):
+        return failing
+    places = np.array([part.place for part in trajectory.left_out])
+    nearest = cKDTree(fine.vertices).query(places)[1]
+    at = fine.locate(places, fine.normals[nearest], deadline)
+    stated = np.array([part.segment for part in trajectory.left_out])
+    every = np.arange(len(prepared.kinematics.branches))
+    for number in np.unique(stated).tolist():
+        own = np.unique(branches[segment == number])
+        asked = np.flatnonzero(stated == number)
+        for branch in (own[own >= 0] if (own >= 0).any() else every).tolist():
+            of = np.full(len(asked), branch, dtype=np.intp)
+            found = prepared.arm.follow(at.points[asked], -at.normals[asked], of)
+            asked = asked[prepared.judge(found, deadline).reasons != VALID]
+        failing[asked] = True
+    return failing
 
 
 def patches(fine: FineMesh, areas: Array, uncovered: Mask) -> list[tuple[float, Array]]:

@@ -103,6 +103,10 @@ class Discs:
         assert (normals == [0, 0, 1]).all()
         return (self.depths(points) >= 0).astype(np.uint8)
 
+    def tested(self, point: Array, normal: Array) -> Array:
+        assert self(point[None], normal[None]).all()
+        return point
+
 
 @given(st.integers(0, 10**6), st.sampled_from(sorted(PATTERNS)), st.data())
 @examples(6)

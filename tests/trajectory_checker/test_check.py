@@ -16,6 +16,7 @@ from world import KINDS, World, standing
 
 import cellcolor
 from cellcolor.arrays import Array
+from cellcolor.data.candidate_table import VALID
 from cellcolor.data.surface import Crack
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
 from cellcolor.data.trajectory_csv import read_trajectory_csv
@@ -27,6 +28,7 @@ from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.frontend.prepared import prepare
 from cellcolor.trajectory_checker.check import check_trajectory
 from cellcolor.trajectory_checker.claims import judge_left_out, judge_lift_offs
+from cellcolor.trajectory_checker.covered import failing_places
 from cellcolor.trajectory_checker.fault_list import FaultList
 from cellcolor.trajectory_checker.fine_mesh import refined
 from cellcolor.trajectory_checker.other_planners import completed
@@ -450,20 +452,43 @@ def test_a_whole_segment_left_out_allows_one_fewer(segments: tuple[int, ...], fa
     assert found.counts["lift-offs"] == faults
 
 
-@pytest.mark.parametrize(("beside", "faults"), [(0, 0), (1, 0), (2, 0), (3, 1)])
-def test_a_place_is_left_out_rightly_with_its_neighbors(beside: int, faults: int) -> None:
-    """A strip of triangles; its last vertex is stated, and one before it is out of reach."""
+@pytest.mark.parametrize(
+    ("vertex", "there", "faults"), [(False, False, 1), (True, False, 0), (False, True, 0)]
+)
+def test_a_place_is_left_out_rightly_if_it_or_its_vertex_fails(
+    vertex: bool, there: bool, faults: int
+) -> None:
+    """A strip of triangles, whose last vertex is stated."""
     places = np.array([[x, y, 0.0] for x in range(6) for y in range(2)])
     corner = 2 * np.arange(5)[:, None]
     faces = np.concatenate([corner + np.array([0, 2, 1]), corner + np.array([1, 2, 3])])
     fine = refined(Surface(places, faces, np.tile([0.0, 0.0, 1.0], (12, 1))), 2.0, NEVER)
     drive = rasters.cap()[2]
     stated = replace(drive, left_out=(LeftOut(0, 0.5, "self collision", (5.0, 0.0, 0.0)),))
+    reached, asked = np.zeros(12, dtype=bool), np.ones(12, dtype=bool)
     right = np.zeros(12, dtype=bool)
-    right[2 * (5 - beside)] = True
+    right[10] = vertex
     found, areas = FaultList(drive, timed=True), np.full(12, 0.5)
-    judge_left_out(stated, fine, areas, ~np.ones(12, bool), right, np.ones(12, bool), 0.1, found)
+    failing = np.array([there])
+    judge_left_out(stated, fine, areas, reached, right, asked, failing, 0.1, found)
     assert found.counts["claim"] == faults
+
+
+def test_stated_places_fail_where_the_branches_of_their_segment_do() -> None:
+    """At the vertices the build knows: in the branch driven, and in any if none is."""
+    prepared, built, drive = rasters.cap()
+    surface = prepared.surface
+    valid = built.reasons == VALID
+    branch = int(np.argmax(valid.any(axis=0) & ~valid.all(axis=0)))
+    places = [tuple(place) for place in surface.vertices.tolist()]
+    parts = [LeftOut(segment, 0.0, "reach", place) for segment in (0, 1) for place in places]
+    stated = replace(drive, left_out=tuple(parts))
+    fine = refined(surface, 1.0, NEVER)
+    driven, branches = np.array([0]), np.array([branch])
+    failing = failing_places(prepared, stated, driven, branches, fine, NEVER)
+    assert (failing[: len(places)] == ~valid[:, branch]).all()
+    assert (failing[len(places) :] == ~valid.any(axis=1)).all()
+    assert 0 < failing[: len(places)].sum() < len(places)
 
 
 @pytest.mark.parametrize(("margin", "kept"), [(0.0095, True), (0.0105, False)])
