@@ -136,7 +136,7 @@ def plots_of(rows: Sequence[Row]) -> dict[str, Plot]:
 def cactus(rows: Sequence[Row]) -> Plot:
     """For each solver how many minima it proves in how many seconds each."""
     curves = []
-    for name, own in _in_order(rows):
+    for name, own in of_contestants(rows):
         times = sorted(filter(math.isfinite, map(solve_seconds, own)))
         points = [(float(rank), max(time, _LEAST)) for rank, time in enumerate(times, 1)]
         curves.append(Curve(f"{name} ({len(times)})", tuple(points)))
@@ -152,7 +152,7 @@ def growth(rows: Sequence[Row], size: Callable[[Row], int], name: str) -> Plot:
     A curve ends where half of the runs or more prove nothing.
     """
     curves = []
-    for solver, own in _in_order(rows):
+    for solver, own in of_contestants(rows):
         points = []
         bins = by(own, lambda row: max(0, math.ceil(math.log2(max(1, size(row))))))
         for _, group in sorted(bins.items()):
@@ -210,6 +210,7 @@ def _drawn(row: Row) -> float:
     return max(seconds, _LEAST) if math.isfinite(seconds) else _FAILED * row.limit
 
 
-def _in_order(rows: Sequence[Row]) -> list[tuple[str, list[Row]]]:
+def of_contestants(rows: Sequence[Row]) -> list[tuple[str, list[Row]]]:
+    """The runs of each contestant, the default solver's first."""
     runs = by(rows, lambda row: row.contestant)
     return [(name, runs[name]) for name in contestants_of(rows)]

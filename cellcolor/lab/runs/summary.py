@@ -13,6 +13,7 @@ from cellcolor.lab.runs.statistics import (
     common,
     contestants_of,
     median_seconds,
+    of_contestants,
     par2,
     strongest,
 )
@@ -171,7 +172,7 @@ def _ends(rows: Sequence[Row]) -> Iterator[str]:
     """What did not end with an answer, and what the runs took."""
     bad = ("timeout", "memory", "crashed", "refused", "unsupported")
     body = []
-    for name, own in _of_contestants(rows):
+    for name, own in of_contestants(rows):
         answered = [row for row in own if row.status in FINISHED]
         over = max((row.seconds - row.limit for row in answered if row.seconds), default=-math.inf)
         body.append(
@@ -193,11 +194,6 @@ def _ends(rows: Sequence[Row]) -> Iterator[str]:
         "s of start-up, median",
     ]
     yield from markdown_table(head, body)
-
-
-def _of_contestants(rows: Sequence[Row]) -> Iterator[tuple[str, list[Row]]]:
-    runs = by(rows, lambda row: row.contestant)
-    return ((name, runs[name]) for name in contestants_of(rows))
 
 
 def _open(rows: Sequence[Row]) -> Iterator[str]:
