@@ -12,7 +12,7 @@ from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.bounds.hubs import hub_bound
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
 from cellcolor.solvers.cpsat.hub_division import divide_hubs
-from cellcolor.solvers.cpsat.model.painting import Block, Painting
+from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.model_search import ModelSearch
 from cellcolor.solvers.cpsat.part_state import PartState
@@ -64,6 +64,7 @@ class PartSearch(PartState):
         self.planning = Planning(self)
         self.models = ModelSearch(self)
         self._turns = self._exact = 0
+        self._whole = self.best
 
     def cover(self, deadline: Deadline) -> None:
         """The first bound, and a division that follows from a smallest cover."""
@@ -74,6 +75,7 @@ class PartSearch(PartState):
         color_of = {cell: color for color, cells in found.regions for cell in cells}
         whole: Painting = [[Block(color_of[c.id], set())] for c in self.instance.cells]
         self.offer(self.best[0], whole)
+        self._whole = self.best[0], canonical(self.best[0], whole)
 
     def count_links(self, deadline: Deadline) -> None:
         """A bound by what fits side by side in cells with many edges, and a matching division."""
@@ -127,18 +129,22 @@ class PartSearch(PartState):
         if self.hubs is None and not self.large:
             self._drop(self.options.seed, deadline, FRUITLESS)
 
-    def recolor_large(self, deadline: Deadline, moves: int = MOVES) -> None:
+    def recolor_large(self, deadline: Deadline) -> None:
         """Better divisions of a large part by local search.
 
-        A few moves come before plans, so that plans can be compared with a good division. On small
-        parts other routes and windows find as much or more.
+        On small parts other routes and windows find as much or more.
         """
         if self.large:
-            self.recolor(*self.best, self.options.seed, deadline, moves)
+            self.recolor(*self.best, self.options.seed, deadline, MOVES)
 
     def begin_large(self, deadline: Deadline) -> None:
-        """The few moves."""
-        self.recolor_large(deadline, FEW_MOVES)
+        """A few moves before plans, so that plans can be compared with a good division."""
+        if self.large:
+            self.recolor(*self.best, self.options.seed, deadline, FEW_MOVES)
+
+    def begin_again(self, seed: int, deadline: Deadline) -> None:
+        """A few moves from the cells painted whole, as the cover has them."""
+        self.recolor(*self._whole, seed, deadline, FEW_MOVES, whole_first=True)
 
     def narrow_gap(self, deadline: Deadline) -> None:
         """Take turns, where more is missing than a model is likely to close."""
@@ -157,12 +163,14 @@ class PartSearch(PartState):
     def _take_turns(self, deadline: Deadline) -> None:
         """Local search on a large part; on others segments left out, then windows. New seeds.
 
-        Then plans, with more effort each time.
+        Local search begins again from whole cells, then goes on from the best division, since what
+        it finds differs from start to start. Then plans, with more effort each time.
         """
         deadline.check()
         self._turns += 1
         seed = self.options.seed + self._turns
         if self.large:
+            self.begin_again(seed, deadline.share(SHARE_OF_ROUTES))
             self.recolor(*self.best, seed, deadline.share(SHARE_OF_ROUTES), MOVES)
         else:
             self._drop(seed, deadline.share(SHARE_OF_ROUTES), MORE_TRIES)

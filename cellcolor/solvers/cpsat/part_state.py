@@ -150,10 +150,31 @@ class PartState:
                 return
 
     def recolor(
-        self, graph: DartGraph, painting: Painting, seed: int, deadline: Deadline, moves: int
+        self,
+        graph: DartGraph,
+        painting: Painting,
+        seed: int,
+        deadline: Deadline,
+        moves: int,
+        *,
+        whole_first: bool = False,
     ) -> None:
-        """What local search makes of a canonical painting, kept if it is the best so far."""
-        self.keep_all(graph, recolor(graph, painting, seed, self.bound, deadline, moves))
+        """What local search makes of a canonical painting, kept if it is the best so far.
+
+        Args:
+            graph: the part's.
+            painting: where to begin.
+            seed: of the choice of moves.
+            deadline: when to stop.
+            moves: in vain, for each segment.
+            whole_first: whether to begin with cells that are painted whole.
+        """
+        for rings in (0, 1) if whole_first else (1,):
+            for better in recolor(graph, painting, seed, self.bound, deadline, moves, rings):
+                painting = better
+                self.keep(graph, painting)
+                if self.done:
+                    return
 
     def raise_to(self, bound: int, *, for_surface: bool) -> None:
         """A bound that is proved, in the search space alone or for any division of the surface."""

@@ -20,7 +20,16 @@ from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import planar_graph, voronoi
 from cellcolor.solvers.cpsat.model.dart_graph import dart_graph, seams_of
-from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, division_of
+from cellcolor.solvers.cpsat.model.painting import (
+    Block,
+    Painting,
+    canonical,
+    division_of,
+    segments_of,
+)
+from cellcolor.solvers.cpsat.model_runs import Runner
+from cellcolor.solvers.cpsat.part_search import PartSearch
+from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.cpsat.routes.recoloring import Recoloring, recolor
 from cellcolor.solvers.cpsat.routes.sectors import (
     RefinedGraph,
@@ -28,6 +37,7 @@ from cellcolor.solvers.cpsat.routes.sectors import (
     painting_of_nodes,
     refined,
 )
+from cellcolor.solvers.interface import Options
 from examples import examples
 
 SEEDS = st.integers(0, 10**6)
@@ -71,7 +81,7 @@ def test_each_division_is_legal_and_better(seed: int, cells: int, colors: int) -
 
 @examples(40)
 @given(
-    seed=SEEDS, cells=st.integers(2, 25), colors=st.integers(2, 6), rings=st.sampled_from((1, 2))
+    seed=SEEDS, cells=st.integers(2, 25), colors=st.integers(2, 6), rings=st.sampled_from((0, 1, 2))
 )
 def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: int) -> None:
     """However segments came apart and together, there are as many as another program counts."""
@@ -88,6 +98,22 @@ def test_segments_are_counted_right(seed: int, cells: int, colors: int, rings: i
         assert search.segments == components(ways, search.current)
         assert search.fewest <= search.segments
     assert search.fewest == components(ways, search.best)
+
+
+@examples(20)
+@given(seed=SEEDS)
+def test_without_rings_cells_stay_whole(seed: int) -> None:
+    """Each division is legal and better all the same, and may be where the next search begins."""
+    instance = planar_graph(seed, 12, 24, 4)
+    graph, painting = graph_of(instance), whole(instance)
+    known = len(segments_of(graph, painting))
+    for rings in (0, 1):
+        for better in recolor(graph, painting, seed, 0, NEVER, 10, rings):
+            painting = better
+            report = check_division(instance, division_of(graph, painting), seams=graph.seams)
+            assert report.valid and report.segments < known
+            known = report.segments
+            assert rings or all(len(blocks) == 1 for blocks in painting)
 
 
 @pytest.mark.parametrize("petals", [(0, 1, 0, 1), (0, 1, 0, 1, 0, 1), (0, 1, 2, 0, 1, 2)])
@@ -144,3 +170,17 @@ def test_a_part_of_340_cells_is_better_than_it_was_by_windows() -> None:
     report = check_division(instance, division_of(graph, division), seams=graph.seams)
     assert report.valid, report.problems
     assert report.segments <= search.fewest
+
+
+def test_a_large_part_begins_again_with_whole_cells() -> None:
+    """Five moves for each segment with a ring in every cell come to 11 and 12 segments."""
+    instance = cellcolor.read(INSTANCES / "hard" / "large_part_1.json")
+    assert isinstance(instance, Instance)
+    colors = [frozenset(cell.colors) for cell in instance.cells]
+    largest = max(split(instance, colors), key=lambda part: len(part.cells))
+    for seed in (0, 3):
+        options = Options(deadline=NEVER, workers=1, seed=seed)
+        search = PartSearch(largest, options, Runner(options), lambda: None)
+        search.cover(NEVER)
+        search.begin_again(seed, NEVER)
+        assert search.segments <= 10
