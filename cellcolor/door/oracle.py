@@ -186,16 +186,18 @@ class Oracle:
             BeatenBound: the plan is valid and beats the lower bound; cellcolor is wrong.
             InputError: the plan or the surface cannot be used; a plan in joint angles goes with a
                 scene.
+            OutOfTime: the deadline came before the colors of a plan in joint angles were known.
         """
         file = str(plan) if isinstance(plan, (str, PathLike)) else None
         if isinstance(plan, (str, PathLike)):
             plan = read_claim(plan)
+        deadline = deadline or Deadline.of(self._time_limit)
         if isinstance(plan, (ContactPath, Trajectory, TrajectoryTable)):
             with _in_file(file):
-                found = colors_of_path(self._subject, plan)
+                found = colors_of_path(self._subject, plan, deadline)
             return self._of_path(found, deadline)
         if isinstance(plan, JointPlan):
-            colors, violations = colors_of_joints(self._subject, plan)
+            colors, violations = colors_of_joints(self._subject, plan, deadline)
             if violations:
                 problems = tuple(map(str, violations))
                 about: dict[str, Any] = {"surface": self.surface, "plan": colors}
@@ -203,11 +205,10 @@ class Oracle:
             plan = colors
         return self._of_colors(plan, deadline)
 
-    def _of_colors(self, plan: Any, deadline: Deadline | None) -> Verdict:
+    def _of_colors(self, plan: Any, deadline: Deadline) -> Verdict:
         """The verdict on a plan in colors, or on a solution."""
         if isinstance(plan, Result):
             plan = plan.solution
-        deadline = deadline or Deadline.of(self._time_limit)
         if isinstance(plan, Solution):
             self._subject.check_graph(deadline)
             report = check_solution(self._subject.graph(), plan)
@@ -236,7 +237,7 @@ class Oracle:
         late = best is None and given is not None and not self._painted
         return Verdict((), segments, bounds, improvement=improvement, late=late, **about)
 
-    def _of_path(self, found: PathColors, deadline: Deadline | None) -> PathVerdict:
+    def _of_path(self, found: PathColors, deadline: Deadline) -> PathVerdict:
         """The verdict on a tool path, by what it comes to in colors."""
         coloring = found.coloring
         about: dict[str, Any] = {

@@ -17,6 +17,7 @@ from meshes import drawn
 import cellcolor
 from cellcolor.data.plan import Plan
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.errors import InputError
 from cellcolor.testing.surface_under_test import SurfaceUnderTest
 from examples import examples
@@ -37,6 +38,12 @@ def best() -> Plan:
     found = the_oracle().best
     assert found is not None and found.segments_on_mesh == the_oracle().bounds.lower
     return found.on_mesh
+
+
+def test_the_deadline_holds_for_the_joints_as_well() -> None:
+    plan = cellcolor.JointPlan(joints_of(scene(), best()))
+    with pytest.raises(OutOfTime):
+        the_oracle().judge(plan, deadline=Deadline.after(0))
 
 
 @examples(15)
