@@ -15,6 +15,7 @@ from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.following import (
     Followed,
+    blocked,
     bowed,
     follow,
     joint_space,
@@ -108,9 +109,9 @@ def _course(
 ) -> Course:
     """A branch along a path, with samples so close that joints may move evenly between them.
 
-    A step is halved where a joint moves far, as beside a singularity, and where the tool leaves its
-    way or the surface's normal between the samples, as beside a sharp edge. A step that still does
-    on the last round is torn.
+    A step is halved where a joint moves far, as beside a singularity, where the tool leaves its way
+    or the surface's normal between the samples, as beside a sharp edge, and where a configuration
+    between them fails a test. A step that still does on the last round is torn.
     """
 
     def at(places: Array) -> Samples:
@@ -126,7 +127,10 @@ def _course(
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
             bad |= off_way(prepared.robot, way, at(places[:-1] + share * np.diff(places)))
-        bad &= valid[:-1] & valid[1:] & ~torn
+        ends = valid[:-1] & valid[1:] & ~torn
+        bad &= ends
+        if not bad.any():
+            bad = blocked(prepared, joints, ends, deadline)
         rows = np.flatnonzero(bad)
         if not len(rows) or halvings == _HALVINGS:
             break

@@ -23,6 +23,7 @@ _BOW = 0.3  # of the way between two samples, for the tip: where normals turn fa
 _BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
 _ROUNDING = 1e-6  # m
 _OFF = 4e-4  # m, of the tip off the surface; the judge allows a millimeter
+_FAR_TURN, _FAR_SLIDE = float(np.deg2rad(1.0)), 0.001  # rad, m; what no joint passes untested
 _TILT = float(np.deg2rad(0.6))  # of the tool's axis off the normal; the judge allows a degree
 
 
@@ -103,6 +104,26 @@ def off_way(robot: Robot, joints: Array, samples: Samples) -> Mask:
     if robot.task.direction:
         off |= angles_between(poses.tool_axis, -samples.normals) > _TILT
     return np.asarray(off)
+
+
+def blocked(prepared: PreparedScene, joints: Array, asked: Mask, deadline: Deadline) -> Mask:
+    """Steps (k - 1,) of samples (k, joints) between which a configuration fails a test.
+
+    Where a joint moves far on a step, the arm passes configurations that no sample has.
+
+    Args:
+        asked: (k - 1,) the steps to be tested; none has a missing end.
+    """
+    farthest = np.where(prepared.robot.slides, _FAR_SLIDE, _FAR_TURN)
+    ways = np.diff(joints, axis=0)
+    pieces = np.ceil((np.abs(ways) / farthest).max(axis=1, initial=0.0) - _ROUNDING)
+    pieces = np.where(asked, np.maximum(pieces, 1), 1).astype(np.int64)
+    step = np.repeat(np.arange(len(ways)), pieces - 1)
+    number = np.arange(len(step)) - np.repeat(np.cumsum(pieces - 1) - (pieces - 1), pieces - 1) + 1
+    between = joints[step] + (number / pieces[step])[:, None] * ways[step]
+    found = np.zeros(len(ways), dtype=bool)
+    found[step[prepared.judge(between, deadline).reasons != VALID]] = True
+    return found
 
 
 def unwound(joints: Array, space: JointSpace) -> Array:

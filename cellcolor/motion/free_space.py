@@ -8,7 +8,7 @@ import numpy as np
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.body import Body
-from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward
+from cellcolor.frontend.arm.kinematics import Poses, bytes_of_poses, forward
 from cellcolor.frontend.arm.robot import Robot, wider, wider_body
 from cellcolor.frontend.contact.collision import body_ends, hits_ground, hits_itself
 from cellcolor.frontend.prepared import PreparedScene
@@ -16,13 +16,16 @@ from cellcolor.frontend.reach.always_touching import always_touching
 from cellcolor.memory import cached
 from cellcolor.motion.following import joint_space
 
+_TOUCHING = 0.001  # m; so far the tip of a tool that leaves the object may be in it
+_THIN = 1e-4  # m; radius of the axis of the tool's tip
+
 
 class FreeSpace:
     """Tests of configurations without contact: joint limits, ground, the arm itself, solids.
 
     Force and conditioning are not tested. The region at the tool's tip is tested against everything
-    like a body of the arm, including the object, unless ``leaving`` says that the tool is only
-    leaving the object or approaching it.
+    like a body of the arm, including the object. Where ``leaving`` says that the tool is only
+    leaving the object or approaching it, its tip may touch the object, but not pass through it.
 
     Attributes:
         space: of the joints, with their limits.
@@ -135,10 +138,23 @@ class FreeSpace:
         for around, solid in (*near, (self._near_object, place.target)):
             left = np.flatnonzero(~hit)
             hit[left] = solid.hits(around, body_ends(around, poses)[:, :, left], poses.take(left))
+        if self._leaving:
+            left = np.flatnonzero(~hit)
+            hit[left] = self._tip_through_object(poses.take(left))
         for half in self._halves:
             left = np.flatnonzero(~hit)
             hit[left] = hits_itself(half, body_ends(half, poses)[:, :, left], poses.take(left))
         return hit
+
+    def _tip_through_object(self, poses: Poses) -> Mask:
+        """Whether the tool's axis passes through the object between the tip and the tool's body."""
+        length = self._place.tip.body.length
+        if length <= _TOUCHING:
+            return np.zeros(len(poses.tip), dtype=bool)
+        end = np.array([0.0, 0.0, length - _TOUCHING])
+        axis = Body("tool tip", 0, np.zeros(3), end, _THIN, False)
+        ends = np.stack([poses.tip - far * poses.tool_axis for far in (_TOUCHING, length)])
+        return np.asarray(self._place.target.touched_by(axis, ends))
 
 
 def _with_tip(robot: Robot, tip: Body) -> Robot:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import rasters
 from shipped import shipped
 from world import KINDS, PAIRS, World, standing
 
@@ -91,3 +92,19 @@ def test_an_arm_without_any_body_is_free_but_for_its_tip() -> None:
     clear = FreeSpace(replace(prepared, workplace=place), CLEARANCE).clear(joints)
     assert clear.any() and not clear.all()
     assert clear[FreeSpace(prepared, CLEARANCE).clear(joints)].all()
+
+
+@pytest.mark.parametrize(("height", "free"), [(0.003, True), (-0.0005, True), (-0.003, False)])
+def test_a_tool_that_leaves_may_touch_the_object_but_not_pass_through_it(
+    height: float, free: bool
+) -> None:
+    """The tip above a sheet, a hair under it, and 3 mm under it."""
+    prepared, _, drive = rasters.square()
+    at = np.flatnonzero(drive.contact)[[10, 200]]
+    normals = drive.normals[at]
+    points = drive.points[at] + height * normals
+    all_branches = prepared.arm.inverse(points, -normals)
+    off = np.abs(all_branches - drive.joints[at][:, None]).max(axis=2)
+    joints = all_branches[np.arange(len(at)), np.nanargmin(off, axis=1)]
+    clear = FreeSpace(prepared, 0.0, leaving=True).clear(joints)
+    assert clear.tolist() == [free] * len(at)
