@@ -155,13 +155,14 @@ def visits_of(line: Line, spacing: float) -> Index:
     outward = (mesh.normals[mesh.corners[chosen]] * shares).sum(axis=1)
     points, normals = _sampled(line.points, line.normals, spacing / _FINE)
     near = cKDTree(points).query_ball_point(places, spacing / 2, return_sorted=True)
-    counts = np.zeros(len(places), dtype=np.int64)
-    for number, found in enumerate(near):
-        own = np.array(found, dtype=np.int64)
-        own = own[normals[own] @ outward[number] > 0]  # the back of a sheet faces away
-        if len(own):
-            counts[number] = 1 + int((np.diff(own) > 1).sum())
-    return counts
+    place = np.repeat(np.arange(len(places)), [len(found) for found in near])
+    found = np.concatenate([np.array(rows, dtype=np.int64) for rows in near])
+    # The back of a sheet faces away.
+    kept = np.einsum("ij,ij->i", normals[found], outward[place]) > 0
+    place, found = place[kept], found[kept]
+    begins = np.ones(len(found), dtype=bool)
+    begins[1:] = (np.diff(found) > 1) | (np.diff(place) > 0)
+    return np.bincount(place[begins], minlength=len(places))
 
 
 def _sampled(points: Array, normals: Array, longest: float) -> tuple[Array, Array]:
