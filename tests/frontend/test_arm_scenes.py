@@ -15,7 +15,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 FILES = {path.stem: path for path in sorted((TOP / "instances" / "arms").glob("*.toml"))}
 # One for each arm; the others are the same arms on other parts.
@@ -83,7 +83,7 @@ def check_motion(scene: Scene, **options: float) -> None:
     assert planned.verdict.lift_offs == minimum + len(planned.trajectory.extra_lift_offs)
 
 
-@pytest.mark.second
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e_half_pipe", "kr6_wok"])
 def test_a_motion_is_judged_valid(name: str) -> None:
     scene = Scene.read(FILES[name]).varied(object={"target_vertices": 150})

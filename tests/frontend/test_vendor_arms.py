@@ -39,7 +39,7 @@ def meshed(scene: Varied, folder: Path, **setup: object) -> BuildResult:
     return build_surface(wok.with_setup(wok.setup.varied(robot=robot, **setup)))
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_a_hull_and_margins_only_take_away(scene: Varied, tmp_path: Path) -> None:
     exact = meshed(scene, tmp_path, robot={"mesh_collision": "exact"})
     hull = meshed(scene, tmp_path)
@@ -110,7 +110,7 @@ def test_links_that_always_overlap_are_named_and_may_touch(scene: Varied) -> Non
     assert caught.value.field == "robot.may_touch[0]"
 
 
-@pytest.mark.second
+@pytest.mark.slow
 @pytest.mark.parametrize("radius", [0.1, 0.05])
 def test_capsules_that_leave_nothing_free_are_refused(
     scene: Varied, tmp_path: Path, radius: float
@@ -141,7 +141,7 @@ def test_capsules_that_leave_nothing_free_are_refused(
     build_surface(scene(setup={"mesh_collision": "hull"}, **keys))
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_capsules_that_leave_hardly_anything_free_are_warned_of(tmp_path: Path) -> None:
     """Balls about the base and wrist 1, which meet unless the arm is stretched upwards."""
     text = (ROBOTS / "ur5.urdf").read_text()

@@ -47,7 +47,7 @@ from cellcolor.solvers.cpsat import CpSatSolver
 from cellcolor.solvers.dfs import ReferenceSolver
 from cellcolor.solvers.interface import Answer, OnProgress, Options
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 RING = Instance.read(PAPER / "ring.json")
 EVERY_KIND = len(KINDS)

@@ -21,7 +21,7 @@ from cellcolor.oracle.proof_cache import ProofCache
 sys.path.append(str(INSTANCES.parent / "benchmarks"))
 import oracle
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 ROOT = INSTANCES.parent
 SCENES = {

@@ -45,7 +45,7 @@ def found(arch: Path) -> Comparison:
     return compare(arch, "ur5e", ROBOTS / "kr6.urdf")
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_rows_are_those_of_a_scene_begun_and_moved_by_hand(
     found: Comparison, arch: Path, tmp_path: Path
 ) -> None:
@@ -79,7 +79,7 @@ def test_rows_are_those_of_a_scene_begun_and_moved_by_hand(
     assert found.cover == pytest.approx(max(shares))
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_an_arm_that_reaches_nothing_is_a_row(arch: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def out_of_reach(arm: FoundArm, *others: Any) -> tuple[PreparedScene, float]:
         if arm.reach < 0.7:
@@ -97,7 +97,7 @@ def test_an_arm_that_reaches_nothing_is_a_row(arch: Path, monkeypatch: pytest.Mo
         compare(arch, "ur3e")
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_the_command_prints_rows_and_a_picture(arch: Path, tmp_path: Path, capsys: Capture) -> None:
     picture = tmp_path / "arms.svg"
     options = ("--arm", "ur5e", "--x", "0.4,0.6", "--points", "1", "--vertices", "60")

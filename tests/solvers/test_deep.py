@@ -23,7 +23,7 @@ from cellcolor.solvers.dfs.cell_schemes import cell_schemes
 from cellcolor.solvers.dfs.graph import Graphs
 from cellcolor.solvers.interface import Options
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 DEEP = 1500
 """Python's stack has room for a thousand calls."""

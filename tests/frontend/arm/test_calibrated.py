@@ -21,7 +21,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.arm.ur import BRANCHES, UrKinematics
 from cellcolor.frontend.setup import RobotFiles
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 LOCKED = 0.4
 ARMS = (("ur", "ur5e"), ("eaik", "ur5e"), ("eaik", "kr6"), ("eaik", "puma560"))

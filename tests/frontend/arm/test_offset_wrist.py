@@ -20,7 +20,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.offset_wrist import OffsetWrist
 from cellcolor.frontend.setup import RobotFiles
 
-pytestmark = pytest.mark.second
+pytestmark = pytest.mark.slow
 
 FILES = RobotFiles(
     arm_urdf="<",
@@ -94,7 +94,7 @@ def test_an_arm_whose_second_and_third_axes_are_not_parallel_is_refused() -> Non
     assert caught.value.field == "joint[j3]"
 
 
-@pytest.mark.second
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["xarm6", "gen3"])
 def test_an_offset_wrist_is_driven_and_judged_like_other_arms(name: str) -> None:
     bare = plate(dh_arms.urdf(name), "offset-wrist", vertices=60)
