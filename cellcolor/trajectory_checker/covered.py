@@ -111,12 +111,23 @@ def excused(
         regions.append((near < 0, every))
     for region, own in regions:
         asked = np.flatnonzero(missed & region)
-        for branch in np.unique(own[own >= 0]).tolist():
-            of = np.full(len(asked), branch, dtype=np.intp)
-            found = prepared.arm.follow(fine.vertices[asked], -fine.normals[asked], of)
-            asked = asked[prepared.judge(found, deadline).reasons != VALID]
-        right[asked] = True
+        places, normals = fine.vertices[asked], fine.normals[asked]
+        right[asked] = _out_of_reach(prepared, places, normals, own[own >= 0], deadline)
     return right
+
+
+def _out_of_reach(
+    prepared: PreparedScene, places: Array, normals: Array, branches: Index, deadline: Deadline
+) -> Mask:
+    """At which places (k, 3), with unit normals (k, 3), none of some branches is valid."""
+    left = np.arange(len(places))
+    for branch in np.unique(branches).tolist():
+        of = np.full(len(left), branch, dtype=np.intp)
+        found = prepared.arm.follow(places[left], -normals[left], of)
+        left = left[prepared.judge(found, deadline).reasons != VALID]
+    out = np.zeros(len(places), dtype=bool)
+    out[left] = True
+    return out
 
 
 def failing_places(
@@ -143,13 +154,11 @@ def failing_places(
     stated = np.array([part.segment for part in trajectory.left_out])
     every = np.arange(len(prepared.kinematics.branches))
     for number in np.unique(stated).tolist():
-        own = np.unique(branches[segment == number])
+        own = branches[(segment == number) & (branches >= 0)]
         asked = np.flatnonzero(stated == number)
-        for branch in (own[own >= 0] if (own >= 0).any() else every).tolist():
-            of = np.full(len(asked), branch, dtype=np.intp)
-            found = prepared.arm.follow(at.points[asked], -at.normals[asked], of)
-            asked = asked[prepared.judge(found, deadline).reasons != VALID]
-        failing[asked] = True
+        failing[asked] = _out_of_reach(
+            prepared, at.points[asked], at.normals[asked], own if len(own) else every, deadline
+        )
     return failing
 
 
