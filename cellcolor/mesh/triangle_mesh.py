@@ -146,11 +146,16 @@ class TriangleMesh:
         lengths = np.linalg.norm(sums, axis=1, keepdims=True)
         return _fixed(np.where(lengths > 0, sums / np.where(lengths > 0, lengths, 1.0), [0, 0, 1]))
 
+    @cached_property
+    def _inverses(self) -> Array:
+        """(m, 2, 3) what makes a vector from a triangle's first corner one of its sides."""
+        a, b, c = (self.points[self.corners[:, corner]] for corner in range(3))
+        return _fixed(np.linalg.pinv(np.stack([b - a, c - a], axis=2)))
+
     def shares(self, triangles: Index, points: Array) -> Array:
         """The barycentric coordinates (p, 3) of points (p, 3), each on a triangle (p,)."""
-        a, b, c = (self.points[self.corners[triangles, corner]] for corner in range(3))
-        inverse = np.linalg.pinv(np.stack([b - a, c - a], axis=2))
-        shares = np.einsum("kij,kj->ki", inverse, points - a)
+        from_corner = points - self.points[self.corners[triangles, 0]]
+        shares = np.einsum("kij,kj->ki", self._inverses[triangles], from_corner)
         return np.column_stack([1 - shares.sum(axis=1), shares])
 
     @cached_property

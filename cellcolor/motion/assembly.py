@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import ExtraLiftOff, LeftOut, RepeatedStretch, Trajectory
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.motion.retraced import beside_itself, stretches
+from cellcolor.motion.retraced import retraced, stretches
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.timing import Speeds, timed
 from cellcolor.motion.transfers import Transfer
@@ -80,7 +80,7 @@ def assembled(
     extra: list[ExtraLiftOff] = []
     repeated: list[RepeatedStretch] = []
     last_of: dict[int, int] = {}
-    partings = _partings(strokes)
+    partings, marked = _partings(strokes), _retraced(strokes, spacing)
     for number, transfer in enumerate(transfers):
         deadline.check()
         at_stroke = 1 if number else 0  # the first sample is the stroke's last one
@@ -106,7 +106,7 @@ def assembled(
         times = rows.now + timed(stroke.joints, speeds, stroke.points, tool_speed)
         repeated += [
             RepeatedStretch(rows.count + a, rows.count + b, "beside another pass")
-            for a, b in stretches(beside_itself(stroke.points, spacing))
+            for a, b in stretches(marked[number])
         ]
         rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
         rows.now = float(times[-1])
@@ -127,6 +127,16 @@ def assembled(
         repeated=tuple(repeated),
         meta=meta | ({"blocked": list(unplanned.values())} if unplanned else {}),
     )
+
+
+def _retraced(strokes: Sequence[Stroke], spacing: float) -> dict[int, Mask]:
+    """Of each stroke, which samples run along another pass over its segment."""
+    found: dict[int, Mask] = {}
+    for segment in {stroke.segment for stroke in strokes}:
+        own = [number for number, stroke in enumerate(strokes) if stroke.segment == segment]
+        marked = retraced([strokes[number].points for number in own], spacing)
+        found.update(zip(own, marked, strict=True))
+    return found
 
 
 def _partings(strokes: Sequence[Stroke]) -> dict[int, list[Any]]:

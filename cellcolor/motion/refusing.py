@@ -5,11 +5,14 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.small_triangles import JUMP, CornerStates, SmallTriangles
 from cellcolor.tool_paths.refused import Codes
+
+_NEAR = 12  # small triangles of which one is looked for that a point lies in
 
 
 class ArmRefusals:
@@ -45,6 +48,9 @@ class ArmRefusals:
         rows = np.column_stack([small.points[corners], small.normals[corners]])
         codes = states.reasons[own].ravel().tolist()
         self._known = dict(zip(map(bytes, rows), codes, strict=True))
+        self._apart = 5 * around
+        self._small, self._states = small, states
+        self._inside: tuple[cKDTree, TriangleMesh, Array] | None = None
         for number in own[states.wound[own]].tolist():
             self.add(number // 6, small.points[small.corners[number]].mean(axis=0), JUMP)
 
@@ -63,6 +69,7 @@ class ArmRefusals:
             verdicts = self._prepared.judge(found, self._deadline).reasons
             self._known.update(zip((keys[k] for k in asked), verdicts.tolist(), strict=True))
         codes = np.array([self._known[key] for key in keys], dtype=np.uint8)
+        codes[(codes == 0) & self._beyond(points, normals)] = self.names.index("joint limits")
         if self._failed:
             failed = np.array([point for point, _ in self._failed])
             apart, nearest = cKDTree(failed).query(points)
@@ -74,5 +81,43 @@ class ArmRefusals:
         """The point (3,) itself if its own test fails, otherwise the failed sample nearest."""
         if not self._failed or self._known.get(bytes(np.append(point, normal))):
             return point
+        if self._beyond(point[None], normal[None])[0]:
+            return point
         failed = np.array([place for place, _ in self._failed])
         return np.asarray(failed[np.linalg.norm(failed - point, axis=1).argmin()])
+
+    def keep_inside(self, part_of: Index, turns: Index) -> None:
+        """Refuse points at which the arm, continued over its small triangle, is beyond its limits.
+
+        Args:
+            part_of: (6 m,) the part of each small triangle, or -1.
+            turns: (p, joints) full circles to add in each part.
+        """
+        own = np.flatnonzero(part_of >= 0)
+        joints = self._states.joints[own]
+        joints = np.where(np.isfinite(joints), joints, joints[:, :1]).mean(axis=1)
+        positions = joints + self._states.space.period * turns[part_of[own]]
+        corners = self._small.corners[own]
+        normals = self._small.normals[corners].mean(axis=1)
+        tree = cKDTree(self._keys(self._small.points[corners].mean(axis=1), normals))
+        self._inside = tree, TriangleMesh(self._small.points, corners), positions
+
+    def _beyond(self, points: Array, normals: Array) -> Mask:
+        """Which points (k, 3) :meth:`keep_inside` refuses."""
+        if self._inside is None:
+            return np.zeros(len(points), dtype=bool)
+        tree, mesh, positions = self._inside
+        near = tree.query(self._keys(points, normals), k=min(_NEAR, len(positions)))[1].reshape(
+            len(points), -1
+        )
+        shares = mesh.shares(near.ravel(), np.repeat(points, near.shape[1], axis=0))
+        lowest = shares.min(axis=1).reshape(near.shape)
+        before = positions[np.take_along_axis(near, lowest.argmax(axis=1)[:, None], axis=1)[:, 0]]
+        branches = np.full(len(points), self._branch, dtype=np.intp)
+        space = self._states.space
+        found = before + space.step(before, self._prepared.arm.follow(points, -normals, branches))
+        return np.asarray(((found < space.lower) | (found > space.upper)).any(axis=1))
+
+    def _keys(self, points: Array, normals: Array) -> Array:
+        """Places (k, 6) that are apart for the two sides of a thin part as well."""
+        return np.column_stack([points, self._apart * normals])

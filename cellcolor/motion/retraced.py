@@ -1,6 +1,8 @@
-"""Where a stroke runs along one of its own passes: into a narrow place and back, or beside it."""
+"""Where strokes run along a pass of their own segment: into a narrow place and back, or beside."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -13,31 +15,38 @@ _FINE = 0.05  # spacings, about, between two of the points that are compared
 _ALONG = 0.9  # cosine of the angle up to which two passes run along each other
 
 
-def beside_itself(points: Array, spacing: float) -> Mask:
-    """Which points (k, 3) of a stroke have another of its passes beside them.
+def retraced(strokes: Sequence[Array], spacing: float) -> list[Mask]:
+    """Which points of a segment's strokes have another pass of these strokes beside them.
 
     Both passes are marked, so it does not matter which of them comes first: a stroke may be
-    reversed.
+    reversed. A path that is cut at the end of a narrow place goes in on one stroke and comes back
+    on the next.
 
     Args:
-        points: on the way, in their order, m.
+        strokes: (k, 3) points on the way of each, in their order, m.
         spacing: desired between passes, m.
     """
-    found = np.zeros(len(points), dtype=bool)
-    if len(points) < 3:
-        return found
-    way = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    lengths = [np.linalg.norm(np.diff(points, axis=0), axis=1) for points in strokes]
     # With a wide spacing there would be millions of pairs of points a millimeter apart.
-    every = max(1, int(_FINE * spacing * len(points) / max(way[-1], spacing)))
-    thin = np.arange(0, len(points), every)
-    marked = _marked(points[thin], way[thin], spacing) if len(thin) > 2 else found[thin]
-    return np.asarray(np.repeat(marked, every)[: len(points)])
+    count, length = sum(map(len, strokes)), sum(float(steps.sum()) for steps in lengths)
+    every = max(1, int(_FINE * spacing * count / max(length, spacing)))
+    ways, thin, begin = [], [], 0.0
+    for points, steps in zip(strokes, lengths, strict=True):
+        ways.append((begin + np.concatenate([[0.0], np.cumsum(steps)]))[::every])
+        thin.append(points[::every])
+        begin += float(steps.sum()) + 2 * _APART * spacing  # another stroke is another pass
+    marked = _marked(thin, np.concatenate(ways), spacing)
+    parts = np.split(marked, np.cumsum([len(points) for points in thin])[:-1])
+    return [
+        np.repeat(part, every)[: len(points)] for part, points in zip(parts, strokes, strict=True)
+    ]
 
 
-def _marked(points: Array, way: Array, spacing: float) -> Mask:
-    """The same for a few of the points, each with its way from the beginning, m."""
+def _marked(strokes: Sequence[Array], way: Array, spacing: float) -> Mask:
+    """The same for all points (k, 3) after one another, each with its way from the beginning, m."""
+    points = np.concatenate(strokes)
     found = np.zeros(len(points), dtype=bool)
-    steps = np.gradient(points, axis=0)
+    steps = np.concatenate([_steps(stroke) for stroke in strokes])
     lengths = np.linalg.norm(steps, axis=1, keepdims=True)
     directions = steps / np.where(lengths > 0, lengths, 1.0)
     near = cKDTree(points).query_pairs(_BESIDE * spacing, output_type="ndarray")
@@ -46,6 +55,11 @@ def _marked(points: Array, way: Array, spacing: float) -> Mask:
     passes = near[parallel & (np.abs(way[one] - way[other]) > _APART * spacing)]
     found[passes.ravel()] = True
     return found
+
+
+def _steps(points: Array) -> Array:
+    """From the point before to the one after, (k, 3); zero if there is only one."""
+    return np.gradient(points, axis=0) if len(points) > 1 else np.zeros_like(points)
 
 
 def stretches(marked: Mask) -> list[tuple[int, int]]:

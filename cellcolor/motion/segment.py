@@ -104,6 +104,11 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
     closed = small.whole.marked([(crack.i, crack.j) for crack in cracks])
     parts = parts_of(small, ground.states, segment, closed)
     walls = walls_of(parts, small.whole, space, ground.deadline)
+    if not walls.whole:
+        # Some part reaches beyond the limits; only what does is left out, not the whole part.
+        parts = parts.at_vertices
+        walls = walls_of(parts, small.whole, space, ground.deadline)
+        refusals.keep_inside(parts.part_of, walls.turns)
     parted = len(strokes)
     courses = courses_with(walls.edges)
     name = prepared.robot.joint_names[walls.joint]

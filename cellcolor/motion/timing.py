@@ -17,8 +17,9 @@ import numpy as np
 from cellcolor.arrays import Array
 from cellcolor.errors import RefusedResult
 
-_STEP = 0.01  # of the path's parameter, per sample; TOPP-RA's tolerances suit such a scale
-_FASTEST = 10.0  # s^-1, of the parameter; where neither tool nor joints move
+_STEP = 0.01  # of the path's parameter, about, per sample; TOPP-RA's tolerances suit such a scale
+_LEAST = 0.001  # s, of a step; where neither tool nor joints move
+_UNEVEN = 30.0  # times longer and shorter than the median step is a step of the parameter at most
 _ROUNDS = 12  # of TOPP-RA; then the whole motion is stretched
 _EXACT = 6  # of them slow down by what the accelerations ask for, later ones by more
 _MARGIN = 0.97  # of the accelerations; differences of samples exceed the derivatives a little
@@ -57,15 +58,18 @@ def timed(
     least = (moved / speeds.velocities).max(axis=1, initial=0.0)
     if points is not None:
         least = np.maximum(least, np.linalg.norm(np.diff(points, axis=0), axis=1) / tool_speed)
-    least = np.maximum(least, _STEP / _FASTEST)
+    least = np.maximum(least, _LEAST)
     if len(joints) < 3:  # no sample between rest and rest
         return _kept(np.array([0.0, *least * 2]), joints, speeds)
-    fastest = _STEP / least
+    # The parameter grows as time does at full speed. Were it the sample's number, the arm would
+    # seem to jerk wherever samples get closer.
+    spans = _STEP * np.clip(least / np.median(least), 1 / _UNEVEN, _UNEVEN)
+    fastest = spans / least
     # At a sample the steps on both sides of it have to be possible.
     cap = np.minimum(np.append(fastest, np.inf), np.insert(fastest, 0, np.inf))
     for number in range(_ROUNDS):
-        rates = _rates(joints, cap, speeds)
-        steps = np.maximum(2 * _STEP / (rates[1:] + rates[:-1]), least)
+        rates = _rates(joints, spans, cap, speeds)
+        steps = np.maximum(2 * spans / (rates[1:] + rates[:-1]), least)
         times = np.concatenate([[0.0], np.cumsum(steps)])
         # In sharp bends the differences say more than the derivatives do: slower just there.
         excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
@@ -109,17 +113,22 @@ def _kept(times: Array, joints: Array, speeds: Speeds) -> Array:
     return np.asarray(times * max(1.0, np.sqrt(excess)))
 
 
-def _rates(joints: Array, cap: Array, speeds: Speeds) -> Array:
-    """How fast the path's parameter grows at each sample (k,), 1/s."""
+def _rates(joints: Array, spans: Array, cap: Array, speeds: Speeds) -> Array:
+    """How fast the path's parameter grows at each sample (k,), 1/s; by spans (k - 1,) in all."""
     import toppra
     from toppra.constraint import DiscretizationType, JointAccelerationConstraint, LinearConstraint
     from toppra.interpolator import AbstractGeometricPath
 
     toppra.setup_logging("ERROR")
-    grid = _STEP * np.arange(len(joints))
-    steps = np.diff(joints, axis=0) / _STEP
+    grid = np.concatenate([[0.0], np.cumsum(spans)])
+    steps = np.diff(joints, axis=0) / spans[:, None]
     before, after = np.insert(steps, 0, steps[0], axis=0), np.append(steps, steps[-1:], axis=0)
-    derivatives = {0: joints, 1: (before + after) / 2, 2: (after - before) / _STEP}
+    one, other = np.insert(spans, 0, spans[0])[:, None], np.append(spans, spans[-1])[:, None]
+    derivatives: dict[int, Array] = {
+        0: joints,
+        1: (before * other + after * one) / (one + other),
+        2: 2 * (after - before) / (one + other),
+    }
 
     class Samples(AbstractGeometricPath):  # type: ignore[misc]
         """The samples as a path that is only ever asked at its samples."""

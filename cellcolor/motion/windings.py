@@ -23,6 +23,11 @@ Steps of the algorithm.
 4. Step 3 is repeated on the parts not reached; each tree becomes a stroke of its own.
 5. Walls are put where the turns of a tree disagree, and between trees.
 
+If that leaves more trees than pieces, some part on a sharp edge or beside a singularity may span
+more than the limits allow. Then the steps are repeated with the joints at its vertex standing for
+each part, and paths keep off the points at which the joints are beyond their limits
+(``ArmRefusals.keep_inside``).
+
 Example. Parts A, B, C, D lie around the base, with the first joint at 0, 90, 180 and -90
 degrees. The step from C to D has 1 turn: from 180 degrees the joint goes on to 270. With limits of
 200 degrees each way the tree from A has all four with 0 turns, and the one wall is between C and D.
@@ -35,7 +40,7 @@ Complexity. A tree of p parts and s steps takes O((p + s) log s) time. For each 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from heapq import heappop, heappush
 from itertools import product
 
@@ -81,6 +86,9 @@ class Parts:
         areas: (p,) m^2.
         lowest, highest: (p, joints) angles inside each part, unwound from its vertex, rad.
         steps: between the parts.
+        center: (p, joints) the angles at the vertex itself, rad.
+        part_of: (6 m,) the part of each small triangle, of one that is not valid a part at the same
+            vertex; -1 if there is none.
     """
 
     places: Array
@@ -88,6 +96,13 @@ class Parts:
     lowest: Array
     highest: Array
     steps: PartSteps
+    center: Array
+    part_of: Index
+
+    @property
+    def at_vertices(self) -> Parts:
+        """The same parts, each with no other angles than those at its vertex."""
+        return replace(self, lowest=self.center, highest=self.center)
 
 
 @dataclass(frozen=True)
@@ -99,11 +114,13 @@ class Walls:
         whole: whether walls leave each connected piece of the segment connected. If not, no single
             tree inside the limits was found for some piece.
         joint: a joint that winds, or else the one that moves farthest.
+        turns: (p, joints) of each part, those of the tree that has reached it.
     """
 
     edges: tuple[tuple[int, int], ...]
     whole: bool
     joint: int
+    turns: Index
 
 
 def parts_of(small: SmallTriangles, states: CornerStates, segment: int, closed: Mask) -> Parts:
@@ -126,7 +143,11 @@ def parts_of(small: SmallTriangles, states: CornerStates, segment: int, closed: 
     np.minimum.at(lowest, part, joints.min(axis=1))
     np.maximum.at(highest, part, joints.max(axis=1))
     areas = np.bincount(part, small.areas[kept], count).astype(np.float64)
-    return Parts(places, areas, lowest, highest, _steps_between(small, states, part_of, closed))
+    center = np.zeros(lowest.shape)
+    center[part] = joints[:, 0]
+    steps = _steps_between(small, states, part_of, closed)
+    beside = _beside(small, part_of, segment)
+    return Parts(places, areas, lowest, highest, steps, center, beside)
 
 
 def _part_of(small: SmallTriangles, kept: Mask) -> Index:
@@ -146,6 +167,14 @@ def _part_of(small: SmallTriangles, kept: Mask) -> Index:
     part_of = np.full(len(kept), -1, dtype=np.int64)
     part_of[own] = np.unique(group[own], return_inverse=True)[1]
     return part_of
+
+
+def _beside(small: SmallTriangles, part_of: Index, segment: int) -> Index:
+    """The parts (6 m,), and for a small triangle that has none, one at the same vertex; or -1."""
+    vertex = small.corners[:, 0]
+    at_vertex = np.full(len(small.points), -1, dtype=np.int64)
+    at_vertex[vertex[part_of >= 0]] = part_of[part_of >= 0]
+    return np.where((part_of < 0) & (small.segment == segment), at_vertex[vertex], part_of)
 
 
 def _steps_between(
@@ -185,18 +214,23 @@ def walls_of(parts: Parts, mesh: TriangleMesh, space: JointSpace, deadline: Dead
         OutOfTime: the deadline came first.
     """
     grower = _Grower(parts, space, deadline)
-    walls = np.zeros(len(parts.steps.ends), dtype=bool)
     tree_of = np.zeros(len(parts.places), dtype=np.int64)  # 0 for parts that no tree has reached
+    turns = np.zeros(parts.lowest.shape, dtype=np.int64)
     while not tree_of.all():
         tree = grower.best(tree_of == 0)
         tree_of[tree.reached] = tree_of.max() + 1
-        walls |= grower.graph.disagreeing(tree).any(axis=1)
-    one, other = tree_of[parts.steps.ends].T
-    walls |= one != other
-    edges = mesh.edges[np.unique(parts.steps.edge[walls])]
+        turns[tree.reached] = tree.turns[tree.reached]
+    edges = mesh.edges[np.unique(parts.steps.edge[_parted(parts.steps, tree_of, turns)])]
     connected = int(grouped(len(parts.places), parts.steps.ends).max(initial=-1)) + 1
     whole = int(tree_of.max(initial=0)) <= connected
-    return Walls(tuple((int(a), int(b)) for a, b in edges), whole, grower.joint)
+    return Walls(tuple((int(a), int(b)) for a, b in edges), whole, grower.joint, turns)
+
+
+def _parted(steps: PartSteps, tree_of: Index, turns: Index) -> Mask:
+    """(s,) which steps lead to another tree or contradict the turns."""
+    one, other = steps.ends.T
+    goes_on = (turns[one] + steps.turns == turns[other]).all(axis=1)
+    return np.asarray((tree_of[one] != tree_of[other]) | ~goes_on)
 
 
 @dataclass(frozen=True)

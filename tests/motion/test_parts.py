@@ -171,6 +171,18 @@ def test_many_sharp_bends_slow_down_only_what_is_beside_them() -> None:
     assert np.abs(change).max() <= 10.0 + 1e-6
 
 
+def test_closer_samples_do_not_slow_down() -> None:
+    """The same smooth way, with eight times as many samples in its middle: the speed stays."""
+    even = np.linspace(0.0, 1.0, 201)
+    closer = np.concatenate([even[:80], np.linspace(0.4, 0.6, 321), even[121:]])
+    for at in (even, closer):
+        joints = np.column_stack([1.5 * np.sin(5 * at), 2 * np.cos(5 * at)])
+        points = np.column_stack([joints, np.zeros(len(at))])
+        times = timed(joints, Speeds(np.full(2, 3.0), np.full(2, 5.0)), points, 0.6)
+        speeds = np.linalg.norm(np.diff(points, axis=0), axis=1) / np.diff(times)
+        assert speeds[5:-5] == pytest.approx(0.6)
+
+
 def wall(configurations: np.ndarray) -> np.ndarray:
     """Free unless the first joint is near 1 and the second below 1."""
     blocked = (np.abs(configurations[:, 0] - 1) < 0.2) & (configurations[:, 1] < 1)

@@ -1,4 +1,4 @@
-"""Places where a stroke runs beside another pass of its own, on walks along the lines of a grid."""
+"""Places where strokes run beside another pass of theirs, on walks along the lines of a grid."""
 
 from __future__ import annotations
 
@@ -9,18 +9,23 @@ import numpy as np
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from cellcolor.motion.retraced import beside_itself, stretches
+from cellcolor.motion.retraced import retraced, stretches
 from examples import examples
 
 WAYS = st.sampled_from([(1, 0), (-1, 0), (0, 1), (0, -1)])
 SPACING = 0.01  # m, the grid's lines are ten spacings apart
 
 
-@given(st.lists(WAYS, min_size=1, max_size=9), st.floats(0.0, 0.0004))
-@example([(1, 0), (0, 1), (0, -1), (1, 0)], 0.0)  # a way in and back
+@given(st.lists(WAYS, min_size=1, max_size=9), st.floats(0.0, 0.0004), st.sets(st.integers(1, 8)))
+@example([(1, 0), (0, 1), (0, -1), (1, 0)], 0.0, set())  # a way in and back
+@example([(1, 0), (0, 1), (0, -1), (1, 0)], 0.0, {2})  # in on one stroke, back on the next
 @examples(30)
-def test_what_is_walked_twice_is_marked(ways: list[tuple[int, int]], aside: float) -> None:
+def test_what_is_walked_twice_is_marked(
+    ways: list[tuple[int, int]], aside: float, cuts: set[int]
+) -> None:
     """Against counting how often each line of the grid is walked; its ends are left out.
+
+    The walk is cut into strokes at some nodes.
 
     There another line may begin that is walked once, or the walk may turn round. Each pass runs a
     little aside of the one before, up to 3.2 mm in all, which is more than a quarter of a spacing
@@ -39,7 +44,8 @@ def test_what_is_walked_twice_is_marked(ways: list[tuple[int, int]], aside: floa
             inner = 0.3 < part < 0.7 and len(near) == len(clear)
             expected.append(bool(near) if inner else None)
     assert all(walked[line] == len(own) for line, own in zip(lines, passes, strict=True))
-    marked = beside_itself(np.array(points), SPACING)
+    strokes = np.split(np.array(points), [100 * cut for cut in sorted(cuts) if cut < len(ways)])
+    marked = np.concatenate(retraced(strokes, SPACING))
     for known, found in zip(expected, marked.tolist(), strict=True):
         assert known is None or known == found
 
@@ -50,14 +56,14 @@ def test_passes_at_the_spacing_are_not_beside_each_other() -> None:
         [(x, row * SPACING, 0.0) for x in np.arange(0, 0.1, 0.001)[:: 1 if row % 2 == 0 else -1]]
         for row in range(6)
     ]
-    assert not beside_itself(np.array(rows).reshape(-1, 3), SPACING).any()
+    assert not retraced([np.array(rows).reshape(-1, 3)], SPACING)[0].any()
 
 
 def test_stretches_are_runs_of_two_points_or_more() -> None:
     marked = np.array([True, True, False, True, False, False, True, True, True])
     assert stretches(marked) == [(0, 1), (6, 8)]
     assert stretches(np.zeros(3, dtype=bool)) == []
-    assert beside_itself(np.zeros((2, 3)), SPACING).sum() == 0
+    assert retraced([np.zeros((2, 3)), np.zeros((1, 3))], SPACING)[0].sum() == 0
 
 
 def test_a_wide_spacing_marks_the_same_ways() -> None:
@@ -65,6 +71,6 @@ def test_a_wide_spacing_marks_the_same_ways() -> None:
     out = np.arange(0.0, 2.0, 0.001)
     way = np.concatenate([out, out[::-1]])
     points = np.column_stack([way, np.zeros((len(way), 2))])
-    marked = beside_itself(points, 0.3)
+    (marked,) = retraced([points], 0.3)
     # Near the turn the two passes are one pass.
     assert marked[:1800].all() and marked[2200:].all() and not marked[1950:2050].any()

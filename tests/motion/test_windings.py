@@ -13,8 +13,10 @@ from cellcolor.deadline import NEVER
 from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import follow, joint_space
+from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.samples import sampled
-from cellcolor.motion.windings import Parts, PartSteps, walls_of
+from cellcolor.motion.small_triangles import SmallTriangles, corner_states
+from cellcolor.motion.windings import Parts, PartSteps, parts_of, walls_of
 from cellcolor.tool_paths.cover import cover
 
 pytestmark = pytest.mark.second
@@ -79,6 +81,30 @@ def test_there_are_no_walls_where_the_limits_allow_the_path_as_it_is() -> None:
     assert np.ptp(ring.plan.trajectory.joints[:, 0]) > 2.2 * np.pi
 
 
+def around_the_base(wide: float) -> tuple[Parts, TriangleMesh]:
+    """The example of the module: a fan of four triangles about the base; rad of a part each way."""
+    around = np.deg2rad([0.0, 90.0, 180.0, 270.0])
+    places = np.column_stack([np.cos(around), np.sin(around), np.zeros(4)])
+    fan = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    mesh = TriangleMesh(np.vstack([places, np.zeros(3)]), fan)
+    ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
+    angles = np.deg2rad([[0.0], [90.0], [180.0], [-90.0]])
+    steps = PartSteps(
+        ends,
+        np.array([[0], [0], [1], [0]]),
+        np.array([np.flatnonzero(mesh.marked([tuple(sorted(end))]))[0] for end in ends.tolist()]),
+        np.ones(4),
+    )
+    nowhere = np.full(24, -1)
+    return Parts(places, np.ones(4), angles - wide, angles + wide, steps, angles, nowhere), mesh
+
+
+def turning_by(degrees: float) -> JointSpace:
+    """One joint that turns so far each way."""
+    limits = np.deg2rad([degrees])
+    return JointSpace.of(np.zeros(1, dtype=bool), -limits, limits, 1.0)
+
+
 @pytest.mark.parametrize(
     ("limit", "walls", "whole"),
     [
@@ -87,23 +113,59 @@ def test_there_are_no_walls_where_the_limits_allow_the_path_as_it_is() -> None:
     ],
 )
 def test_four_parts_around_the_base(limit: float, walls: set[tuple[int, int]], whole: bool) -> None:
-    """The example of the module: its mesh is a fan of four triangles about the base."""
-    around = np.deg2rad([0.0, 90.0, 180.0, 270.0])
-    places = np.column_stack([np.cos(around), np.sin(around), np.zeros(4)])
-    fan = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    mesh = TriangleMesh(np.vstack([places, np.zeros(3)]), fan)
-    ends = np.array([[0, 1], [1, 2], [2, 3], [3, 0]])
-    angles = np.deg2rad([[0.0], [90.0], [180.0], [-90.0]])
-    wide = np.deg2rad(10)
-    steps = PartSteps(
-        ends,
-        np.array([[0], [0], [1], [0]]),
-        np.array([np.flatnonzero(mesh.marked([tuple(sorted(end))]))[0] for end in ends.tolist()]),
-        np.ones(4),
-    )
-    parts = Parts(places, np.ones(4), angles - wide, angles + wide, steps)
-    limits = np.deg2rad([limit])
-    space = JointSpace.of(np.zeros(1, dtype=bool), -limits, limits, 1.0)
-    found = walls_of(parts, mesh, space, NEVER)
+    parts, mesh = around_the_base(np.deg2rad(10))
+    found = walls_of(parts, mesh, turning_by(limit), NEVER)
     assert set(found.edges) == walls
     assert (found.whole, found.joint) == (whole, 0)
+
+
+def test_parts_that_span_more_than_the_limits_are_joined_by_their_vertices() -> None:
+    """180 ± 30 degrees do not fit into 200 each way, 180 do: one tree."""
+    parts, mesh = around_the_base(np.deg2rad(30))
+    space = turning_by(200)
+    assert not walls_of(parts, mesh, space, NEVER).whole
+    found = walls_of(parts.at_vertices, mesh, space, NEVER)
+    assert found.whole and set(found.edges) == {(2, 3)}
+    assert (parts.center + 2 * np.pi * found.turns).ravel() == pytest.approx(
+        np.deg2rad([0, 90, 180, -90])
+    )
+
+
+def test_points_where_the_first_joint_is_beyond_its_limits_are_refused(ring: Planned) -> None:
+    """The first joint follows the polar angle, so what is beyond is counted from polar angles."""
+    prepared, built = ring.prepared, ring.built
+    (color,) = {color for color in ring.painted.plan.vertex_colors if color is not None}
+    branch = built.color_branch[color]
+    small = SmallTriangles.of(ring.painted.surface.mesh, ring.normals, ring.painted.segment_of)
+    states = corner_states(prepared, small, np.array([branch]))
+    parts = parts_of(small, states, 0, np.zeros(len(small.whole.edges), dtype=bool))
+    rng = np.random.default_rng(3)
+    turns = np.zeros(parts.center.shape, dtype=np.int64)
+    turns[:, 0] = rng.integers(-1, 2, len(turns))
+    refusals = ArmRefusals(prepared, branch, small, states, 0, 0.004, NEVER)
+    asked = rng.choice(np.flatnonzero(parts.part_of >= 0), 400)
+    shares = rng.dirichlet([2.0, 2.0, 2.0], len(asked))
+    points, normals = (
+        np.einsum("ki,kij->kj", shares, of[small.corners[asked]])
+        for of in (small.points, small.normals)
+    )
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    before = refusals(points, normals)
+    assert (before == 0).all()
+    refusals.keep_inside(parts.part_of, turns)
+    after = refusals(points, normals)
+
+    def polar(of: np.ndarray) -> np.ndarray:
+        return np.asarray(np.arctan2(of[:, 1], of[:, 0]))
+
+    own = parts.part_of[asked]
+    from_vertex = polar(points) - polar(parts.places[own])
+    on = np.remainder(from_vertex + np.pi, 2 * np.pi) - np.pi
+    first = parts.center[own, 0] + on + 2 * np.pi * turns[own, 0]
+    clear = (
+        np.abs(np.abs(first) - np.deg2rad(200)) > 0.05
+    )  # the offset of the wrist varies a little
+    assert np.array_equal((after > 0)[clear], (np.abs(first) > np.deg2rad(200))[clear])
+    assert {refusals.names[code] for code in after[after > 0]} == {"joint limits"}
+    out = int(np.flatnonzero(after)[0])
+    assert np.array_equal(refusals.tested(points[out], normals[out]), points[out])
