@@ -122,10 +122,11 @@ class Front:
     Attributes:
         instance: the topological graph that was asked about.
         points: by the number of segments, ascending, each with a larger share than the one before;
-            the last one covers everything if that is known to be possible.
+            the last one covers everything that has a weight if that is known to be possible.
         weight: of everything that can be covered, in m² unless weights were given.
-        at_most: for 1, 2, … segments the share that no division exceeds, and whether that holds for
-            any division of the surface; for more segments than these nothing is known.
+        at_most: for 1, 2, … segments the share that no division exceeds (-1 where none covers what
+            is required), and whether that holds for any division of the surface; for more segments
+            than these nothing is known.
     """
 
     instance: Instance
@@ -215,7 +216,11 @@ class Front:
 
         def proved(*, on_surface: bool) -> bool:
             known = [share if sure or not on_surface else 1.0 for share, sure in self.at_most]
-            least = min(cost(lift_offs, share) for lift_offs, share in enumerate([*known, 1.0]))
+            least = min(
+                cost(lift_offs, share)
+                for lift_offs, share in enumerate([*known, 1.0])
+                if share >= 0  # otherwise so few do not cover what is required
+            )
             return own <= least + _ROUNDING * max(1.0, abs(own))
 
         return FrontChoice(point, proved(on_surface=False), proved(on_surface=True))

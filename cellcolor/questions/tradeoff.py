@@ -80,8 +80,9 @@ def front_of(
         bounds.append((at_most, holds_for_surface))
         if point is not None and (not points or point.covered_share > points[-1].covered_share):
             points.append(point)
-    everything = FrontPoint(solution.segments, 1.0, 1.0, (), solution)
-    return Front(instance, (*points, everything), total, tuple(bounds))
+    if not points or points[-1].covered_share < 1:  # all that has a weight
+        points.append(FrontPoint(solution.segments, 1.0, 1.0, (), solution))
+    return Front(instance, tuple(points), total, tuple(bounds))
 
 
 def few_that_cover(
@@ -217,6 +218,7 @@ def _most_covered(
     Raises:
         OutOfTime: the deadline came before any choice was known.
     """
+    segments = min(segments, len(regions))  # where regions cut each other apart
     if comb(len(regions), segments) <= _FEW_CHOICES:  # a model takes longer to build than these
         covers = np.zeros((len(regions), len(weights)), dtype=bool)
         for number, (_, cells) in enumerate(regions):

@@ -152,6 +152,26 @@ def test_weights_and_places() -> None:
     assert [point.lift_offs for point in without] == [0, 1]
     mask = [bool(own == (2,)) for own in STRIP.vertex_colors]
     assert str(cellcolor.tradeoff(STRIP, left_alone=mask)) == str(without)
+    # One segment cannot cover both ends, whatever a lift-off costs.
+    ends = [own != (1,) for own in STRIP.vertex_colors]
+    choice = cellcolor.tradeoff(STRIP, required=ends).least_cost(1e9)
+    assert choice.point.lift_offs == 1 and choice.proved_for_surface
+    # A lift-off more for what weighs nothing is no point of the front.
+    heavy = [float(own != (2,)) for own in STRIP.vertex_colors]
+    points = cellcolor.tradeoff(STRIP, weights=heavy).points
+    assert [len(point.left_out) for point in points] == [2, 1]
+    assert points[-1].covered_share == 1
+
+
+def test_two_regions_may_need_four_segments() -> None:
+    """Each color's region is connected through the middle, where they cut each other apart."""
+    surface = drawn("ABAB CCCC ABAB", {"A": [0], "B": [1], "C": [0, 1]})
+    front = cellcolor.tradeoff(surface)
+    areas = [cell.area or 0.0 for cell in front.instance.cells]
+    exhaustive = front_by_subsets(front.instance, areas)
+    assert front.points[-1].segments == 4
+    for segments, area in exhaustive.items():
+        assert most(front, segments) * sum(areas) == pytest.approx(area)
 
 
 @pytest.mark.parametrize(

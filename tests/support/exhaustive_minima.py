@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import itertools
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import chain, combinations
@@ -419,24 +419,38 @@ def _zeros_fit(instance: Instance, darts: list[list[int]], painting: dict[int, L
     return split(0, {})
 
 
-def front_by_subsets(instance: Instance, weights: Sequence[float]) -> dict[int, float]:
+def front_by_subsets(
+    instance: Instance, weights: Sequence[float], required: Collection[int] = ()
+) -> dict[int, float]:
     """For each number of segments the greatest weight of cells that have a division with so many.
 
-    Every set of cells is left out once, and the minimum of the others found by a sweep.
+    Every set of cells is left out once, and the minimum of the others found by a sweep. Numbers
+    with which the required cells cannot be covered are missing.
     """
     cells = range(len(instance.cells))
     best: dict[int, float] = defaultdict(float)
     for left_out in chain.from_iterable(combinations(cells, size) for size in cells):
+        if set(left_out) & set(required):
+            continue
         rest, kept = instance.without_cells(left_out)
         segments = minimum(rest)
         best[segments] = max(best[segments], sum(weights[cell] for cell in kept))
-    return {k: max(best[fewer] for fewer in range(1, k + 1)) for k in range(1, max(best) + 1)}
+    return _with_fewer(best)
 
 
-def front_by_vertices(surface: LabelledSurface, weights: Sequence[float]) -> dict[int, float]:
+def _with_fewer(best: dict[int, float]) -> dict[int, float]:
+    """The greatest weight of at most so many segments, of that of exactly so many."""
+    counts = range(max(1, min(best)), max(best) + 1)
+    return {k: max(best[fewer] for fewer in best if fewer <= k) for k in counts}
+
+
+def front_by_vertices(
+    surface: LabelledSurface, weights: Sequence[float], required: Collection[int] = ()
+) -> dict[int, float]:
     """For each number of segments the greatest weight of vertices that so many components have.
 
-    Every vertex is given one of its colors or none, in a sweep over the vertices in their order.
+    Every vertex is given one of its colors or, unless it is required, none, in a sweep over the
+    vertices in their order. Numbers with which those required cannot be covered are missing.
     Borders run between vertices, so on a coarse mesh less is covered than on the surface.
     """
     cracks = {(c.i, c.j): c.colors for c in surface.cracks}
@@ -453,7 +467,7 @@ def front_by_vertices(surface: LabelledSurface, weights: Sequence[float]) -> dic
         kept = [p for p, v in enumerate(painted_now) if any(n > vertex for n in neighbors[v])]
         grown: dict[tuple[Colored, int], float] = {}
         for (state, closed), weight in layer.items():
-            for color in (None, *colors):
+            for color in colors if vertex in required else (None, *colors):
                 painted = list(state)
                 gained = weight
                 if color is None:
@@ -487,7 +501,7 @@ def front_by_vertices(surface: LabelledSurface, weights: Sequence[float]) -> dic
     best: dict[int, float] = defaultdict(float)
     for (_, segments), weight in layer.items():
         best[segments] = max(best[segments], weight)
-    return {k: max(best[fewer] for fewer in range(k + 1)) for k in range(1, max(best) + 1)}
+    return _with_fewer(best)
 
 
 def vertex_minimum(surface: LabelledSurface, costs: Sequence[int] | None = None) -> int:
