@@ -8,6 +8,7 @@ some in the whole of them, then some in smaller and smaller boxes around the bes
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -20,7 +21,7 @@ from cellcolor.decomposition import decomposition_of
 from cellcolor.errors import InputError
 from cellcolor.frontend.build import labelled
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
-from cellcolor.frontend.parts.remeshing import length_for, remeshed
+from cellcolor.frontend.parts.remeshing import fold_angle, folds, length_for, remeshed
 from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.stage_clock import StageClock
@@ -149,8 +150,9 @@ def _scaled(ranges: Ranges, start: Pose, points: Array) -> list[Pose]:
 def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
     """The scene with about this many vertices to be covered; bodies that can collide stay.
 
-    A shape that says how many vertices it has gets fewer. Any other surface is remeshed. Borders
-    are not refined.
+    A shape that says how many vertices it has gets fewer. Any other surface is remeshed; if it is
+    so coarse that it folds over itself, it is remeshed to half as many vertices more, and so on up
+    to the scene's own mesh. Borders are not refined.
 
     Raises:
         InputError: the scene cannot be used.
@@ -162,12 +164,20 @@ def coarse_scene(scene: Scene, vertices: int, deadline: Deadline) -> Scene:
     if hasattr(scene.object, "target_vertices") and scene.cover is None:
         solid = scene.solid_object or scene.object
         return scene.varied(object={"target_vertices": vertices}, collision_object=solid)
-    area = float(surface.vertex_areas().sum())
-    points, faces, _, _ = remeshed(
-        surface.vertices, surface.faces, length_for(area, vertices), deadline
-    )
-    solid = scene.solid_object or scene.object
-    return scene.varied(cover=None).with_object((points, faces), solid)
+    angle = fold_angle(surface.mesh)
+    own = len(folds(surface.vertices, surface.faces, angle, deadline))
+    area, wanted = float(surface.vertex_areas().sum()), vertices
+    while wanted * _FINE_ENOUGH < len(surface.vertices):
+        length = length_for(area, wanted)
+        wanted = math.ceil(wanted * _FINE_ENOUGH)
+        try:
+            points, faces, _, _ = remeshed(surface.vertices, surface.faces, length, deadline)
+        except InputError:
+            continue  # torn, for one
+        if len(folds(points, faces, angle, deadline)) <= own:
+            solid = scene.solid_object or scene.object
+            return scene.varied(cover=None).with_object((points, faces), solid)
+    return scene
 
 
 def minima_at(

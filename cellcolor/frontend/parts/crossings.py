@@ -11,7 +11,7 @@ from cellcolor.memory import chunks
 
 MOST_FACES = 200_000  # more are not looked at
 _MOST_PLACES = 10_000_000  # cells of the grid that all faces together are entered in
-_PAIR = 640  # bytes that two faces take
+_PAIR = 3000  # bytes that two faces take
 _INSIDE = 1e-7  # by this share of a side or face a crossing has to be off its ends
 
 
@@ -55,28 +55,26 @@ def crossing_pairs(vertices: Array, faces: Faces, deadline: Deadline = NEVER) ->
             deadline.check()
             some = rows[part]
             pairs = np.column_stack([face[some], face[some + offset]])
-            found.append(_crossing(vertices, faces, low, high, pairs))
+            found.append(crossing_of(vertices, faces, low, high, pairs))
         offset += 1
     both = np.sort(np.concatenate([np.zeros((0, 2), dtype=np.int64), *found]), axis=1)
     return np.unique(both, axis=0)
 
 
-def _crossing(vertices: Array, faces: Faces, low: Array, high: Array, pairs: Index) -> Index:
-    """Those of some pairs of faces that cross."""
+def crossing_of(vertices: Array, faces: Faces, low: Array, high: Array, pairs: Index) -> Index:
+    """Those of some pairs (p, 2) of faces that cross; their boxes go from low to high (m, 3)."""
     a, b = pairs.T
     near = ((low[a] <= high[b]) & (low[b] <= high[a])).all(axis=1)
     pairs = pairs[near]
     a, b = pairs.T
     shared = (faces[a][:, :, None] == faces[b][:, None, :]).sum(axis=(1, 2))
     pairs = pairs[shared < 2]
-    hit = np.zeros(len(pairs), dtype=bool)
-    for one, other in ((0, 1), (1, 0)):
-        triangle = vertices[faces[pairs[:, other]]]
-        for corner in range(3):
-            start = vertices[faces[pairs[:, one], corner]]
-            end = vertices[faces[pairs[:, one], (corner + 1) % 3]]
-            hit |= _through(start, end, triangle)
-    return pairs[hit]
+    both = np.concatenate([pairs, pairs[:, ::-1]])
+    corners = faces[both[:, 0]]
+    start, end = vertices[corners.T], vertices[np.roll(corners, -1, axis=1).T]
+    triangles = np.tile(vertices[faces[both[:, 1]]], (3, 1, 1))
+    hit = _through(start.reshape(-1, 3), end.reshape(-1, 3), triangles)
+    return pairs[hit.reshape(6, -1).any(axis=0)]
 
 
 def _through(start: Array, end: Array, triangle: Array) -> Mask:

@@ -3,8 +3,8 @@
 The method is Botsch and Kobbelt's ("A remeshing approach to multiresolution modeling", 2004): edges
 are split, collapsed and flipped, and vertices are moved along the surface and projected back onto
 it. Along sharp edges that are short or turn a corner, a triangle may lose its area, or fold back
-onto the one beside it. Such folds are repaired locally: a vertex beside one is merged into a
-neighbor.
+onto the one beside it, or cross one with which it shares a corner. Such folds are repaired
+locally: a vertex beside one is merged into a neighbor.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import borders, flat_faces, used
+from cellcolor.frontend.parts.crossings import crossing_of, crossing_pairs
 from cellcolor.frontend.parts.repairing import Change, Mending, Telling, mended
 from cellcolor.frontend.parts.surface import SHARP, Faces, refine
 from cellcolor.frontend.sizes import MOST_VERTICES
@@ -122,7 +123,7 @@ def _mended(
         taken += gone
         vertices, faces, more = mended(vertices, faces, Mending(0.0, 0.0), deadline)
         changes += more
-        left = folds(vertices, faces, angle)
+        left = folds(vertices, faces, angle, deadline)
         if not left or not more:
             break
     if taken:
@@ -131,8 +132,7 @@ def _mended(
     if left:
         place = ", ".join(f"{x:.4g}" for x in vertices[left[0]].mean(axis=0))
         where = f"at ({place}) m" if len(left) == 1 else f"the first at ({place}) m"
-        text = f"{count(len(left), 'fold')} of {np.degrees(angle):.0f} degrees and more left"
-        changes.append(Change(f"{text}, {where}"))
+        changes.append(Change(f"{count(len(left), 'fold')} left, {where}"))
     return vertices, faces, changes
 
 
@@ -150,6 +150,7 @@ def _asked(deadline: Deadline, function: Callable[..., _T], *arguments: Any) -> 
 
 _LEAST, _MOST = np.radians(150.0), np.radians(175.0)
 _DEGREES = np.radians(1.0)
+_APART = 6  # corners of two faces that share none
 
 
 def fold_angle(mesh: TriangleMesh) -> float:
@@ -181,20 +182,29 @@ def unfolded(
     gone = 0
     while True:
         before = gone
-        for corners in folds(vertices, patch.faces(), angle):
+        for corners in folds(vertices, patch.faces(), angle, deadline):
             deadline.check()
             gone += patch.mend(corners.tolist())
         if gone == before:
             return *used(vertices, patch.faces()), gone
 
 
-def folds(vertices: Array, faces: Faces, angle: float) -> list[Index]:
-    """The vertices of each flat face, and of each pair of faces that are folded."""
+def folds(vertices: Array, faces: Faces, angle: float, deadline: Deadline = NEVER) -> list[Index]:
+    """The vertices of each flat face, and of each pair of faces that are folded.
+
+    Two are folded if they share an edge and turn by the angle, or share one corner and cross.
+    """
     flat = flat_faces(vertices, faces)
     mesh = TriangleMesh(vertices, faces)
     pairs, normals = mesh.pairs[1] // 3, mesh.area_vectors
     turned = _turned(normals[pairs[:, 0]], normals[pairs[:, 1]], angle) & ~flat[pairs].any(axis=1)
-    return [*faces[flat], *map(np.unique, faces[pairs[turned]])]
+    crossing = crossing_pairs(vertices, faces, deadline)
+    near = [] if crossing is None else [np.unique(both) for both in faces[crossing]]
+    return [
+        *faces[flat],
+        *map(np.unique, faces[pairs[turned]]),
+        *(both for both in near if len(both) < _APART),
+    ]
 
 
 def _turned(first: Array, second: Array, angle: float) -> Mask:
@@ -272,21 +282,24 @@ class _Patch:
         self.faces_of[vertex] = set()
 
     def _cost(self, faces: list[list[int]]) -> int:
-        """How many of these faces are flat, and edges between them folds."""
+        """How many of these faces are flat, edges between them folds, and pairs of them cross."""
         rows = np.array(faces)
         flat = flat_faces(self.vertices, rows)
         of_edge: dict[tuple[int, int], int] = {}
-        pairs = []
+        beside = []
         for number, (a, b, c) in enumerate(faces):
             for edge in ((a, b), (b, c), (c, a)):
                 twin = of_edge.get(edge[::-1])
                 if twin is not None:
-                    pairs.append((twin, number))
+                    beside.append((twin, number))
                 of_edge[edge] = number
-        at = np.array(pairs, dtype=np.int64).reshape(-1, 2)
+        at = np.array(beside, dtype=np.int64).reshape(-1, 2)
         normals = TriangleMesh(self.vertices, rows).area_vectors
         turned = _turned(normals[at[:, 0]], normals[at[:, 1]], self.angle)
-        return int(flat.sum()) + int((turned & ~flat[at].any(axis=1)).sum())
+        places = self.vertices[rows]
+        pairs = np.column_stack(np.triu_indices(len(rows), 1))
+        crossing = crossing_of(self.vertices, rows, places.min(axis=1), places.max(axis=1), pairs)
+        return int(flat.sum()) + int((turned & ~flat[at].any(axis=1)).sum()) + len(crossing)
 
     def _distance(self, vertex: int, faces: list[list[int]]) -> float:
         """How far the place of a vertex is from faces."""

@@ -9,10 +9,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cellcolor.deadline import Deadline, OutOfTime
-from cellcolor.frontend.parts.remeshing import fold_angle, unfolded
+from cellcolor.frontend.parts.crossings import crossing_pairs
+from cellcolor.frontend.parts.remeshing import fold_angle, folds, unfolded
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 SIDE = 9  # vertices of a plane square, one unit apart
+ANGLE = np.radians(150.0)
 
 
 def square() -> tuple[np.ndarray, np.ndarray]:
@@ -45,7 +47,7 @@ def test_what_folds_in_a_plane_is_flattened(moved: dict[int, tuple[float, float]
     border = set(np.flatnonzero((points[:, :2] % (SIDE - 1) == 0).any(axis=1)).tolist())
     for vertex, shift in moved.items():
         points[vertex, :2] += shift
-    new_points, new_faces, gone = unfolded(points, faces, np.radians(150.0), 3.0)
+    new_points, new_faces, gone = unfolded(points, faces, ANGLE, 3.0)
     mesh = trimesh.Trimesh(new_points, new_faces, process=False)
     winding = mesh.face_normals[:, 2][mesh.area_faces > 1e-9]
     assert (winding > 0.999).all()
@@ -67,10 +69,22 @@ def test_no_vertex_goes_farther_than_it_may() -> None:
     rim = [[0.02, 0, 0], [0, 1, 0], [-0.02, 0, 0], [0, -1, 0]]
     points = np.array([*rim, [0, 0, 3.0]])
     faces = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
-    assert unfolded(points, faces, np.radians(150.0), 2.9)[2] == 0
-    flattened, new_faces, gone = unfolded(points, faces, np.radians(150.0), 3.1)
+    assert unfolded(points, faces, ANGLE, 2.9)[2] == 0
+    flattened, new_faces, gone = unfolded(points, faces, ANGLE, 3.1)
     assert gone == 1 and not flattened[:, 2].any()
     assert trimesh.Trimesh(flattened, new_faces, process=False).area == pytest.approx(0.04)
+
+
+def test_faces_that_cross_beside_a_corner_are_a_fold() -> None:
+    """Two vertices of a square pushed past each other: no two faces turn by 150 degrees."""
+    points, faces = square()
+    points[4 * SIDE + 4], points[4 * SIDE + 5] = (5.7, 2.5, 0.6), (4.9, 2.7, -0.3)
+    mesh = trimesh.Trimesh(points, faces, process=False)
+    assert np.degrees(mesh.face_adjacency_angles.max()) < 150
+    assert len(folds(points, faces, ANGLE)) == 2
+    flattened, new_faces, gone = unfolded(points, faces, ANGLE, 3.0)
+    crossing = crossing_pairs(flattened, new_faces)
+    assert gone and crossing is not None and not len(crossing)
 
 
 @pytest.mark.parametrize(("wedge", "expected"), [(40.0, 150.0), (20.5, 160.0), (2.0, 175.0)])
@@ -89,4 +103,4 @@ def test_the_deadline() -> None:
     points, faces = square()
     points[4 * SIDE + 4, 0] += 1.7
     with pytest.raises(OutOfTime):
-        unfolded(points, faces, np.radians(150.0), 3.0, Deadline.after(0.0))
+        unfolded(points, faces, ANGLE, 3.0, Deadline.after(0.0))
