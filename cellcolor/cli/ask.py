@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from math import isfinite
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -378,9 +379,12 @@ def setups(
     """
     from cellcolor.door.drawing import kind_of_picture
     from cellcolor.door.setting_up import setups as set_ups_of
+    from cellcolor.files.writing import check_output, is_folder_or_nothing
 
     if output is not None:
-        kind_of_picture(output)
+        check_output(output, kind_of_picture(output), [scene])
+    if folder is not None:
+        is_folder_or_nothing(folder)
     all_places = [*at, *([] if places is None else _places_in(places))]
     late = "the time limit came before there was a choice"
     with at_work(scene, "setting up", late) as tell:
@@ -403,20 +407,32 @@ def setups(
 
 
 def _places_in(file: Path) -> list[tuple[float, ...]]:
-    """The placements of a file of JSON Lines that ``place`` has printed, without refused ones."""
+    """The placements of a file of JSON Lines that ``place`` has printed, without refused ones.
+
+    Raises:
+        InputError: it is something else, or has none.
+    """
     from cellcolor.files.documents import parse_json, read_text
 
-    found = []
+    found: list[tuple[float, ...]] = []
     for number, line in enumerate(read_text(file).splitlines(), 1):
         try:
             row = parse_json(line)
             if row.get("moved") == "base":
                 raise InputError(None, None, "is a place of the arm's base, not of the part")
             if not row.get("refused"):
-                found.append(tuple(float(v) for v in (*row["position_m"], *row["rpy_rad"])))
+                pose = (*row["position_m"], *row["rpy_rad"])
+                if len(pose) != 6 or not all(type(v) in (int, float) and isfinite(v) for v in pose):
+                    raise ValueError
+                found.append(pose)
         except InputError as error:
             raise InputError(str(file), f"line {number}", error.message) from error
         except (KeyError, TypeError, ValueError) as error:
-            message = "must be an object with position_m and rpy_rad, as place --json prints it"
+            message = (
+                "must be an object with position_m and rpy_rad, three numbers each, as place "
+                "--json prints it"
+            )
             raise InputError(str(file), f"line {number}", message) from error
+    if not found:
+        raise InputError(str(file), None, "has no place where the part can stand")
     return found

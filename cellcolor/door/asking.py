@@ -100,7 +100,7 @@ def explain(
         Rows, ranked.
 
     Raises:
-        InputError: the scene cannot be used, or the point is none.
+        InputError: the scene cannot be used, or the point is none or far from the part.
         OutOfTime: the time limit came before the scene itself was solved.
     """
     deadline = Deadline.of(time_limit)

@@ -132,7 +132,8 @@ def front_on(
         progress: told what is being done.
 
     Raises:
-        InputError: weights or place are of another mesh, or the subject has no surface.
+        InputError: weights or place are of another mesh, the subject has no surface, or nothing of
+            what is required can be covered.
         OutOfTime: the deadline came before any division was known.
     """
     from cellcolor.questions.tradeoff import front_of  # imports a solver
@@ -142,6 +143,8 @@ def front_on(
     if required is not None:
         mask = chosen(subject.surface, required, "required")
         cells = frozenset(_cells(subject)[mask].tolist()) - {OUTSIDE}
+        if mask.any() and not cells and len(instance.cells):
+            raise InputError(None, "required", "none of these vertices can be covered")
     per_cell = None if weights is None else _weights(subject, instance, weights)
     return front_of(instance, options, weights=per_cell, required=cells, progress=progress)
 

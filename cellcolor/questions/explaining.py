@@ -50,9 +50,12 @@ def explained(
         progress: told what is being tried.
 
     Raises:
-        InputError: the scene cannot be built.
+        InputError: the scene cannot be built, or the point is farther from the part's surface than
+            that is large.
         OutOfTime: the deadline came before the scene itself was solved.
     """
+    if at is not None:
+        _check_near(prepared.surface.vertices, at)
     report = progress or (lambda _: None)
     report("the scene as it is")
     asked = _Asked(prepared, options)
@@ -84,6 +87,15 @@ def explained(
     return Explanation(
         prepared.scene.name, base, tuple(rows), tuple(amounts), tuple(sets), here, complete
     )
+
+
+def _check_near(vertices: Array, at: Array) -> None:
+    away = np.linalg.norm(vertices - at, axis=1)
+    nearest = int(np.argmin(away))
+    if away[nearest] > np.linalg.norm(np.ptp(vertices, axis=0)):
+        place = ", ".join(f"{x:.4g}" for x in vertices[nearest])
+        message = f"is {away[nearest]:.3g} m from the nearest vertex, at ({place}) m"
+        raise InputError(None, "at", message)
 
 
 def _saves(row: RelaxedMinimum, base: RelaxedMinimum) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -46,13 +47,21 @@ def chosen(surface: LabelledSurface, place: Place, field: str) -> Mask:
 
     Raises:
         InputError: a mask has another number of vertices, or is none of truth values; a surface is
-            on another mesh.
+            on another mesh; no vertex is in a box.
     """
     if isinstance(place, LabelledSurface):
         return _given_up(surface, place, field)
     if isinstance(place, WorldBox):
         inside = (surface.vertices >= place.lowest) & (surface.vertices <= place.highest)
-        return np.asarray(inside.all(axis=1))
+        found = np.asarray(inside.all(axis=1))
+        if not found.any():
+            low, high = (
+                ", ".join(f"{x:.4g}" for x in corner)
+                for corner in (surface.vertices.min(axis=0), surface.vertices.max(axis=0))
+            )
+            message = f"no vertex is in the box; the surface is from ({low}) to ({high}) m"
+            raise InputError(None, field, message)
+        return found
     mask = np.asarray(place)
     if mask.dtype != np.bool_ or mask.ndim != 1:
         raise InputError(None, field, "must be a box, or true or false for each vertex")
@@ -113,8 +122,9 @@ def read_weights(file: str) -> list[float]:
     """
     content = _list_of(file, read_document(file), "weights")
     for place, one in enumerate(content):
-        if isinstance(one, bool) or not isinstance(one, (int, float)):
-            raise InputError(file, f"weights[{place}]", "must be a number")
+        if type(one) not in (int, float) or not 0 <= one < inf:
+            message = f"must be a number from 0 on, is {one!r}"
+            raise InputError(file, f"weights[{place}]", message)
     return content
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -109,11 +109,16 @@ def changed(scene: Scene, what: Relaxation) -> Scene:
     raise AssertionError(what)
 
 
-def from_scratch(scene: Scene, what: Relaxation, monkeypatch: pytest.MonkeyPatch) -> BuildResult:
-    if not isinstance(what, PartBody):
-        return build_surface(changed(scene, what))
-    with monkeypatch.context() as patch:  # no file says that the part may be hit
-        tests = [one for one in validity.STANDARD_TESTS if one.name != "object collision"]
+def from_scratch(
+    scene: Scene, what: Sequence[Relaxation], monkeypatch: pytest.MonkeyPatch
+) -> BuildResult:
+    for one in what:
+        if not isinstance(one, PartBody):
+            scene = changed(scene, one)
+    tests = list(validity.STANDARD_TESTS)
+    if PartBody() in what:  # no file says that the part may be hit
+        tests = [one for one in tests if one.name != "object collision"]
+    with monkeypatch.context() as patch:
         patch.setattr(validity, "STANDARD_TESTS", tuple(tests))
         return build_surface(scene)
 
@@ -341,6 +346,7 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
         ((file, "--at", "1,2"), "'--at': a point is three numbers"),
         ((file, "--at", "1,2,x"), "'--at': a point is three numbers"),
         ((file, "--at", "1,2,nan"), "'--at': a point is three numbers"),
+        ((file, "--at", "9,0,0"), "at: is 8.3"),
         ((tmp_path / "none.toml",), "No such file"),
         ((SCENES.parent / "index.json",), "is no scene"),
     ):
@@ -350,20 +356,34 @@ def test_the_command_prints_rows(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert "before the scene itself was solved" in capsys.readouterr().err
 
 
+PARTS = [file for file in (SCENES.parent / "parts").glob("*.toml") if "refused" not in file.stem]
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize("file", sorted(SCENES.glob("*.toml")), ids=lambda file: file.stem)
+@pytest.mark.parametrize(
+    "file", sorted([*SCENES.glob("*.toml"), *PARTS]), ids=lambda file: file.stem
+)
 def test_every_row_of_the_shipped_scenes_from_scratch(
     file: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """Each thing alone, each pair of links, and each set: number and area."""
     scene = Scene.read(file)
     found = cellcolor.explain(scene)
-    rows: dict[Any, Any] = {row.relaxed: row for row in found.alone}
-    for one in relaxations_of(prepare(scene)):
-        if isinstance(one, ToolBody):  # its tip needs other room from obstacles and the ground
-            continue
-        built = from_scratch(scene, one, monkeypatch)
-        solution = cellcolor.solve(built).solution
-        assert rows[(one.name,)].segments == solution.segments, one
+    prepared = prepare(scene)
+    things = relaxations_of(prepared)
+    pairs = [part for one in things for part in one.parts(prepared)]
+    named = {one.name: one for one in (*things, *pairs)}
+    assert {(one.name,) for one in things} <= {row.relaxed for row in found.alone}
+    for row in (*found.alone, *found.sets):
+        what = [named[name] for name in row.relaxed]
+        if any(isinstance(one, ToolBody) for one in what):
+            continue  # its tip needs other room from obstacles and the ground
+        surface = from_scratch(scene, what, monkeypatch).surface
+        solution = cellcolor.solve(surface).solution
+        assert (row.segments, row.proved_for_surface) == (solution.segments, True), what
+        colored = [bool(colors) for colors in surface.vertex_colors]
+        areas = surface.vertex_areas
+        assert row.surface_share == pytest.approx(areas[colored].sum() / areas.sum()), what
 
 
 @pytest.mark.second

@@ -181,19 +181,28 @@ def test_what_cannot_be_set_up_is_refused_in_a_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     lines = tmp_path / "places.jsonl"
-    lines.write_text('{"position_m": [1, 2], "rpy_rad": [0, 0]}\n[]\n')
+    lines.write_text('{"position_m": [1, 2, 3], "rpy_rad": [0, 0, 0]}\n[]\n')
+    short, far, empty = (tmp_path / f"{name}.jsonl" for name in ("short", "far", "empty"))
+    short.write_text('{"position_m": [1, 2], "rpy_rad": [0, 0, 0]}\n')
+    far.write_text('{"position_m": [1, 2, 1e999], "rpy_rad": [0, 0, 0]}\n')
+    empty.write_text("")
     for wrong, said in (
         (("--at", "1,2,3"), "'--at': a place is six numbers"),
         (("--at", "nan,0,0,0,0,0"), "at[0]: must be six numbers"),
         (("--at", "0.465,-0.15,-0.3,0,0,0"), "no set-up: the part stands in the ground"),
         (("--with", "half_pipe"), "half_pipe.toml: object: has"),
         (("--places", lines), "places.jsonl: line 2"),
+        (("--places", short), "short.jsonl: line 1: must be an object with position_m"),
+        (("--places", far), "far.jsonl: line 1: must be an object with position_m"),
+        (("--places", empty), "empty.jsonl: has no place"),
+        (("-o", tmp_path / "none" / "a.png"), "its folder does not exist"),
+        (("--plan", lines), "places.jsonl: must be a folder"),
         (("--change-over", "0.5"), "not in the range"),
         (("--places", tmp_path / "none"), "No such file"),
     ):
         assert run("setups", "wok_obstacle", *wrong) == 2
-        said_in = capsys.readouterr().err
-        assert said in said_in and "Traceback" not in said_in
+        printed = capsys.readouterr()
+        assert said in printed.err and len(printed.err.splitlines()) == 1 and not printed.out
     with pytest.raises(cellcolor.InputError, match="no set-up can be used"):
         inside = shipped("wok_obstacle", 80).moved(position_m=(0, 0, 0))
         cellcolor.setups(inside)

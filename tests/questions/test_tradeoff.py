@@ -183,6 +183,8 @@ def test_two_regions_may_need_four_segments() -> None:
         ({"weights": [0.0] * 24}, "weights"),
         ({"required": [True] * 23}, "required"),
         ({"left_alone": [1] * 24}, "left_alone"),
+        ({"left_alone": cellcolor.WorldBox((99, 0, 0), (100, 1, 1))}, "left_alone"),
+        ({"required": [True] + [False] * 23, "left_alone": [True] + [False] * 23}, "required"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(given: dict[str, Any], field: str) -> None:
@@ -220,6 +222,8 @@ def test_the_command_prints_a_row_for_each_point(
     assert all(f"{100 * row['covered_share']:.1f}" in drawn_text for row in rows)
     mask = tmp_path / "mask.json"
     mask.write_text('{"mask": [true]}')
+    weights = tmp_path / "weights.json"
+    weights.write_text('{"weights": [1, -1]}')
     for wrong, said in (
         (("--required", mask), "of another mesh"),
         (("--left-alone", "1,2,3,0,0,0"), "the box is empty"),
@@ -228,6 +232,7 @@ def test_the_command_prints_a_row_for_each_point(
         (("--price", "1", "--share", "1"), "two questions"),
         (("-o", file), "must end in .png or .svg"),
         (("--weights", mask), "mask.json: weights: must be a list"),
+        (("--weights", weights), "weights.json: weights[1]: must be a number from 0 on, is -1"),
         (("--required", tmp_path / "none.json"), "No such file"),
     ):
         assert run("tradeoff", file, *wrong) == 2
