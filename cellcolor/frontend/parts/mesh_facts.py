@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.wording import count as counted
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.cleaning import (
@@ -264,3 +265,16 @@ def _crossing_places(mesh: TriangleMesh, pairs: Index) -> tuple[Place, ...]:
     """The middles of the smaller face of each pair."""
     smaller = np.take_along_axis(pairs, np.argmin(mesh.areas[pairs], axis=1)[:, None], axis=1)
     return tuple(map(_place, mesh.points[mesh.corners[smaller[:, 0]]].mean(axis=1)))
+
+
+def note_on_crossings(mesh: TriangleMesh, deadline: Deadline = NEVER) -> tuple[str, ...]:
+    """A sentence if faces cross: how many, and where; none if the search is too expensive."""
+    pairs = crossing_pairs(mesh.points, mesh.corners, deadline)
+    if pairs is None or not len(pairs):
+        return ()
+    place = ", ".join(f"{x:.4g}" for x in _crossing_places(mesh, pairs[:1])[0])
+    where = f"{'the first' if len(pairs) > 1 else 'it is'} at ({place}) m in the part's own frame"
+    return (
+        f"{counted(len(pairs), 'pair')} of the part's faces cross, {where}: near there the tool "
+        "may be judged by the face that it is not on; cellcolor inspect lists such places",
+    )

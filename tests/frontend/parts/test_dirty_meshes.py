@@ -8,12 +8,14 @@ import numpy as np
 import pytest
 import trimesh
 from dirty import DIRTY, parts_with
+from shipped import shipped
 
 from cellcolor.errors import InputError
 from cellcolor.frontend.parts.inspection import inspect_mesh
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.mesh_file import read_mesh
 from cellcolor.frontend.parts.repaired import repair_mesh
+from cellcolor.frontend.prepared import prepare
 
 # What the makers have done, and no other fault; counts are those of their docstrings.
 FOUND: dict[str, dict[str, object]] = {
@@ -47,6 +49,20 @@ def test_what_is_wrong_is_found(name: str) -> None:
     assert bool(facts.crossings) == (name in ("crossing", "components"))
     assert (facts.refusal is None) == (name in ("components", "crossing"))
     assert not facts.one_sided
+
+
+def test_a_scene_says_where_faces_cross() -> None:
+    """The first place is one that the inspection lists; a part without such faces has no note."""
+    vertices, faces = DIRTY["crossing"]()
+    found = inspect_mesh("crossing", vertices, faces).facts.crossings
+    assert found is not None
+    place = ", ".join(f"{x:.4g}" for x in found[0])
+    scene = shipped("wok", 60)
+    said = f"{len(found)} pairs of the part's faces cross, the first at ({place}) m"
+    (note,) = prepare(scene.with_object((vertices, faces))).notes
+    assert note.startswith(said)
+    block = vertices[: len(vertices) // 2], faces[: len(faces) // 2]
+    assert not prepare(scene.with_object(block)).notes
 
 
 @pytest.mark.parametrize("name", SMALL)
