@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import importlib
 import json
 import multiprocessing
@@ -61,6 +62,7 @@ def _run(said: Path, arguments: list[str]) -> None:
         os.dup2(file.fileno(), 1)
         os.dup2(file.fileno(), 2)
         sys.stdout = sys.stderr = file
+        gc.freeze()  # at its end pytest collects twice: not all that this process has as well
         pytest.main(arguments)
 
 
