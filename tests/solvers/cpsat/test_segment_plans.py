@@ -7,7 +7,7 @@ from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from ortools.sat.python import cp_model
-from rooms import hub
+from rooms import graph, hub, petal_cells
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER
@@ -114,3 +114,20 @@ def test_more_partings_are_heeded_where_there_is_time(monkeypatch: pytest.Monkey
     with pytest.raises(Undecided):
         planner.plan(2, 0)
     assert planner.plan(2, 0, thoroughly=True) is None
+
+
+def test_segments_are_told_apart_where_a_plan_has_several(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two hubs side by side: that one of them is too few is seen in a model of one copy each."""
+    one = petal_cells(RED, BLUE, RED, BLUE)
+    other = [((colors[0] + 2,), (loop[0] - 4,)) for colors, loop in one]
+    hubs = ((RED, BLUE), (1, 2, 3, 4)), ((RED + 2, BLUE + 2), (5, 6, 7, 8))
+    planner = planner_of(graph(*hubs, *one, *other))
+    while (plan := planner.plan(4, 0)) is not None:
+        assert planner.find_partings(plan, NEVER)
+    size = sum(2 + len(parting.groups) for _, _, parting in planner.partings)
+    monkeypatch.setattr(segment_plans, "MOST_PARTED", size)
+    assert planner.plan(5, 0) is None
+    with pytest.raises(Undecided):
+        planner.plan(6, 0)
+    monkeypatch.undo()
+    assert len(planner.plan(6, 0) or ()) == 6

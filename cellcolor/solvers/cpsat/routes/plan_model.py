@@ -9,7 +9,9 @@ Terms, with the places that define them:
 - Merged cells of a region are of one **kind** if the same partings and tangles name them in the
   same places. A segment that touches one of a kind may then touch all of them, so the model has one
   literal for each kind, not for each merged cell.
-- A region gets several **copies**, of which the plan uses as many as it has segments there.
+- A region gets several **copies**, of which the plan uses as many as it has segments there. If it
+  may have more segments than copies, nothing is asked of a plan that has: such a region touches all
+  its merged cells, and no parting and no tangle counts there.
 """
 
 from __future__ import annotations
@@ -114,13 +116,15 @@ class PlanModel:
     Args:
         cells: the merged cells.
         segments: how many segments a plan has, or what they may cost.
-        copies: how many segments each region may have at most.
+        copies: how many segments of each region the plan tells apart.
+        most: how many segments each region may have at most, as many as its copies or more.
         last: the segments of the last plan with the kinds that they touch, as a hint.
         prices: what a segment in each region costs; None where segments are counted.
 
     Attributes:
         model: the model.
         in_use: for every copy: it is a segment of the plan.
+        beyond: for every region that may have more segments than copies: it has.
         touched: for every copy and kind: the segment touches that kind.
     """
 
@@ -129,21 +133,24 @@ class PlanModel:
         cells: PlanCells,
         segments: int,
         copies: Sequence[int],
+        most: Sequence[int],
         last: Mapping[SegmentName, set[int]],
         prices: Sequence[int] | None = None,
     ) -> None:
         self.model = cp_model.CpModel()
         self.in_use: dict[SegmentName, cp_model.IntVar] = {}
+        self.beyond: dict[int, cp_model.IntVar] = {}
         self.touched: dict[SegmentName, dict[int, cp_model.IntVar]] = {}
         self._cells = cells
         self._copies = copies
         self._touching: dict[tuple[SegmentName, frozenset[int]], cp_model.IntVar] = {}
         self._add_segments(last)
+        used = [(region, own) for (region, _), own in self.in_use.items()]
+        used += self._further(most)
         if prices is None:
-            self.model.add(sum(self.in_use.values()) == segments)
+            self.model.add(sum(own for _, own in used) == segments)
         else:
-            used = self.in_use.items()
-            self.model.add(sum(prices[region] * own for (region, _), own in used) <= segments)
+            self.model.add(sum(prices[region] * own for region, own in used) <= segments)
         self._add_cover()
         for one, other in cells.parted:
             self._add_partings(one, other)
@@ -165,6 +172,23 @@ class PlanModel:
                 model.add_implication(literal, own)
                 model.add_hint(literal, kind in last.get(segment, ()))
 
+    def _further(self, most: Sequence[int]) -> Iterator[tuple[int, cp_model.IntVar]]:
+        """How many segments each region has besides its copies, which then are all in use."""
+        for region, own in enumerate(self._copies):
+            if own < most[region]:
+                further = self.model.new_int_var(0, most[region] - own, "")
+                self.beyond[region] = literal = self.model.new_bool_var("")
+                self.model.add_implication(literal, self.in_use[region, own - 1])
+                self.model.add(further == 0).only_enforce_if(~literal)
+                self.model.add(further >= 1).only_enforce_if(literal)
+                self.model.add_hint(literal, False)
+                self.model.add_hint(further, 0)
+                yield region, further
+
+    def _beyond(self, *regions: int) -> list[cp_model.IntVar]:
+        """Literals of which one is true if one of the regions has more segments than copies."""
+        return [self.beyond[region] for region in sorted({*regions}) if region in self.beyond]
+
     def _segments_in(self, region: int) -> list[SegmentName]:
         """The copies of a region."""
         return [(region, copy) for copy in range(self._copies[region])]
@@ -180,6 +204,7 @@ class PlanModel:
                 else:
                     own = self._segments_in(region)
                     literals += [self.touched[segment][kind] for segment in own]
+                    literals += self._beyond(region)
             self.model.add_bool_or(literals)
 
     def _touches(self, segment: SegmentName, merged_cells: Iterable[int]) -> cp_model.IntVar:
@@ -193,21 +218,23 @@ class PlanModel:
 
     def _add_partings(self, one: int, other: int) -> None:
         """If a segment of ``one`` touches both ends, none of ``other`` touches two groups."""
+        told_apart = [~literal for literal in self._beyond(one, other)]
         for own, groups in self._cells.parted[one, other]:
             for near, far in product(self._segments_in(one), self._segments_in(other)):
                 ends = [self._touches(near, merged_cells) for merged_cells in own]
                 parted = [self._touches(far, group) for group in groups]
-                self.model.add(sum(parted) <= 1).only_enforce_if(ends)
+                self.model.add(sum(parted) <= 1).only_enforce_if(ends + told_apart)
 
     def _add_tangle(self, tangle: Tangle) -> None:
         """However its segments are chosen among the copies, one breaks the tangle's conditions.
 
         A segment breaks them if it does not touch some group, or touches what it has to avoid.
         """
+        beyond = self._beyond(*(own.region for own in tangle.segments))
         for segments in product(*(self._segments_in(own.region) for own in tangle.segments)):
             if len(set(segments)) < len(segments):
                 continue  # two segments of a tangle are never the same
-            literals: list[cp_model.LiteralT] = []
+            literals: list[cp_model.LiteralT] = [*beyond]
             for segment, own in zip(segments, tangle.segments, strict=True):
                 literals += [~self._touches(segment, group) for group in own.groups]
                 kinds = self._cells.kinds_of(segment[0], own.avoided)

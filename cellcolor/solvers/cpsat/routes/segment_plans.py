@@ -13,6 +13,7 @@ import random
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from math import prod
 
 from ortools.sat.python import cp_model
 
@@ -103,6 +104,8 @@ class Planner:
         self._regions = regions
         self._fewest = fewest
         self._solve = solve
+        # How many segments of each region are told apart; more only where a plan has more.
+        self._copies = [1] * len(regions)
         self._number = {region: number for number, region in enumerate(regions)}
         # Nothing separates the cells of a merged cell, so a segment that touches one of them can be
         # grown over all. So a plan need not tell them apart.
@@ -136,37 +139,56 @@ class Planner:
         Raises:
             Undecided: the model would be too large, or the solver's limits came first.
         """
-        # Without the copies of a region but one, the segments are still a cover.
+        # Without the segments of a region but one, the segments are still a cover.
         spare = segments - self._fewest
-        copies_in = [spare // price + 1 for price in self._prices or [1] * len(self._regions)]
-        copies = max(copies_in, default=1)
-        most = MOST_PARTED_THOROUGHLY if thoroughly else MOST_PARTED
-        parted = [parting for partings in self._partings.values() for parting in partings]
-        if copies**2 * sum(2 + len(parting.groups) for parting in parted) > most:
-            raise Undecided
-        if sum(t.size * copies ** len(t.segments) for t in self._tangles) > MOST_TANGLED:
-            raise Undecided
+        most = [spare // price + 1 for price in self._prices or [1] * len(self._regions)]
         cells = PlanCells(self._merged_cells_of, self._parted_cells(), self._tangles)
-        if copies * sum(len(set(own.values())) for own in cells.kinds) > MOST_LITERALS:
-            raise Undecided
-        built = PlanModel(cells, segments, copies_in, self._last, self._prices)
-        model, touched = built.model, built.touched
-        if seed:
-            # Without a random objective, other seeds find the same plan again.
-            chance = random.Random(seed)
-            literals = [literal for own in touched.values() for literal in own.values()]
-            model.minimize(sum(chance.randrange(4) * literal for literal in literals))
-        solver, status = self._solve(model, seed)
-        if status == cp_model.INFEASIBLE:
-            return None
-        if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
-            raise Undecided
+        while True:
+            copies = list(map(min, self._copies, most))
+            self._refuse_large(cells, copies, thoroughly)
+            built = PlanModel(cells, segments, copies, most, self._last, self._prices)
+            model, touched = built.model, built.touched
+            if seed:
+                # Without a random objective, other seeds find the same plan again.
+                chance = random.Random(seed)
+                literals = [literal for own in touched.values() for literal in own.values()]
+                wish = sum(chance.randrange(4) * literal for literal in literals)
+                model.minimize(wish + 4 * len(literals) * sum(built.beyond.values()))
+            solver, status = self._solve(model, seed)
+            if status == cp_model.INFEASIBLE:
+                return None
+            if status not in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+                raise Undecided
+            beyond = [r for r, literal in built.beyond.items() if solver.boolean_value(literal)]
+            if not beyond:
+                break
+            for region in beyond:
+                self._copies[region] += 1
         self._last = {
             segment: {kind for kind, own in touched[segment].items() if solver.boolean_value(own)}
             for segment, literal in built.in_use.items()
             if solver.boolean_value(literal)
         }
         return self._read(cells.kinds, seed)
+
+    def _refuse_large(self, cells: PlanCells, copies: Sequence[int], thoroughly: bool) -> None:
+        """Refuse what would take too long.
+
+        Raises:
+            Undecided: the model would be too large.
+        """
+        kinds = (copies[region] * len({*own.values()}) for region, own in enumerate(cells.kinds))
+        parted = (
+            copies[one] * copies[other] * sum(2 + len(parting.groups) for parting in partings)
+            for (one, other), partings in self._partings.items()
+        )
+        tangled = (t.size * prod(copies[s.region] for s in t.segments) for t in self._tangles)
+        if (
+            sum(kinds) > MOST_LITERALS
+            or sum(parted) > (MOST_PARTED_THOROUGHLY if thoroughly else MOST_PARTED)
+            or sum(tangled) > MOST_TANGLED
+        ):
+            raise Undecided
 
     @property
     def heeds_conflicts(self) -> bool:
