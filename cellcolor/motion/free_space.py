@@ -31,8 +31,23 @@ class FreeSpace:
         space: of the joints, with their limits.
     """
 
-    def __init__(self, prepared: PreparedScene, clearance: float, *, leaving: bool = False) -> None:
-        """``clearance`` is what is kept from everything besides the setup's margins, m."""
+    def __init__(
+        self,
+        prepared: PreparedScene,
+        clearance: float,
+        share: float = 1.0,
+        *,
+        leaving: bool = False,
+    ) -> None:
+        """Bodies of the arm.
+
+        Args:
+            prepared: the scene.
+            clearance: what is kept from everything besides the setup's margins, m.
+            share: how much of that is kept after all. What is free for a share is free for a
+                smaller one.
+            leaving: see the class.
+        """
         place = prepared.workplace
         self._place, self._on = place, prepared.setup.constraints.collision
         self.space = joint_space(prepared)
@@ -46,13 +61,15 @@ class FreeSpace:
             around = wider(place.robot, room + margin)
             return around if leaving else _with_tip(around, wider_body(tip, room))
 
-        self._near_obstacles = keeping(clearance, margins.to_obstacles_m)
-        self._near_object = keeping(clearance, margins.to_object_m)
-        self._near_ground = keeping(clearance, margins.to_ground_m)
+        room = share * clearance
+        self._near_obstacles = keeping(room, margins.to_obstacles_m)
+        self._near_object = keeping(room, margins.to_object_m)
+        self._near_ground = keeping(room, margins.to_ground_m)
         # Two bodies that keep a distance from each other keep half of it each. Links that are never
         # so far apart, as a tool on a short flange and the link behind it, keep only the margin.
-        half = keeping(clearance / 2, margins.between_links_m / 2)
-        never = {frozenset(pair) for pair in always_touching(half)} if clearance else set()
+        whole = keeping(clearance / 2, margins.between_links_m / 2)
+        half = keeping(room / 2, margins.between_links_m / 2)
+        never = {frozenset(pair) for pair in always_touching(whole)} if clearance else set()
 
         def of_pairs(robot: Robot, apart: bool) -> Robot:
             bodies = robot.bodies

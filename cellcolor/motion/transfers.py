@@ -81,7 +81,7 @@ class Transfers:
         self._prepared, self._seed, self._deadline = prepared, seed, deadline
         self._motion, self._velocities = motion, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
-        self._levels = [FreeSpace(prepared, share * motion.clearance_m) for share in _SHARES]
+        self._levels = [FreeSpace(prepared, motion.clearance_m, share) for share in _SHARES]
         self._clear = self._levels[0]
         self._wide = FreeSpace(prepared, motion.clearance_m + _SPARE)
         self.home, self._space = home_of(prepared, motion), joint_space(prepared)

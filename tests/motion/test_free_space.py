@@ -12,9 +12,10 @@ from shipped import shipped
 from world import KINDS, PAIRS, World, standing
 
 from cellcolor.frontend.prepared import prepare
-from cellcolor.frontend.scene import Ground
+from cellcolor.frontend.scene import Ground, Scene
 from cellcolor.motion.free_space import FreeSpace
 
+ARMS = Path(__file__).parents[2] / "instances" / "arms"
 CLEARANCE, CLOSE = 0.005, 0.0005  # m; what is kept, and where verdicts may differ
 
 
@@ -81,6 +82,17 @@ def test_margins_are_kept_besides_the_clearance(key: str, margin: float) -> None
     assert not clear[gap < least - CLOSE].any()
     assert clear[gap > 1.45 * least + CLOSE].all()
     assert clear.any() and not clear.all()
+
+
+@pytest.mark.parametrize(("scene", "clearance"), [("irb120_half_pipe", 0.02), ("kr6_wok", 0.05)])
+def test_what_is_clear_with_more_room_is_clear_with_less(scene: str, clearance: float) -> None:
+    """Links that are never so far apart as the whole clearance are a part of this."""
+    prepared = prepare(Scene.read(ARMS / f"{scene}.toml"))
+    joints = np.random.default_rng(4).uniform(-np.pi, np.pi, (400, len(prepared.robot.lower)))
+    joints = joints[FreeSpace(prepared, clearance).clear(joints)]
+    assert len(joints)
+    for share in (0.4, 0.1):
+        assert FreeSpace(prepared, clearance, share).clear(joints).all()
 
 
 def test_an_arm_without_any_body_is_free_but_for_its_tip() -> None:
