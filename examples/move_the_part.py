@@ -2,7 +2,7 @@
 
 import cellcolor
 
-scene = cellcolor.read("wok").varied(object={"target_vertices": 300})
+scene = cellcolor.read("wok").varied(object={"target_vertices": 150})
 x, y, z = scene.placement.position_m
 
 for centimeters in (0, 6, 12):

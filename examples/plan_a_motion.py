@@ -2,7 +2,7 @@
 
 import cellcolor
 
-scene = cellcolor.read("square").varied(object={"target_vertices": 200})
+scene = cellcolor.read("square").varied(object={"target_vertices": 60})
 planned = cellcolor.plan(scene, spacing_m=0.03, time_limit=300)
 print(planned)
 assert planned.verdict.valid

@@ -39,7 +39,8 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def folders(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     motion = Scene.read(find_file("wok")).setup.motion
-    scene = plate(setup(None).varied(motion=motion))
+    part = {"size_x_m": 0.12, "size_y_m": 0.2}
+    scene = plate(setup(None).varied(motion=motion)).varied(object=part)
     made = []
     for pattern in ("contour", "back-and-forth"):
         made.append(tmp_path_factory.mktemp("plans") / pattern)

@@ -40,6 +40,7 @@ def brought(folder: Path) -> list[list[str]]:
     return [shlex.split(line) for line in lines]
 
 
+@pytest.mark.slow
 def test_the_guide_to_the_letter(tmp_path: Path) -> None:
     build, solve, *pictures = brought(tmp_path)
     text = (tmp_path / URDF).read_text()

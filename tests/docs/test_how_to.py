@@ -92,7 +92,6 @@ def test_a_bound(clone: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.slow
 def test_a_family(clone: Path) -> None:
     chains, top, line, _ = found = blocks("add-a-family")
     for block in (chains, top, line):

@@ -28,7 +28,7 @@ def wok() -> PreparedScene:
 
 
 @pytest.mark.second
-@settings(max_examples=10)
+@settings(max_examples=6)
 @given(shift=st.tuples(SHIFTS, SHIFTS, SHIFTS), turn=st.tuples(SHIFTS, SHIFTS, ANGLES))
 def test_a_part_elsewhere_is_the_scene_prepared_there(
     wok: PreparedScene, shift: tuple[float, ...], turn: tuple[float, ...]

@@ -209,7 +209,7 @@ def test_five_thousand_target_poses_against_eaik(name: str) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_some_candidates_against_pinocchio_and_coal(name: str) -> None:
-    check_candidates(name, vertices=200, count=200)
+    check_candidates(name, vertices=120, count=120)
 
 
 @pytest.mark.slow

@@ -105,10 +105,10 @@ def test_colors_hold_wherever_the_part_may_stand(scene: Scene) -> None:
 @pytest.mark.second
 def test_finer_borders_are_those_of_what_holds() -> None:
     """The surface is bisected where colors that hold end, and each new vertex is asked as well."""
-    scene = shipped("wok", 80).varied(tolerance=OFTEN)
-    scene = scene.with_setup(scene.setup.varied(continuity={"border_length_m": 0.01}))
+    scene = shipped("wok", 60).varied(tolerance=OFTEN)
+    scene = scene.with_setup(scene.setup.varied(continuity={"border_length_m": 0.012}))
     built = cellcolor.build(scene)
-    assert len(built.surface.vertices) > 100
+    assert len(built.surface.vertices) > 80
     for placement in [there.scene.placement for there in built.prepared.displaced()]:
         there = built.prepared.at(placement)
         surface = built.prepared.surface.taken_along(scene.placement, placement)

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 import pinocchio as pin
 import pytest
-from motions import Planned, planned
+from motions import Planned, planned, planned_scene
 from scipy.spatial import cKDTree
-from shipped import ROBOTS, shipped
+from shipped import ROBOTS, shipped, with_keys
 
 import cellcolor
 from cellcolor.arrays import Array
@@ -31,7 +31,8 @@ NAMES = ("wok", "half_pipe", "square", "hemisphere_flat", "hemisphere_tilted", "
 @pytest.fixture(scope="module", params=["half_pipe", "wok_obstacle"])
 def motion(request: pytest.FixtureRequest) -> Planned:
     """A motion with one lift-off, and one with two around an obstacle."""
-    return planned(request.param, 500)
+    scene = shipped(request.param, 500)
+    return planned_scene(scene.with_setup(with_keys(scene.setup, spacing_m=0.02)))
 
 
 def tip_poses(motion: Planned, joints: Array) -> tuple[Array, Array]:
@@ -165,7 +166,7 @@ def test_all_scenes_have_no_more_lift_offs_than_were_proved(name: str) -> None:
     assert (verdicts.reasons == VALID).all()
 
 
-@pytest.mark.second
+@pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
 def test_the_same_scene_and_seed_give_the_same_trajectory(motion: Planned) -> None:
     again = plan_motion(motion.built, motion.painted, motion.normals)
     assert again.trajectory == motion.plan.trajectory
@@ -205,7 +206,7 @@ def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
 
 def test_a_mesh_that_is_much_coarser_than_the_spacing_is_covered_as_far_as_can_be() -> None:
     """A dome of some 12 triangles: at every corner between two of them the tool's body hits it."""
-    planned = cellcolor.plan(shipped("wok", 12))
+    planned = cellcolor.plan(shipped("wok", 12), spacing_m=0.03)
     assert planned.verdict.valid
     covered = planned.verdict.covered
     assert covered is not None and covered.closely_covered_share > 0.9

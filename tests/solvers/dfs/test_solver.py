@@ -260,8 +260,10 @@ def test_seams_have_enough_strands() -> None:
     assert Graphs(three, 1).sufficient_seam_strands(0) == [4, 8]
 
 
-@pytest.mark.second
-@pytest.mark.parametrize(("name", "cell", "minimum"), [("annulus", 1, 3), ("three-loops", 0, 4)])
+@pytest.mark.parametrize(
+    ("name", "cell", "minimum"),
+    [("annulus", 1, 3), pytest.param("three-loops", 0, 4, marks=pytest.mark.slow)],
+)
 def test_order_of_loops_does_not_matter(name: str, cell: int, minimum: int) -> None:
     instance = Instance.read(PAPER / f"{name}.json")
     for seed in range(4):
