@@ -23,6 +23,7 @@ from statistics import median
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 import forged_certificates
+import forged_truth
 
 import cellcolor
 from cellcolor.checker.certificates import BoundVerdict, verify_bound
@@ -208,7 +209,7 @@ def forged(wanted: int) -> None:
             refused[kind] += 1
         elif verdict.outcome == "budget exceeded":
             given_up[kind] += 1
-        elif forged_certificates.claims_truth(original, claim):
+        elif forged_truth.claims_truth(original, claim):
             true[kind] += 1
         else:
             accepted[kind] += 1

@@ -27,7 +27,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 import numpy as np
-from exhaustive_minima import front_by_subsets, front_by_vertices
+from exhaustive_minima import front_by_subsets
+from vertex_minima import front_by_vertices
 
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE

@@ -5,7 +5,8 @@ from __future__ import annotations
 from itertools import islice
 
 import pytest
-from forged_certificates import FORGERIES, Original, claims_truth, forge, large, small
+from forged_certificates import FORGERIES, Original, forge, large, small
+from forged_truth import claims_truth
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.color_regions import regions_of_cells

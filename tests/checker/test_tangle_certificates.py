@@ -7,7 +7,6 @@ import json
 from typing import Any
 
 import pytest
-from exhaustive_minima import vertex_minimum
 from hypothesis import assume, given, reject
 from hypothesis import strategies as st
 from rooms import (
@@ -21,6 +20,7 @@ from rooms import (
     room,
     rooms,
 )
+from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.checker.certificates import BoundVerdict, verify_bound

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 import trimesh
-from exhaustive_minima import covers
 from library import INSTANCES
 from shipped import TOP
+from vertex_minima import covers
 
 import cellcolor
 from cellcolor.deadline import Deadline

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pinocchio as pin
 import pytest
-from exhaustive_minima import covers
 from reasons import Reason
 from shipped import SCENES, shipped
+from vertex_minima import covers
 
 from cellcolor.arrays import Array
 from cellcolor.data.instance import Instance

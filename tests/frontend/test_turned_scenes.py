@@ -7,10 +7,10 @@ import dh_arms
 import numpy as np
 import pytest
 from bent_tools import tip_frame
-from exhaustive_minima import vertex_minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from turned_scenes import SHIPPED, plate, setup
+from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.data.candidate_table import VALID

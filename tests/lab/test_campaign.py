@@ -12,9 +12,9 @@ from itertools import islice
 from pathlib import Path
 
 import pytest
-from exhaustive_minima import vertex_minimum
 from library import PAPER
 from odd_jobs import HereWorkers
+from vertex_minima import vertex_minimum
 
 from cellcolor.cli import main
 from cellcolor.data.bounds import Bound, greatest

@@ -8,10 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from exhaustive_minima import vertex_minimum
 from library import PAPER
 from meshes import drawn
 from rooms import hub as hub_graph
+from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.checker.certificates import BoundVerdict, verify_bound

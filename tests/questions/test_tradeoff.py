@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 import pytest
 from commands import json_lines, run
-from exhaustive_minima import front_by_subsets, front_by_vertices
+from exhaustive_minima import front_by_subsets
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from meshes import drawn
+from vertex_minima import front_by_vertices
 
 import cellcolor
 from cellcolor.data.cells_and_edges import OUTSIDE

@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from exhaustive_minima import literal_minimum, live_darts, minimum, optimal_schemes, vertex_minimum
+from exhaustive_minima import literal_minimum, live_darts, minimum, optimal_schemes
 from library import PAPER
+from vertex_minima import vertex_minimum
 
 from cellcolor.checker.division import check_division
 from cellcolor.data.instance import Instance

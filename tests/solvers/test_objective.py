@@ -8,11 +8,12 @@ from itertools import islice
 from typing import Any
 
 import pytest
-from exhaustive_minima import literal_minimum, vertex_minimum
+from exhaustive_minima import literal_minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import INSTANCES, PAPER
 from ortools.sat.python import cp_model
+from vertex_minima import vertex_minimum
 
 from cellcolor.checker.certificates import verify_bound
 from cellcolor.checker.claimed_numbers import claims, segments_of_whole_cells

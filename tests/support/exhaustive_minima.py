@@ -1,16 +1,9 @@
-"""Partitions of the points on a circle whose blocks can be drawn without crossing.
-
-Minima and optimal schemes straight from their definitions, sharing nothing with any solver.
+"""Minima and optimal schemes straight from their definitions, sharing nothing with any solver.
 
 Everything here is a sweep: cells are painted one after the other, and of all paintings of the
 swept part that look the same from the rest only the cheapest are kept. That is exact without
-bounds, without a search order that matters and without canonical forms.
-
-The most that so many segments cover, by trying everything; it shares nothing with any solver.
-
-Minima over all colorings of a mesh's vertices, by a sweep that never sees the graph.
-
-The fewest color regions that a surface needs, by trying all choices.
+bounds, without a search order that matters and without canonical forms. What so many segments
+cover at most is found by leaving out every set of cells.
 """
 
 from __future__ import annotations
@@ -25,7 +18,6 @@ from itertools import chain, combinations
 from cellcolor.data.cells_and_edges import Cell
 from cellcolor.data.instance import Instance
 from cellcolor.data.solution import SchemeKey
-from cellcolor.data.surface import LabelledSurface
 
 Partitions = Callable[[tuple[object, ...]], tuple[tuple[tuple[int, ...], ...], ...]]
 """Those of points on a circle, whose colors are given."""
@@ -435,125 +427,10 @@ def front_by_subsets(
         rest, kept = instance.without_cells(left_out)
         segments = minimum(rest)
         best[segments] = max(best[segments], sum(weights[cell] for cell in kept))
-    return _with_fewer(best)
+    return with_fewer(best)
 
 
-def _with_fewer(best: dict[int, float]) -> dict[int, float]:
+def with_fewer(best: dict[int, float]) -> dict[int, float]:
     """The greatest weight of at most so many segments, of that of exactly so many."""
     counts = range(max(1, min(best)), max(best) + 1)
     return {k: max(best[fewer] for fewer in best if fewer <= k) for k in counts}
-
-
-def front_by_vertices(
-    surface: LabelledSurface, weights: Sequence[float], required: Collection[int] = ()
-) -> dict[int, float]:
-    """For each number of segments the greatest weight of vertices that so many components have.
-
-    Every vertex is given one of its colors or, unless it is required, none, in a sweep over the
-    vertices in their order. Numbers with which those required cannot be covered are missing.
-    Borders run between vertices, so on a coarse mesh less is covered than on the surface.
-    """
-    cracks = {(c.i, c.j): c.colors for c in surface.cracks}
-    neighbors: dict[int, set[int]] = defaultdict(set)
-    for i, j in surface.left_of:
-        neighbors[i].add(j)
-        neighbors[j].add(i)
-    # The painted vertices that later ones touch: color and component of each; None if left out.
-    Colored = tuple[tuple[int, int] | None, ...]
-    frontier: list[int] = []
-    layer: dict[tuple[Colored, int], float] = {((), 0): 0.0}
-    for vertex, colors in enumerate(surface.vertex_colors):
-        painted_now = [*frontier, vertex]
-        kept = [p for p, v in enumerate(painted_now) if any(n > vertex for n in neighbors[v])]
-        grown: dict[tuple[Colored, int], float] = {}
-        for (state, closed), weight in layer.items():
-            for color in colors if vertex in required else (None, *colors):
-                painted = list(state)
-                gained = weight
-                if color is None:
-                    painted.append(None)
-                else:
-                    gained += weights[vertex]
-                    met = {
-                        own[1]
-                        for own, v in zip(state, frontier, strict=True)
-                        if own is not None
-                        and v in neighbors[vertex]
-                        and own[0] == color
-                        and color not in cracks.get((min(v, vertex), max(v, vertex)), ())
-                    }
-                    painted = [
-                        (own[0], -1) if own is not None and own[1] in met else own
-                        for own in painted
-                    ]
-                    painted.append((color, -1))
-                names: dict[int, int] = {}
-                found: list[tuple[int, int] | None] = []
-                for place in kept:
-                    own = painted[place]
-                    found.append(
-                        None if own is None else (own[0], names.setdefault(own[1], len(names)))
-                    )
-                components = {own[1] for own in painted if own is not None}
-                key = tuple(found), closed + len(components) - len(names)
-                grown[key] = max(grown.get(key, 0.0), gained)
-        layer, frontier = grown, [painted_now[p] for p in kept]
-    best: dict[int, float] = defaultdict(float)
-    for (_, segments), weight in layer.items():
-        best[segments] = max(best[segments], weight)
-    return _with_fewer(best)
-
-
-def vertex_minimum(surface: LabelledSurface, costs: Sequence[int] | None = None) -> int:
-    """The fewest connected components of equal color over all colorings of a mesh's vertices.
-
-    With costs by color it is the least that such components cost together. Without the topological
-    graph: vertices one by one in their order, which should be one with a short frontier.
-    """
-    price = [1] * len(surface.colors) if costs is None else costs
-    cracks = {(c.i, c.j): c.colors for c in surface.cracks}
-    neighbors: dict[int, set[int]] = defaultdict(set)
-    for i, j in surface.left_of:
-        if surface.vertex_colors[i] and surface.vertex_colors[j]:
-            neighbors[i].add(j)
-            neighbors[j].add(i)
-    reached = [v for v, colors in enumerate(surface.vertex_colors) if colors]
-    frontier: list[int] = []
-    layer: dict[tuple[tuple[int, int], ...], int] = {(): 0}
-    for vertex in reached:
-        painted_now = [*frontier, vertex]
-        kept = [p for p, v in enumerate(painted_now) if any(n > vertex for n in neighbors[v])]
-        touched = [
-            (place, cracks.get((min(v, vertex), max(v, vertex)), ()))
-            for place, v in enumerate(frontier)
-            if v in neighbors[vertex]
-        ]
-        grown: dict[tuple[tuple[int, int], ...], int] = {}
-        for state, cost in layer.items():
-            for color in surface.vertex_colors[vertex]:
-                same = {
-                    state[place][1]
-                    for place, cracked in touched
-                    if state[place][0] == color and color not in cracked
-                }
-                painted = [(c, -1 if s in same else s) for c, s in state]
-                painted.append((color, -1))
-                names: dict[int, int] = {}
-                found = tuple(
-                    (painted[p][0], names.setdefault(painted[p][1], len(names))) for p in kept
-                )
-                closed = sum(price[c] for c, s in set(painted) if s not in names)
-                grown[found] = min(grown.get(found, cost + closed), cost + closed)
-        layer, frontier = grown, [painted_now[p] for p in kept]
-    return min(layer.values())
-
-
-def covers(surface: LabelledSurface, count: int) -> list[set[str]]:
-    """All choices of so many colors that together reach every reachable vertex."""
-    needs = {frozenset(colors) for colors in surface.vertex_colors if colors}
-    chosen = itertools.combinations(range(len(surface.colors)), count)
-    return [
-        {surface.colors[color] for color in colors}
-        for colors in chosen
-        if all(need & set(colors) for need in needs)
-    ]

@@ -10,12 +10,12 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from bent_tools import BENT, tip_frame, tip_frames, tool
-from exhaustive_minima import vertex_minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from independent import wrapped
 from refused_setups import refused_setup
 from shipped import ROBOTS, TOP
+from vertex_minima import vertex_minimum
 
 import cellcolor
 from cellcolor.arrays import Array

@@ -6,11 +6,12 @@ import itertools
 import math
 from dataclasses import replace
 
-from exhaustive_minima import minimum, vertex_minimum
+from exhaustive_minima import minimum
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from library import PAPER
 from rooms import graph
+from vertex_minima import vertex_minimum
 
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance

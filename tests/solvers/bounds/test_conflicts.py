@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from itertools import combinations, product
 
 import networkx as nx
-from exhaustive_minima import vertex_minimum
 from hypothesis import given, reject
 from hypothesis import strategies as st
 from library import PAPER
 from meshes import grid_faces, grid_points, surface
 from rooms import crossed_rings, graph, hub, petal_cells
+from vertex_minima import vertex_minimum
 
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface

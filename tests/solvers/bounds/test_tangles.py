@@ -5,10 +5,10 @@ from __future__ import annotations
 from itertools import combinations, product
 
 import pytest
-from exhaustive_minima import vertex_minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from rooms import ISLAND_BETWEEN, ROUND_A_PETAL, can_be_drawn, room, rooms
+from vertex_minima import vertex_minimum
 
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
