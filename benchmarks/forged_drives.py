@@ -20,7 +20,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
 import numpy as np
-from forged_drives import FORGERS, HONEST, Honest, dropped_stroke
+from forged_drives import FORGERS
+from honest_drives import HONEST, Honest, dropped_stroke
 
 import cellcolor
 from cellcolor.data.trajectory import Trajectory

@@ -122,7 +122,7 @@ def test_a_daemon_has_no_children(monkeypatch):
 
 @pytest.fixture(scope="module")
 def fine_scene():
-    return Scene.read(WOK).varied(object={"target_vertices": 400})
+    return Scene.read(WOK).varied(object={"target_vertices": 250})
 
 
 @pytest.mark.second

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from forged_drives import resampled
+from honest_drives import resampled
 from hypothesis import given
 from hypothesis import strategies as st
 

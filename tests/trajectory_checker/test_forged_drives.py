@@ -12,7 +12,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 import rasters
-from forged_drives import FORGERS, HONEST, Honest, dropped_stroke, resampled
+from forged_drives import FORGERS
+from honest_drives import HONEST, Honest, dropped_stroke, resampled
 from hypothesis import given
 from hypothesis import strategies as st
 from motions import planned

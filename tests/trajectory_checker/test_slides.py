@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from forged_drives import HONEST, Honest, dropped_stroke, rows_of
+from honest_drives import HONEST, Honest, dropped_stroke, rows_of
 from joint_paths import MOTION, SLIDE, driven_scara, scara_scene
 
 import cellcolor
