@@ -103,6 +103,7 @@ class TestRun:
             assert min(row.process_seconds, row.cpu_seconds, row.peak_mb) > 0
         assert found[1].solver_version.startswith("OR-Tools ") and found[1].workers == 1
 
+    @pytest.mark.slow
     def test_the_library(self, tmp_path: Path) -> None:
         table = tmp_path / "t.csv"
         assert run("bench", "run", "library/paper", "--solver", "dfs", "-o", table) == 0

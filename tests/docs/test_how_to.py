@@ -118,6 +118,7 @@ def test_one_screen(guide: str) -> None:
     assert len(page.splitlines()) <= 80
 
 
+@pytest.mark.slow
 def test_another_planner(tmp_path: Path) -> None:
     """It fails as the guide says, and passes once it is mended."""
     first, test, _, failure, second, joints, printed = found = blocks("test-another-planner")

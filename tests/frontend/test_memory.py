@@ -82,7 +82,7 @@ def of_arm(arm: str) -> Iterator[tuple[str, Step]]:
     yield "poses", lambda: poses_of(scene.robot, some, NEVER)
 
 
-ARMS = ("ur5e_wok", "ur5e_calibrated_wok", "kr6_wok")
+ARMS = ("ur5e_wok", "ur5e_calibrated_wok", pytest.param("kr6_wok", marks=pytest.mark.slow))
 OF_ARM = ("inverse", "follow", "polished", "missing", "judge", "described", "poses")
 
 

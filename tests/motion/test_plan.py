@@ -124,6 +124,7 @@ def test_velocities_and_accelerations_are_kept_and_the_tool_is_no_faster_than_as
     assert np.median(speed[both]) > 0.95 * asked.speed_m_per_s
 
 
+@pytest.mark.parametrize("motion", ["wok_obstacle"], indirect=True)
 def test_the_tool_touches_and_leaves_at_the_approach_speed(motion: Planned) -> None:
     setup = motion.prepared.setup.varied(motion={"approach_speed_m_per_s": 0.004})
     prepared = prepare(motion.prepared.scene.with_setup(setup))

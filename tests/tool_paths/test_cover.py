@@ -73,7 +73,10 @@ def assert_on_segments(pattern: str, seed: int, shape: str, spacing: float) -> N
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)
-@pytest.mark.parametrize("shape", ["disc", "annulus", "sphere", "torus", "double torus"])
+@pytest.mark.parametrize(
+    "shape",
+    ["disc", "annulus", "sphere", "double torus", pytest.param("torus", marks=pytest.mark.slow)],
+)
 def test_whole_shapes_are_covered_nearly_once(pattern: str, shape: str) -> None:
     painting = whole(shape, 12)
     # Some eleven passes across each of them.

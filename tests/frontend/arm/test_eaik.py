@@ -98,7 +98,7 @@ def test_solutions_of_ssik_for_five_thousand_poses(name: str) -> None:
 
 @pytest.mark.parametrize("off", [1e-2, 1e-4, 1e-7, 0.0])
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("name", ["kr6", "puma560"])
+@pytest.mark.parametrize("name", ["kr6", pytest.param("puma560", marks=pytest.mark.slow)])
 def test_no_solution_is_lost_next_to_a_singularity(name: str, kind: str, off: float) -> None:
     """Compared are those with a determinant above a share of reach^3; the own one always."""
     pytest.importorskip("ssik")

@@ -57,6 +57,7 @@ def test_a_capsule_around_a_cylinder_is_off_at_its_ends() -> None:
     assert 0.02 < report.error_m < 0.06
 
 
+@pytest.mark.slow
 def test_capsules_are_not_off_where_they_overlap() -> None:
     """Of an L two capsules follow the arms; what of one is inside the other does not count."""
     arms = [trimesh.creation.capsule(height=0.4, radius=0.05, count=(12, 12)) for _ in range(2)]
@@ -70,6 +71,7 @@ def test_capsules_are_not_off_where_they_overlap() -> None:
     assert report.error_m < 0.5 * one.error_m
 
 
+@pytest.mark.slow
 def test_faces_are_cut_between_capsules() -> None:
     """A square plate of 12 faces: a capsule around whole ones goes 0.2 m off."""
     report = reported(trimesh.creation.box((0.4, 0.4, 0.02)), "capsules")
