@@ -25,10 +25,11 @@ FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
 be routed takes a few."""
 
-LEVELS = (1, 0.1), (2, 0.1), (1, 0.4), (2, 0.4)
+LEVELS = ((1, 0.1), (2, 0.1), (1, 0.4), (2, 0.4)), ((1, 1.0), (2, 0.2))
 """How much of a linear relaxation plans are made with that were left undecided, and the share of
-the effort. Plans of many segments are ruled out by a full relaxation or by a small one, hardly ever
-by both; without any, as small plans are made, by neither."""
+the effort; on large parts the second row. Plans of many segments are ruled out by a full relaxation
+or by a small one, hardly ever by both; without any, as small plans are made, by neither. On large
+parts a full one takes longest, and seldom says more."""
 
 LITTLE = 2
 """Segments above the bound up to which it is tried what segments avoid."""
@@ -62,6 +63,7 @@ class Planning:
             self._solve_plan,
             self._part.planned,
             self._part.costs,
+            at_once=not self._part.large,
         )
         self._undecided = True
         with suppress(Undecided):
@@ -136,7 +138,7 @@ class Planning:
         self, model: cp_model.CpModel, seed: int
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
         # Too small for a portfolio.
-        for level, share in LEVELS if self._thorough else ((None, 1.0),):
+        for level, share in LEVELS[self._part.large] if self._thorough else ((None, 1.0),):
             solver = self._part.runner.single(share * self._effort, seed, self._deadline)
             if level is not None:
                 solver.parameters.linearization_level = level
@@ -152,7 +154,7 @@ class Planning:
         for each bound is enough of a start for local search. With 0 rings a cell is painted whole,
         with 1 it has room for cutting paths.
         """
-        if self._avoiding:
+        if self._avoiding or (self._part.large and self._thorough):
             return ()
         if not self._part.large:
             return 0, 1

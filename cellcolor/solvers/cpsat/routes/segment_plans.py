@@ -88,6 +88,8 @@ class Planner:
         cover: color regions that touch every cell, a hint for the first plan.
         costs: what a segment of each color costs; None for 1 each. With costs, ``fewest`` is what a
             cheapest cover costs.
+        at_once: whether all segments of a region are told apart from the beginning. With few cells
+            that is decided sooner; with many the model would be too large.
     """
 
     def __init__(
@@ -98,6 +100,7 @@ class Planner:
         solve: SolveWithSeed,
         cover: Sequence[Region] = (),
         costs: Sequence[int] | None = None,
+        at_once: bool = False,
     ) -> None:
         self._prices = None if costs is None else [costs[color] for color, _ in regions]
         self._instance = instance
@@ -105,7 +108,7 @@ class Planner:
         self._fewest = fewest
         self._solve = solve
         # How many segments of each region are told apart; more only where a plan has more.
-        self._copies = [1] * len(regions)
+        self._copies = [len(instance.cells) if at_once else 1] * len(regions)
         self._number = {region: number for number, region in enumerate(regions)}
         # Nothing separates the cells of a merged cell, so a segment that touches one of them can be
         # grown over all. So a plan need not tell them apart.
