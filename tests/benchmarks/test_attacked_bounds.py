@@ -19,6 +19,6 @@ def test_true_bounds_withstand(capsys: pytest.CaptureFixture[str]) -> None:
 def test_a_bound_that_is_too_high_is_named(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(attacked_bounds, "greedy_strangers", lambda instance: range(100))
+    monkeypatch.setattr(attacked_bounds, "greedy_strangers", lambda _: range(100))
     assert attacked_bounds.main(["2", "1"]) == 1
     assert "strangers 100, of" in capsys.readouterr().out
