@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from cellcolor.arrays import Array
 from cellcolor.errors import RefusedResult
@@ -20,7 +21,10 @@ from cellcolor.errors import RefusedResult
 _STEP = 0.01  # of the path's parameter, about, per sample; TOPP-RA's tolerances suit such a scale
 _LEAST = 0.001  # s, of a step; where neither tool nor joints move
 _UNEVEN = 30.0  # times longer and shorter than the median step is a step of the parameter at most
-_ROUNDS = 12  # of TOPP-RA; then the whole motion is stretched
+_ROUNDS = 12  # of TOPP-RA; then what is still too fast is stretched
+_STRETCHES = 30  # of it, with what is around; then the whole motion is
+_AROUND = 121  # samples
+_MORE = 1.001  # times longer than needed, for rounding
 _EXACT = 6  # of them slow down by what the accelerations ask for, later ones by more
 _MARGIN = 0.97  # of the accelerations; differences of samples exceed the derivatives a little
 
@@ -108,9 +112,18 @@ def accelerations(times: Array, joints: Array) -> Array:
 
 
 def _kept(times: Array, joints: Array, speeds: Speeds) -> Array:
-    """The times, stretched all alike where an acceleration is still too large."""
-    excess = float((accelerations(times, joints) / speeds.accelerations).max())
-    return np.asarray(times * max(1.0, np.sqrt(excess)))
+    """The times, stretched around where an acceleration is still too large, or else all alike."""
+    for _ in range(_STRETCHES):
+        excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
+        if excess.max() <= 1.0:
+            return times
+        longer = np.where(excess > 1.0, np.sqrt(excess) * _MORE, 1.0)
+        # Full around what is too fast, and less and less farther away: that is smooth itself.
+        longer = uniform_filter1d(maximum_filter1d(longer, _AROUND), _AROUND)
+        steps = np.diff(times) * np.maximum(longer[1:], longer[:-1])
+        times = np.concatenate([[0.0], np.cumsum(steps)])
+    most = float((accelerations(times, joints) / speeds.accelerations).max())
+    return np.asarray(times * max(1.0, np.sqrt(most)))
 
 
 def _rates(joints: Array, spans: Array, cap: Array, speeds: Speeds) -> Array:

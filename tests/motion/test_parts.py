@@ -18,7 +18,7 @@ from cellcolor.motion.order import ordered
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
-from cellcolor.motion.timing import Speeds, timed
+from cellcolor.motion.timing import Speeds, _kept, accelerations, timed
 from cellcolor.motion.turns import Visit, chosen_turns
 from examples import examples
 
@@ -181,6 +181,18 @@ def test_closer_samples_do_not_slow_down() -> None:
         times = timed(joints, Speeds(np.full(2, 3.0), np.full(2, 5.0)), points, 0.6)
         speeds = np.linalg.norm(np.diff(points, axis=0), axis=1) / np.diff(times)
         assert speeds[5:-5] == pytest.approx(0.6)
+
+
+def test_a_bend_that_stays_too_fast_is_stretched_with_what_is_around_it() -> None:
+    """Not the whole way: far from it the times are those that were given."""
+    joints = 0.001 * np.arange(4000.0)[:, None]
+    joints[2000:] += 0.002  # a jolt
+    times = 0.01 * np.arange(4000.0)
+    speeds = Speeds(np.array([3.0]), np.array([12.0]))
+    kept = _kept(times, joints, speeds)
+    assert accelerations(kept, joints).max() <= 12.0 + 1e-9
+    assert np.diff(kept)[200:1800] == pytest.approx(0.01)
+    assert np.diff(kept)[2000] > 0.011
 
 
 def wall(configurations: np.ndarray) -> np.ndarray:
