@@ -54,7 +54,7 @@ class TestMore:
         capsys.readouterr()
         assert run("check", graph, target) == 0
         out = capsys.readouterr().out
-        assert "at least cost 15 by hubs: verified" in out and "better than" not in out
+        assert "at least cost 23 by conflicts: verified" in out and "better than" not in out
 
     @pytest.mark.parametrize(
         ("arguments", "expected"),
