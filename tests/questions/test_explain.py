@@ -153,7 +153,7 @@ def test_each_row_is_that_of_the_scene_with_the_thing_changed(
             found = judged(without(prepared, [one]), clock).stages
         else:
             found = judged_asking_less(without(prepared, [one]), before, one.reasons, clock).stages
-        assert same_answers(found, from_scratch(scene, one, monkeypatch).stages), one
+        assert same_answers(found, from_scratch(scene, [one], monkeypatch).stages), one
         changing += not np.array_equal(found.candidates.valid, before.stages.candidates.valid)
     assert changing >= 3
 
