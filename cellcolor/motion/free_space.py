@@ -39,7 +39,7 @@ class FreeSpace:
         *,
         leaving: bool = False,
     ) -> None:
-        """Bodies of the arm.
+        """Widen the arm's bodies by what they keep clear.
 
         Args:
             prepared: the scene.

@@ -22,10 +22,10 @@ _STEP = 0.01  # of the path's parameter, about, per sample; TOPP-RA's tolerances
 _LEAST = 0.001  # s, of a step; where neither tool nor joints move
 _UNEVEN = 30.0  # times longer and shorter than the median step is a step of the parameter at most
 _ROUNDS = 12  # of TOPP-RA; then what is still too fast is stretched
+_EXACT = 6  # of these rounds slow down by what the accelerations ask for, later ones by more
 _STRETCHES = 30  # of it, with what is around; then the whole motion is
 _AROUND = 121  # samples
 _MORE = 1.001  # times longer than needed, for rounding
-_EXACT = 6  # of them slow down by what the accelerations ask for, later ones by more
 _MARGIN = 0.97  # of the accelerations; differences of samples exceed the derivatives a little
 
 
@@ -127,7 +127,7 @@ def _kept(times: Array, joints: Array, speeds: Speeds) -> Array:
 
 
 def _rates(joints: Array, spans: Array, cap: Array, speeds: Speeds) -> Array:
-    """How fast the path's parameter grows at each sample (k,), 1/s; by spans (k - 1,) in all."""
+    """How fast the path's parameter grows at each sample (k,), 1/s; ``spans`` (k - 1,) are its steps."""
     import toppra
     from toppra.constraint import DiscretizationType, JointAccelerationConstraint, LinearConstraint
     from toppra.interpolator import AbstractGeometricPath
