@@ -127,7 +127,7 @@ def _kept(times: Array, joints: Array, speeds: Speeds) -> Array:
 
 
 def _rates(joints: Array, spans: Array, cap: Array, speeds: Speeds) -> Array:
-    """How fast the path's parameter grows at each sample (k,), 1/s; ``spans`` (k - 1,) are its steps."""
+    """How fast the parameter grows at each sample (k,), 1/s; ``spans`` (k - 1,) are its steps."""
     import toppra
     from toppra.constraint import DiscretizationType, JointAccelerationConstraint, LinearConstraint
     from toppra.interpolator import AbstractGeometricPath
