@@ -69,31 +69,37 @@ def hits_itself(
         asked: (pairs, n) which pairs may overlap at all; None for all.
     """
     hit = np.zeros(ends.shape[2], dtype=bool)
-    centers = ends.mean(axis=1)
-    for number, (i, j) in enumerate(robot.tested_pairs):
-        first, second = robot.bodies[i], robot.bodies[j]
-        radii = first.radius + second.radius
-        if asked is None:  # then bounding spheres first
-            farthest = radii + (first.length + second.length) / 2
-            near = _norm(centers[i] - centers[j]) <= farthest
-        else:
-            near = asked[number]
-        rows = np.flatnonzero(near & ~hit)
-        if not len(rows):
-            continue
-        a, b = ends[i][:, rows], ends[j][:, rows]
-        close = segment_distance(a[0], a[1], b[0], b[1]) <= radii
-        solid = first.solid is not None or second.solid is not None
-        if not (first.flat or second.flat or solid):
-            hit[rows[close]] = True
-            continue
-        rows = rows[close]
-        if solid:
+    if not robot.tested_pairs:
+        return hit
+    bodies, (one, other) = robot.bodies, np.array(robot.tested_pairs).T
+    radii = np.array([body.radius for body in bodies])
+    reach = radii[one] + radii[other]
+    if asked is None:  # then bounding spheres first
+        centers = ends.mean(axis=1)
+        halves = np.array([body.length for body in bodies]) / 2
+        between = (centers[one] - centers[other]).reshape(-1, 3)
+        farthest = reach + halves[one] + halves[other]
+        asked = _norm(between).reshape(len(one), -1) <= farthest[:, None]
+    pairs, at = np.nonzero(asked)
+    axes = (ends[bodies_of[pairs], end, at] for bodies_of in (one, other) for end in (0, 1))
+    close = segment_distance(*axes) <= reach[pairs]
+    pairs, at = pairs[close], at[close]
+    capsules = np.array([not (body.flat or body.solid) for body in bodies])
+    decided = (capsules[one] & capsules[other])[pairs]
+    hit[at[decided]] = True
+    for number in np.unique(pairs[~decided]).tolist():
+        i, j = robot.tested_pairs[number]
+        first, second = bodies[i], bodies[j]
+        rows = at[pairs == number]
+        rows = rows[~hit[rows]]
+        if first.solid is not None or second.solid is not None:
             assert poses is not None  # who has solids hands the poses down
             rows = rows[gap_between(robot, (i, j), ends, poses, rows) <= _ROUNDING]
             hit[rows] = _overlap(robot, (i, j), ends, poses, rows)
             continue
-        (a0, a1, ra), (b0, b1, rb) = _inside(first, a[:, close]), _inside(second, b[:, close])
+        (a0, a1, ra), (b0, b1, rb) = (
+            _inside(body, ends[k][:, rows]) for k, body in ((i, first), (j, second))
+        )
         sure = np.asarray(segment_distance(a0, a1, b0, b1) <= ra + rb)
         hit[rows[sure]] = True
         rest = rows[~sure]

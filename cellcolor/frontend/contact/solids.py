@@ -105,16 +105,28 @@ class Solid:
             asked: (bodies, n) which bodies may touch it at all; None for all.
         """
         hit = np.zeros(ends.shape[2], dtype=bool)
+        moving = [index for index, body in enumerate(robot.bodies) if body.joint > 0]
+        if not moving:
+            return hit
+        near = self._near_whole(robot, ends, moving)
+        if asked is not None:
+            near &= asked[moving]
         # From the tool to the base: what is near the object is tested first.
-        for index, body in reversed(list(enumerate(robot.bodies))):
-            if body.joint == 0:
-                continue
-            rows = np.flatnonzero(~hit if asked is None else asked[index] & ~hit)
+        for index, nearby in zip(reversed(moving), near[::-1], strict=True):
+            rows = np.flatnonzero(nearby & ~hit)
             if not len(rows):
                 continue
+            body = robot.bodies[index]
             chosen = None if poses is None or body.solid is None else poses.take(rows)
             hit[rows] = self.touched_by(body, ends[index][:, rows], chosen)
         return hit
+
+    def _near_whole(self, robot: Robot, ends: Array, moving: list[int]) -> Mask:
+        """Whether a ball around each of some bodies may touch the solid, (moving, n)."""
+        middles = ends[moving].mean(axis=1)
+        wholes = np.array([_around_whole(robot.bodies[index]) for index in moving])
+        at_least = self.at_least(middles.reshape(-1, 3)).reshape(middles.shape[:2])
+        return np.asarray(at_least <= wholes[:, None])
 
     def touched_by(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
         """Whether one body touches the solid, (n,); ``ends`` (2, n, 3) are those of its axis."""
@@ -188,8 +200,7 @@ class Solid:
 
         half = body.length / 2
         rows, place = np.arange(len(start)), np.full(len(start), 0.5)
-        whole = np.hypot(half, body.radius) if body.flat else half + body.radius
-        rows = rows[ask(rows, place, half, whole)]
+        rows = rows[ask(rows, place, half, _around_whole(body))]
         if body.length == 0:
             left_open[rows] = True
             return hit, left_open
@@ -216,6 +227,12 @@ class Solid:
     def _touches(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
         """By fcl, one after the other: ends (2, n, 3) to (n,)."""
         return touch_thing(body, body_poses(body, ends, poses), self._thing)
+
+
+def _around_whole(body: Body) -> float:
+    """Radius of the smallest ball around a body, m."""
+    half = body.length / 2
+    return float(np.hypot(half, body.radius)) if body.flat else half + body.radius
 
 
 def mesh_solid(vertices: Array, faces: Faces, deadline: Deadline = NEVER) -> Solid:
