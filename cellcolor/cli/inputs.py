@@ -75,7 +75,9 @@ def with_tolerance(path: Path, text: str) -> Scene:
         try:
             tolerance[key] = factor * float("" if found is None or key in tolerance else found[1])
         except ValueError as error:
-            message = f"must be a length and an angle with units, such as 2mm,0.5deg, is {text!r}"
+            message = (
+                f"must be a length, an angle, or both, with units, such as 2mm,0.5deg, is {text!r}"
+            )
             raise InputError(None, "--tolerance", message) from error
     with extras_for("the front end"):
         from cellcolor.frontend.scene import Scene as SceneValue

@@ -196,8 +196,8 @@ LEFT_ALONE = click.option(
 TOLERANCE = click.option(
     "--tolerance",
     metavar="D,A",
-    help="How far a scene's part may stand off and be turned, such as 2mm,0.5deg: colors hold at a "
-    "sample of such displacements.",
+    help="How far a scene's part may stand off, be turned, or both, such as 2mm,0.5deg: colors "
+    "hold at a sample of such displacements.",
 )
 UNIT = click.option(
     "--unit",

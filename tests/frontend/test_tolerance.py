@@ -158,3 +158,9 @@ def test_the_option_has_units(capsys: pytest.CaptureFixture[str]) -> None:
     assert both is not None and same is not None
     assert both.position_m == same.position_m == 0.002
     assert both.rotation_rad == pytest.approx(same.rotation_rad)
+    # What is not given is 0: the part is shifted only, or turned only.
+    shifted = with_tolerance(find_file("wok"), "2mm").tolerance
+    turned = with_tolerance(find_file("wok"), "0.5deg").tolerance
+    assert shifted is not None and turned is not None
+    assert (shifted.position_m, shifted.rotation_rad) == (0.002, 0)
+    assert (turned.position_m, turned.rotation_rad) == (0, both.rotation_rad)
