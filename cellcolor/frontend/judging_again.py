@@ -45,7 +45,7 @@ def judged_asking_less(
         both = candidates.valid[edges].all(axis=1)
         rows = np.flatnonzero((both & ~linked).any(axis=1))
         linked[rows] |= linked_along(prepared, edges[rows], candidates, deadline)
-        continuous = links = Links(edges, linked)
+        continuous = links = Links.of(edges, linked)
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
             links = valid_links(
@@ -55,7 +55,11 @@ def judged_asking_less(
                 verdicts.tracked,
                 (known.links, known.candidates),
                 deadline,
-                anew=continuous.linked & ~known.links.linked,
+                # A point that fails another test fails it still, and is tested as long as there are
+                # as many (where a border has come or gone, all points are tested anyway).
+                anew=continuous.linked
+                & ~known.links.linked
+                & np.isin(known.links.reasons, [VALID, *codes]),
             )
     stages = colored_stages(prepared, known.branches, candidates, continuous, links, clock)
     return Judged(stages, verdicts)
@@ -85,10 +89,10 @@ def judged_asking_more(
         if JointLimits.name in reasons:
             rows = np.flatnonzero(linked.any(axis=1))
             linked[rows] &= linked_along(prepared, edges[rows], candidates, deadline)
-        continuous = links = Links(edges, linked)
+        continuous = links = Links.of(edges, linked)
     if prepared.setup.continuity.validity_spacing_m is not None:
         with clock.timed("validity between vertices"):
-            left, tracked = Links(edges, linked & known.links.linked), verdicts.tracked
+            left, tracked = Links.of(edges, linked & known.links.linked), verdicts.tracked
             left = valid_links(strict, candidates, left, tracked, None, deadline)
             # Near a new border of the domain all tests are made at closer points.
             taken = known.links, known.candidates

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
@@ -34,10 +35,18 @@ class Links:
     Attributes:
         edges: (k, 2) all mesh edges, as vertex indices.
         linked: (k, branches).
+        reasons: (k, branches) codes of a test that fails between the vertices, where one is known;
+            VALID elsewhere.
     """
 
     edges: Index
     linked: Mask
+    reasons: NDArray[np.uint8]
+
+    @classmethod
+    def of(cls, edges: Index, linked: Mask) -> Links:
+        """Links of which no reason is known."""
+        return cls(edges, linked, np.full(linked.shape, VALID, dtype=np.uint8))
 
 
 def continuous_links(
@@ -52,7 +61,7 @@ def continuous_links(
         linked[here], new[here] = known.linked[there], False
     rows = np.flatnonzero(new)
     linked[rows] = linked_along(prepared, edges[rows], candidates, deadline)
-    return Links(edges, linked)
+    return Links.of(edges, linked)
 
 
 def linked_along(
@@ -94,6 +103,8 @@ def valid_links(
     surface, edges = prepared.surface, continuous.edges
     linked = shared(continuous.linked.shape, np.bool_)
     linked[:] = continuous.linked
+    reasons = shared(linked.shape, np.uint8)
+    reasons[:] = VALID
     near_border = at_domain_border(edges, candidates.valid)
     new = np.ones(linked.shape, dtype=bool)
     if known is not None:
@@ -104,6 +115,7 @@ def valid_links(
         new[here] = near_border[here] != border_before[there]
         new |= anew
         linked[here] &= new[here] | before.linked[there]
+        reasons[here] = np.where(new[here], VALID, before.reasons[there])
     each = 2 * bytes_of_point(len(tracked))  # of a link: at both its ends
     asked = np.flatnonzero((linked & new).any(axis=1))
 
@@ -128,14 +140,17 @@ def valid_links(
             found = prepared.arm.follow(points, directions, branches[at])
             near = _clearances(prepared, candidates, points, edges[rows[at]], branches[at])
             verdicts = prepared.judge(found, deadline, near)
-            return np.asarray(verdicts.reasons == VALID), verdicts.tracked
+            valid = np.asarray(verdicts.reasons == VALID)
+            failed = at[~valid]
+            reasons[rows[failed], branches[failed]] = verdicts.reasons[~valid]
+            return valid, verdicts.tracked
 
         linked[rows, branches] = remains_valid(
             surface, edges[rows], branches, pieces, at_vertices, longest, test
         )
 
     _in_parts(test_part, chunks(len(all_rows), each), deadline)
-    return Links(edges, linked)
+    return Links(edges, linked, reasons)
 
 
 def _clearances(

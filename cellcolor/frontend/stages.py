@@ -210,7 +210,7 @@ def _cleaned(
     if policy is not None:
         areas = prepared.surface.vertex_areas()
         kept, report = clean(edges, links.linked, coloring, areas, policy, deadline)
-        links = Links(edges, links.linked & kept[edges].all(axis=1))
+        links = Links.of(edges, links.linked & kept[edges].all(axis=1))
         coloring = _colored(names, candidates, kept, links)
     return Cleaned(links, coloring, find_cracks(edges, links.linked, coloring), report)
 
@@ -267,7 +267,7 @@ def _held(
     candidates = replace(candidates, reasons=reasons, reason_names=names)
     edges = stages.links.edges
     continuous, linked = (
-        Links(edges, own.linked & np.all([one.linked for one in others], axis=0))
+        Links.of(edges, own.linked & np.all([one.linked for one in others], axis=0))
         for own, others in (
             (stages.continuous, [one.continuous for one in elsewhere]),
             (stages.links, [one.links for one in elsewhere]),
