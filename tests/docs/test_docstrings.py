@@ -5,13 +5,19 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter
+from functools import cache
 from pathlib import Path
 
 import cellcolor
 
 PACKAGE = Path(cellcolor.__file__).parent
 MODULES = sorted(PACKAGE.rglob("*.py"))
-TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in MODULES}
+
+
+@cache
+def trees() -> dict[Path, ast.Module]:
+    """Parsed once, and not where tests are only collected."""
+    return {path: ast.parse(path.read_text(encoding="utf-8")) for path in MODULES}
 
 
 def types_before_colons(docstring: str) -> list[str]:
@@ -25,7 +31,7 @@ def types_before_colons(docstring: str) -> list[str]:
 
 
 def test_no_sentence_about_a_result_is_taken_for_its_type() -> None:
-    for path, tree in TREES.items():
+    for path, tree in trees().items():
         for node in ast.walk(tree):
             if isinstance(node, ast.FunctionDef):
                 where = path.relative_to(PACKAGE), node.name
@@ -41,7 +47,7 @@ def test_a_public_class_shares_its_name_with_no_other() -> None:
     """Annotations name it without its module, so Sphinx would find two."""
     classes = Counter(
         node.name
-        for tree in TREES.values()
+        for tree in trees().values()
         for node in ast.walk(tree)
         if isinstance(node, ast.ClassDef)
     )
