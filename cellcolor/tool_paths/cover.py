@@ -15,6 +15,7 @@ from cellcolor.data.tool_paths import ToolPath, ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.tool_paths.interface import Laid, Pattern
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
 from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
 from cellcolor.tool_paths.region import Region, regions_of
@@ -28,6 +29,10 @@ _MOST_TRIANGLES = 4_000_000
 _REFUSED = 0.25  # spacings: sides of triangles at the border of what is refused
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
 _TURNED = 1e-6  # rad; a border that turns by less is straight, and has no direction to keep off to
+_OFTEN = 1.2  # visits in the mean; where a pattern makes more, a single line is tried,
+_NARROW = 2.0  # if the part is narrower in the mean, in spacings
+_MIDDLE = 0.15  # spacings: so near to its middle that line is
+_COVERED = 0.98  # share of the part's area that this has to cover, if the pattern does
 _STRAIGHT = 1e-8  # m; a point so little beside the way past it is left out
 _INWARD = 2e-5  # m; so far off the border points are put that lie on it
 _INWARD_SHARE = 0.1  # of the way into the triangle, at most
@@ -118,9 +123,7 @@ def cover(
                 cause = "a part smaller than a quarter of the spacing squared"
                 uncovered.append(Uncovered(region.segment, area, place, cause))
                 continue
-            laid = with_spurs(lay(part, spacing_m, deadline), spacing_m, deadline)
-            line = rounded(laid, spacing_m, deadline)
-            own, left = measure(line, region.segment, spacing_m)
+            line, own, left = _better(lay, part, region.segment, spacing_m, deadline)
             path, beside = _path(region, line)
             paths.append(path)
             along_border.append(beside)
@@ -134,6 +137,27 @@ def cover(
         tuple(uncovered),
         tuple(along_border),
     )
+
+
+def _better(
+    lay: Pattern, part: Triangles, segment: int, spacing: float, deadline: Deadline
+) -> tuple[Line, PathMeasures, list[Uncovered]]:
+    """A line by a pattern, or one along the part with spurs where that goes over it less often.
+
+    In a part that is hardly wider than the spacing, loops go over most places twice.
+    """
+
+    def measured(laid: Laid) -> tuple[Line, PathMeasures, list[Uncovered]]:
+        line = rounded(with_spurs(laid, spacing, deadline), spacing, deadline)
+        return line, *measure(line, segment, spacing)
+
+    first = measured(lay(part, spacing, deadline))
+    wide = 2 * first[1].area_m2 > _NARROW * spacing * first[1].border_m
+    if wide or first[1].mean_visits <= _OFTEN:
+        return first
+    other = measured(Laid(part.refined(_MIDDLE * spacing), []))
+    less = other[1].mean_visits < first[1].mean_visits
+    return other if less and other[1].covered >= min(_COVERED, first[1].covered) else first
 
 
 def _check_lengths(surface: LabelledSurface, spacing_m: float, tool_radius_m: float) -> None:

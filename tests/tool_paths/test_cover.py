@@ -43,6 +43,7 @@ def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str) -> No
 @pytest.mark.parametrize("pattern", PATTERNS)
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES), st.sampled_from([0.04, 0.1, 0.25]))
 @example(2417, "torus", 0.04)  # a path's turning point on a straight border
+@example(11, "annulus", 0.04)  # points of a line that are nearly one
 @example(1, "disc", 0.25)  # two segments of a quarter of the spacing squared, to the last digit
 @examples(20)
 def test_many_paths_stay_on_their_segments(
@@ -220,6 +221,18 @@ def test_a_band_narrower_than_the_spacing_is_walked_along() -> None:
         # There and back would be twice as long.
         assert 0.8 < path.length < 1.5
         assert found.in_all.covered == 1.0
+
+
+@pytest.mark.parametrize("width", [0.1, 0.11, 0.13])
+def test_a_band_as_wide_as_the_spacing_is_walked_along(width: float) -> None:
+    """A line along its middle covers 0.075 on each side; a loop would go over most of it twice."""
+    points = np.array([[x, y, 0.0] for y in (0.0, width) for x in np.linspace(0, 1, 21)])
+    for pattern in PATTERNS:
+        found = covered(one_segment(points, grid_faces(2, 21)), pattern, 0.1)
+        (path,) = found.paths.paths
+        assert path.length < 1.3
+        assert found.in_all.mean_visits < 1.1
+        assert found.in_all.covered > 0.96  # the last corners are farther off
 
 
 def test_what_another_distribution_registers_is_used(
