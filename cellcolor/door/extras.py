@@ -28,7 +28,7 @@ _EXTRAS = {
     "ompl": "motion",
     "potpourri3d": "motion",
     "toppra": "motion",
-    "mcap_ros2": "motion",
+    "mcap": "motion",
 }
 DISTRIBUTIONS = (
     *("click", "networkx", "numpy", "ortools", "pydantic", "rich"),
@@ -41,7 +41,7 @@ DISTRIBUTIONS = (
         "ompl",
         "potpourri3d",
         "toppra",
-        "mcap-ros2-support",
+        "mcap",
     ),
     *("gpytoolbox", "matplotlib", "plotly"),
     *("clingo", "highspy", "pychoco", "pyscipopt", "python-sat", "dask", "distributed"),

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import io
 import re
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cellcolor.arrays import Array
 from cellcolor.exports.interface import ArmAxes, NotForThisArm, PlannedMotion
@@ -119,6 +120,10 @@ uint8[] data"""
     + _HEADER
 )
 _LINE_STRIP, _TRIANGLES = 4, 11
+_WORLD = "world"  # the frame of all
+
+Field: TypeAlias = "str | NDArray[Any] | np.number[Any]"
+_ZERO, _NO = np.uint32(0), np.uint8(0)
 
 
 def recording(planned: PlannedMotion) -> bytes:
@@ -127,21 +132,29 @@ def recording(planned: PlannedMotion) -> bytes:
     Transforms are in the frame ``world``. The surface and the strokes are markers, at the start.
 
     Raises:
-        NotForThisArm: the package ``mcap-ros2-support`` is not installed, or the arm is not known.
+        NotForThisArm: the package ``mcap`` is not installed, or the arm is not known.
     """
     try:
-        from mcap_ros2.writer import Writer
+        from mcap.well_known import MessageEncoding, Profile, SchemaEncoding
+        from mcap.writer import Writer
     except ImportError as error:
-        raise NotForThisArm("a recording needs the package mcap-ros2-support") from error
+        raise NotForThisArm("a recording needs the package mcap") from error
     if planned.axes is None or planned.axes.slides:
         raise NotForThisArm("a recording needs an arm whose joints all turn")
     stream = io.BytesIO()
     writer = Writer(stream)
-    states = writer.register_msgdef("sensor_msgs/msg/JointState", _JOINT_STATE)
-    frames = writer.register_msgdef("tf2_msgs/msg/TFMessage", _TRANSFORMS)
-    markers = writer.register_msgdef("visualization_msgs/msg/MarkerArray", _MARKERS)
-    writer.write_message("/markers", markers, {"markers": _markers(planned)}, 0, 0)
+    writer.start(Profile.ROS2)
+
+    def channel(topic: str, kind: str, definition: str) -> int:
+        schema = writer.register_schema(kind, SchemaEncoding.ROS2, definition.encode())
+        return writer.register_channel(topic, MessageEncoding.CDR, schema)
+
+    states = channel("/joint_states", "sensor_msgs/msg/JointState", _JOINT_STATE)
+    frames = channel("/tf", "tf2_msgs/msg/TFMessage", _TRANSFORMS)
+    markers = channel("/markers", "visualization_msgs/msg/MarkerArray", _MARKERS)
+    writer.add_message(markers, 0, _cdr(*_markers(planned)), 0)
     names = list(planned.axes.names)
+    count, tip = np.uint32(len(names)), [*names, "tool_tip"]
     for own in stretches(planned.trajectory, planned.step_s or _STEP):
         begun = planned.trajectory.times[own.first] - planned.trajectory.times[0]
         moments = np.round((own.times + begun) * 1e9).astype(np.int64).tolist()
@@ -150,28 +163,34 @@ def recording(planned: PlannedMotion) -> bytes:
         x -= np.sum(x * own.normals, axis=1, keepdims=True) * own.normals
         tips = quaternions(x / np.linalg.norm(x, axis=1, keepdims=True), own.normals)
         poses = [*_frames(planned.axes, own.joints), (own.points, tips)]
+        places = [np.concatenate(pose, axis=1) for pose in poses]
         for row, moment in enumerate(moments):
-            header = {"stamp": _stamp(moment), "frame_id": "world"}
-            state = {
-                "header": header,
-                "name": names,
-                "position": own.joints[row].tolist(),
-                "velocity": own.velocities[row].tolist(),
-                "effort": [],
-            }
-            writer.write_message("/joint_states", states, state, moment, moment)
-            transforms = [
-                {
-                    "header": header,
-                    "child_frame_id": name,
-                    "transform": {"translation": _xyz(points[row]), "rotation": _xyzw(turns[row])},
-                }
-                for name, (points, turns) in zip([*names, "tool_tip"], poses, strict=True)
-            ]
-            writer.write_message("/tf", frames, {"transforms": transforms}, moment, moment)
+            stamp = np.array(divmod(moment, 1_000_000_000), dtype=np.uint32)
+            moved = (count, own.joints[row], count, own.velocities[row], _ZERO)  # without efforts
+            state = _cdr(stamp, _WORLD, count, *names, *moved)
+            writer.add_message(states, moment, state, moment)
+            transforms: list[Field] = [np.uint32(len(tip))]
+            for name, place in zip(tip, places, strict=True):
+                transforms += [stamp, _WORLD, name, place[row]]
+            writer.add_message(frames, moment, _cdr(*transforms), moment)
     writer.add_metadata(_MARK.decode(), {"made_by": "cellcolor"})
     writer.finish()  # type: ignore[no-untyped-call]
     return stream.getvalue()
+
+
+def _cdr(*fields: Field) -> bytes:
+    """A message's fields in their order, as ROS 2 sends them (OMG CDR, little-endian).
+
+    Numbers begin at a multiple of their own size. A sequence is two fields, how many and what.
+    """
+    message, head = bytearray(), b"\x00\x01\x00\x00"
+    for field in fields:
+        if isinstance(field, str):
+            text = field.encode() + b"\x00"
+            message += bytes(-len(message) % 4) + len(text).to_bytes(4, "little") + text
+        elif field.size:
+            message += bytes(-len(message) % field.itemsize) + field.tobytes()
+    return head + bytes(message)
 
 
 def _frames(axes: ArmAxes, joints: Array) -> list[tuple[Array, Array]]:
@@ -188,62 +207,34 @@ def _frames(axes: ArmAxes, joints: Array) -> list[tuple[Array, Array]]:
     return found
 
 
-def _markers(planned: PlannedMotion) -> list[dict[str, Any]]:
+def _markers(planned: PlannedMotion) -> list[Field]:
     """The surface in the colors of its segments, and a line for each tool path."""
     surface = planned.surface
-    fills = np.array([_rgba(fill) for fill in (*planned.fills, "#DDDDDD")])
+    fills = np.array([_rgba(fill) for fill in (*planned.fills, "#DDDDDD")], dtype=np.float32)
     corners = surface.faces.ravel()
     colors = fills[planned.segment_of[corners]]  # -1 is the last one
-    found = [_marker("surface", 0, _TRIANGLES, 1.0, surface.vertices[corners], colors)]
-    found += [
-        _marker("tool paths", number, _LINE_STRIP, 0.001, path.points + 0.0005 * path.normals, None)
-        for number, path in enumerate(planned.paths.paths)
-    ]
+    paths = planned.paths.paths
+    found: list[Field] = [np.uint32(1 + len(paths))]
+    found += _marker("surface", 0, _TRIANGLES, 1.0, surface.vertices[corners], colors)
+    for number, path in enumerate(paths):
+        line = path.points + 0.0005 * path.normals
+        found += _marker("tool paths", number, _LINE_STRIP, 0.001, line, fills[:0])
     return found
 
 
 def _marker(
-    space: str, number: int, kind: int, scale: float, points: Array, colors: Array | None
-) -> dict[str, Any]:
-    shades = [] if colors is None else [_shade(color) for color in colors.tolist()]
-    return {
-        "header": {"stamp": _stamp(0), "frame_id": "world"},
-        "ns": space,
-        "id": number,
-        "type": kind,
-        "action": 0,
-        "pose": {"position": _xyz(np.zeros(3)), "orientation": _xyzw(np.eye(4)[3])},
-        "scale": dict.fromkeys("xyz", scale),
-        "color": _shade([0.1, 0.1, 0.1, 1.0]),
-        "lifetime": _stamp(0),
-        "frame_locked": False,
-        "points": [_xyz(point) for point in points],
-        "colors": shades,
-        "texture_resource": "",
-        "texture": {"header": {"stamp": _stamp(0), "frame_id": ""}, "format": "", "data": b""},
-        "uv_coordinates": [],
-        "text": "",
-        "mesh_file": {"filename": "", "data": b""},
-        "mesh_resource": "",
-        "mesh_use_embedded_materials": False,
-    }
+    space: str, number: int, kind: int, scale: float, points: Array, colors: NDArray[np.float32]
+) -> list[Field]:
+    """The fields of a marker that stays where its points are."""
+    never = np.zeros(2, dtype=np.uint32)
+    posed: list[Field] = [np.array([0, 0, 0, 0, 0, 0, 1.0]), np.full(3, scale)]
+    shade = np.array([0.1, 0.1, 0.1, 1.0], dtype=np.float32)
+    what = np.array([number, kind, 0], dtype=np.int32)  # 0: is to be shown
+    drawn: list[Field] = [np.uint32(len(points)), points, np.uint32(len(colors)), colors]
+    texture: list[Field] = ["", never, "", "", _ZERO, _ZERO]  # none, nor places on it
+    others: list[Field] = ["", "", _ZERO, "", _NO]  # neither text nor mesh
+    return [never, _WORLD, space, what, *posed, shade, never, _NO, *drawn, *texture, *others]
 
 
 def _rgba(fill: str) -> list[float]:
     return [*(byte / 255 for byte in bytes.fromhex(fill.removeprefix("#"))), 1.0]
-
-
-def _shade(color: list[float]) -> dict[str, float]:
-    return dict(zip("rgba", color, strict=True))
-
-
-def _stamp(moment: int) -> dict[str, int]:
-    return {"sec": moment // 1_000_000_000, "nanosec": moment % 1_000_000_000}
-
-
-def _xyz(point: Array) -> dict[str, float]:
-    return dict(zip("xyz", point.tolist(), strict=True))
-
-
-def _xyzw(turn: Array) -> dict[str, float]:
-    return dict(zip("xyzw", turn.tolist(), strict=True))
