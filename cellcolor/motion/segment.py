@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
+from cellcolor.frontend.arm.joint_space import JointSpace
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.motion.courses import Course, Courses, laid_out
 from cellcolor.motion.following import joint_space
@@ -22,6 +23,8 @@ from cellcolor.tool_paths.cover import Covered
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
 _SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short
 
+_ROUNDS = 3  # of paths laid out so that no joint leaves its limits
+_FEW = 0.01  # of the samples, that may be beyond the limits to be left out
 _AROUND = 0.2  # spacings; so far from a sample that fails no path is laid
 
 Lay = Callable[[int, Collection[tuple[int, int]], ArmRefusals], Covered]
@@ -106,13 +109,16 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
     walls = walls_of(parts, small.whole, space, ground.deadline)
     if not walls.whole:
         # Some part reaches beyond the limits; only what does is left out, not the whole part.
-        parts = parts.at_vertices
+        parts = parts.at_vertices(small.whole, closed, space)
         walls = walls_of(parts, small.whole, space, ground.deadline)
         refusals.keep_inside(parts.part_of, walls.turns)
     parted = len(strokes)
-    courses = courses_with(walls.edges)
     name = prepared.robot.joint_names[walls.joint]
-    strokes = _on(ground, courses, branch)
+    for _ in range(_ROUNDS):
+        courses = courses_with(walls.edges)
+        strokes = _on(ground, courses, branch)
+        if not _refuse_what_is_beyond(courses, strokes, space, refusals):
+            break
     if not walls.whole:
         strokes = [
             replace(stroke, parting=_full(stroke, name)) if number >= parted else stroke
@@ -124,6 +130,26 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
     return SegmentStrokes(courses, _worth_a_lift_off(cut, ground.spacing), walls)
+
+
+def _refuse_what_is_beyond(
+    courses: Courses, strokes: list[Stroke], space: JointSpace, refusals: ArmRefusals
+) -> bool:
+    """Keep paths off the few samples at which a stroke is beyond the limits; whether there are any.
+
+    Between two vertices a joint may turn on, beside a wrist that is nearly straight, by more than
+    walls know of.
+    """
+    points = [stroke.points[space.beyond(stroke.joints)] for stroke in strokes]
+    beyond = np.concatenate([np.empty((0, 3)), *points])
+    if not 0 < len(beyond) <= _FEW * sum(len(stroke) for stroke in strokes):
+        return False
+    samples = [course.samples for course in courses.courses]
+    faces = np.concatenate([own.faces for own in samples])
+    nearest = cKDTree(np.concatenate([own.points for own in samples])).query(beyond)[1]
+    for face, point in zip(faces[nearest].tolist(), beyond, strict=True):
+        refusals.add(face, point, "joint limits")
+    return True
 
 
 def _on(ground: Ground, courses: Courses, branch: int) -> list[Stroke]:

@@ -87,6 +87,7 @@ class Parts:
         lowest, highest: (p, joints) angles inside each part, unwound from its vertex, rad.
         steps: between the parts.
         center: (p, joints) the angles at the vertex itself, rad.
+        vertex: (p,) the mesh vertex of each part.
         part_of: (6 m,) the part of each small triangle, of one that is not valid a part at the same
             vertex; -1 if there is none.
     """
@@ -97,12 +98,40 @@ class Parts:
     highest: Array
     steps: PartSteps
     center: Array
+    vertex: Index
     part_of: Index
 
-    @property
-    def at_vertices(self) -> Parts:
-        """The same parts, each with no other angles than those at its vertex."""
-        return replace(self, lowest=self.center, highest=self.center)
+    def at_vertices(self, mesh: TriangleMesh, closed: Mask, space: JointSpace) -> Parts:
+        """The same parts, each with no other angles than those at its vertex.
+
+        Neighbors may hang together only by small triangles that are not valid all over, where paths
+        may pass all the same. These get a step along the mesh edge between their vertices, and the
+        joints go the shortest way there.
+
+        Args:
+            mesh: the mesh.
+            closed: (k,) its edges that no path crosses.
+            space: of the joints.
+        """
+        part_at = np.full(len(mesh.points), -1, dtype=np.int64)
+        part_at[self.vertex] = np.arange(len(self.vertex))
+        ends = part_at[mesh.edges]
+        group = grouped(len(self.places), self.steps.ends)
+        stepless = np.ones(len(ends), dtype=bool)
+        stepless[self.steps.edge] = False
+        joining = (ends >= 0).all(axis=1) & ~closed
+        joining &= stepless | (group[ends[:, 0]] != group[ends[:, 1]])
+        edge = np.flatnonzero(joining)
+        one, other = ends[edge].T
+        turns = space.periods(self.center[one] - self.center[other]).astype(np.int64)
+        old = self.steps
+        steps = PartSteps(
+            np.concatenate([old.ends, ends[edge]]),
+            np.concatenate([old.turns, turns]),
+            np.concatenate([old.edge, edge]),
+            np.concatenate([old.lengths, np.zeros(len(edge))]),
+        )
+        return replace(self, lowest=self.center, highest=self.center, steps=steps)
 
 
 @dataclass(frozen=True)
@@ -136,8 +165,9 @@ def parts_of(small: SmallTriangles, states: CornerStates, segment: int, closed: 
     part_of = _part_of(small, kept)
     part, joints = part_of[kept], states.joints[kept]
     count = int(part.max(initial=-1)) + 1
-    places = np.zeros((count, 3))
-    places[part] = small.points[small.corners[kept, 0]]
+    vertex = np.zeros(count, dtype=np.int64)
+    vertex[part] = small.corners[kept, 0]
+    places = small.points[vertex]
     lowest = np.full((count, joints.shape[2]), np.inf)
     highest = np.full((count, joints.shape[2]), -np.inf)
     np.minimum.at(lowest, part, joints.min(axis=1))
@@ -147,7 +177,7 @@ def parts_of(small: SmallTriangles, states: CornerStates, segment: int, closed: 
     center[part] = joints[:, 0]
     steps = _steps_between(small, states, part_of, closed)
     beside = _beside(small, part_of, segment)
-    return Parts(places, areas, lowest, highest, steps, center, beside)
+    return Parts(places, areas, lowest, highest, steps, center, vertex, beside)
 
 
 def _part_of(small: SmallTriangles, kept: Mask) -> Index:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import networkx as nx
 import numpy as np
@@ -15,7 +17,9 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.following import follow, joint_space
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.samples import sampled
+from cellcolor.motion.segment import _refuse_what_is_beyond
 from cellcolor.motion.small_triangles import SmallTriangles, corner_states
+from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.windings import Parts, PartSteps, parts_of, walls_of
 from cellcolor.tool_paths.cover import cover
 
@@ -95,8 +99,8 @@ def around_the_base(wide: float) -> tuple[Parts, TriangleMesh]:
         np.array([np.flatnonzero(mesh.marked([tuple(sorted(end))]))[0] for end in ends.tolist()]),
         np.ones(4),
     )
-    nowhere = np.full(24, -1)
-    return Parts(places, np.ones(4), angles - wide, angles + wide, steps, angles, nowhere), mesh
+    low, high, vertex, nowhere = angles - wide, angles + wide, np.arange(4), np.full(24, -1)
+    return Parts(places, np.ones(4), low, high, steps, angles, vertex, nowhere), mesh
 
 
 def turning_by(degrees: float) -> JointSpace:
@@ -124,11 +128,46 @@ def test_parts_that_span_more_than_the_limits_are_joined_by_their_vertices() -> 
     parts, mesh = around_the_base(np.deg2rad(30))
     space = turning_by(200)
     assert not walls_of(parts, mesh, space, NEVER).whole
-    found = walls_of(parts.at_vertices, mesh, space, NEVER)
+    none = np.zeros(len(mesh.edges), dtype=bool)
+    found = walls_of(parts.at_vertices(mesh, none, space), mesh, space, NEVER)
     assert found.whole and set(found.edges) == {(2, 3)}
     assert (parts.center + 2 * np.pi * found.turns).ravel() == pytest.approx(
         np.deg2rad([0, 90, 180, -90])
     )
+
+
+def test_parts_without_a_step_are_joined_along_the_edge_between_their_vertices() -> None:
+    """Without the steps to D the joint goes there from A, to -90 degrees; 270 is out of reach."""
+    parts, mesh = around_the_base(0.0)
+    none, space = np.zeros(len(mesh.edges), dtype=bool), turning_by(200)
+    steps = parts.steps
+    kept = PartSteps(steps.ends[:2], steps.turns[:2], steps.edge[:2], steps.lengths[:2])
+    apart = replace(parts, steps=kept)
+    joined = apart.at_vertices(mesh, none, space)
+    assert {tuple(sorted(end)) for end in joined.steps.ends.tolist()} == {
+        (0, 1), (1, 2), (2, 3), (0, 3),
+    }  # fmt: skip
+    found = walls_of(joined, mesh, space, NEVER)
+    assert found.whole and set(found.edges) == {(2, 3)}
+    closed = mesh.marked([(0, 3)])
+    assert len(apart.at_vertices(mesh, closed, space).steps.ends) == 3
+
+
+def test_the_few_samples_beyond_the_limits_are_kept_off() -> None:
+    """A joint that turns to 201 degrees where 200 are allowed, in the last of 300 samples."""
+    points = np.column_stack([np.arange(300.0), np.zeros(300), np.zeros(300)])
+    turned = np.deg2rad(np.append(np.linspace(-199.0, 199.0, 299), 201.0))[:, None]
+    stroke = Stroke(0, 0, points, points, turned)
+    samples = SimpleNamespace(points=points, faces=np.arange(300))
+    courses = SimpleNamespace(courses=[SimpleNamespace(samples=samples)])
+    refused: list[tuple[int, list[float], str]] = []
+    refusals = SimpleNamespace(add=lambda face, at, why: refused.append((face, at.tolist(), why)))
+    arguments: Any = (courses, [stroke], turning_by(200), refusals)
+    assert _refuse_what_is_beyond(*arguments)
+    assert refused == [(299, [299.0, 0.0, 0.0], "joint limits")]
+    # Where a tenth is beyond, that is no exception, and the stroke is cut.
+    arguments = (courses, [stroke], turning_by(180), refusals)
+    assert not _refuse_what_is_beyond(*arguments)
 
 
 def test_points_where_the_first_joint_is_beyond_its_limits_are_refused(ring: Planned) -> None:
