@@ -25,7 +25,7 @@ from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.measures import PathMeasures
 from cellcolor.trajectory_checker.check import check_trajectory
 
-SPEED = 0.05  # m/s
+SPEED = 0.5  # m/s, so that it is short
 RETRACT = 0.05  # m
 
 
