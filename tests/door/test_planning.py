@@ -18,12 +18,12 @@ from cellcolor.frontend.prepared import PreparedScene
 def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     stages: list[str] = []
     scene = shipped("square", 200)
-    planned = cellcolor.plan(scene, spacing_m=0.03, progress=stages.append)
+    planned = cellcolor.plan(scene, spacing_m=0.05, progress=stages.append)
     assert planned.solution.segments == planned.painted.segments == 1
     assert planned.trajectory.lift_offs == planned.solution.lift_offs == 0
     assert planned.verdict.valid, planned.verdict.faults
     assert planned.verdict.minimum_lift_offs == 0
-    assert planned.paths.spacing_m == planned.verdict.covered.spacing_m == 0.03
+    assert planned.paths.spacing_m == planned.verdict.covered.spacing_m == 0.05
     assert set(planned.seconds) <= set(stages)
     said = str(planned)
     assert "1 segment, 0 lift-offs, optimal" in said
@@ -34,7 +34,7 @@ def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
         "cellcolor.mod",
         "cellcolor.src",
     }
-    scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.03}))
+    scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.05}))
     again = cellcolor.check(scene, tmp_path / "folder" / "trajectory.json")
     assert again.valid
     assert again.covered == planned.verdict.covered
@@ -91,14 +91,14 @@ def test_what_is_left_alone_is_not_driven_and_not_missed(tmp_path: Path) -> None
     points = cellcolor.build(scene).surface.vertices
     middle = float(points[:, 0].mean())
     box = cellcolor.WorldBox((middle, -9.0, -9.0), (9.0, 9.0, 9.0))
-    planned = cellcolor.plan(scene, spacing_m=0.03, left_alone=box)
+    planned = cellcolor.plan(scene, spacing_m=0.05, left_alone=box)
     assert planned.verdict.valid, planned.verdict.faults
     assert any("left alone on purpose" in note for note in planned.verdict.notes)
     trajectory = planned.trajectory
     touched = trajectory.points[trajectory.contact]
-    assert touched[:, 0].max() < middle + 0.03
+    assert touched[:, 0].max() < middle + 0.05
     planned.save(tmp_path / "folder")
-    scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.03}))
+    scene = scene.with_setup(scene.setup.varied(motion={"spacing_m": 0.05}))
     assert "uncovered" in cellcolor.check(scene, trajectory).fault_counts
     surface = cellcolor.LabelledSurface.read(tmp_path / "folder" / "instance.surface.json")
     assert cellcolor.check(scene, trajectory, left_alone=surface).valid

@@ -126,7 +126,7 @@ def test_out_of_time() -> None:
 @pytest.fixture(scope="module")
 def results() -> dict[str, BuildResult]:
     """The tilted hemisphere without a policy and with the shipped one."""
-    policy = shipped("hemisphere_tilted", 1000)
+    policy = shipped("hemisphere_tilted", 600)
     raw = policy.with_setup(policy.setup.varied(slivers=None))
     return {"raw": build_surface(raw), "policy": build_surface(policy)}
 
