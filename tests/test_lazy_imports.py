@@ -10,6 +10,8 @@ from pathlib import Path
 import pytest
 from library import PAPER
 
+pytestmark = pytest.mark.second
+
 FRONTEND = {"cellcolor.frontend", "pinocchio", "trimesh", "fcl", "coal"}
 HEAVY = FRONTEND | {"ortools", "networkx", "numpy", "pydantic"}
 

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import networkx as nx
+import pytest
 
 import cellcolor
 
@@ -73,6 +74,7 @@ def test_the_scan_sees_recursion() -> None:
     assert calling_themselves("def f(g):\n  return g\ndef g(f):\n  return f") == set()
 
 
+@pytest.mark.second
 def test_no_function_calls_itself_on_the_size_of_an_input() -> None:
     root = Path(cellcolor.__file__).parent
     found = {

@@ -87,6 +87,7 @@ def test_stored_solutions_are_of_the_graphs_that_they_are_named_after() -> None:
 HARD = [entry.name for entry in LIBRARY.entries if (entry.file or "").startswith("hard/")]
 
 
+@pytest.mark.second
 @pytest.mark.parametrize(
     "name", ["hub_60", "hub_loops_3x3", "planar_0", "rim_26", "thin_11", *HARD]
 )

@@ -35,6 +35,7 @@ def test_an_example_has_one_import(example: str) -> None:
     assert re.findall(r"^(?:import|from) .*", example, re.MULTILINE) == ["import cellcolor"]
 
 
+@pytest.mark.second
 def test_the_first_example_runs_anywhere(tmp_path: Path) -> None:
     printed = run(FIRST, tmp_path)
     (promised,) = re.findall(r"print\(result\)  # (.*)…", FIRST)
@@ -42,6 +43,7 @@ def test_the_first_example_runs_anywhere(tmp_path: Path) -> None:
     assert [file.name for file in tmp_path.iterdir()] == ["wok.html"]
 
 
+@pytest.mark.second
 def test_the_oracle_example_runs(tmp_path: Path) -> None:
     planner = """
 def my_planner(surface):

@@ -64,6 +64,7 @@ def test_each_term_has_a_figure_and_each_figure_a_page() -> None:
     assert {path.name for path in FIGURES.glob("*.png")} == used
 
 
+@pytest.mark.second
 @pytest.mark.parametrize(
     "terms", [["cell", "hub"], pytest.param([], marks=pytest.mark.slow)], ids=["two", "all"]
 )

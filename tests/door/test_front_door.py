@@ -149,6 +149,7 @@ def test_looking_at_its_names_imports_nothing_else() -> None:
     assert not {name.partition(".")[0] for name in loaded} & {"numpy", "pydantic", "ortools"}
 
 
+@pytest.mark.second
 def test_solving_imports_neither_robot_nor_drawing_libraries() -> None:
     loaded = modules_after("import cellcolor\nprint(cellcolor.solve('wok.surface.json'))")
     assert "ortools" in loaded
@@ -160,6 +161,7 @@ def test_reading_imports_no_solver() -> None:
     assert not loaded & (FRONTEND | PICTURES | {"ortools"})
 
 
+@pytest.mark.second
 def test_no_module_overwrites_a_public_name() -> None:
     """Importing ``cellcolor.X`` makes X an attribute of the package."""
     modules = {module.name for module in pkgutil.iter_modules([str(PACKAGE)])}

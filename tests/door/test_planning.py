@@ -58,6 +58,7 @@ def test_a_scene_is_prepared_once(monkeypatch: pytest.MonkeyPatch) -> None:
     assert len(made) == 2
 
 
+@pytest.mark.second
 def test_what_was_given_up_is_said_beside_what_is_covered() -> None:
     """The share of the surface that slivers had, added up face by face."""
     planned = cellcolor.plan(shipped("square", 300), spacing_m=0.03)
@@ -85,6 +86,7 @@ def test_what_is_wrong_is_said_at_once() -> None:
         cellcolor.plan("wok", time_limit=-1)
 
 
+@pytest.mark.second
 def test_what_is_left_alone_is_not_driven_and_not_missed(tmp_path: Path) -> None:
     """The judge asks for it unless it is told; a plan's surface tells."""
     scene = shipped("square", 200)

@@ -20,6 +20,7 @@ from cellcolor.door.shipped import find_file, library
 from cellcolor.errors import InputError
 
 
+@pytest.mark.second
 def test_every_shipped_file_has_its_name() -> None:
     files = [*INSTANCES.rglob("*.json"), *INSTANCES.rglob("*.toml"), *ROBOTS.glob("*.toml")]
     files.remove(INSTANCES / "index.json")
@@ -33,6 +34,7 @@ def test_every_shipped_file_has_its_name() -> None:
     assert len(str(listed).splitlines()) == len(listed)
 
 
+@pytest.mark.second
 def test_every_graph_of_the_index_is_opened_by_its_name() -> None:
     for entry in library().index.entries:
         if entry.file is None:

@@ -227,6 +227,7 @@ class TestPlaces:
         assert json.loads(read[0])["segments"] == 2
         assert list(tmp_path.iterdir()) == [fifo]
 
+    @pytest.mark.second
     @pytest.mark.parametrize("redirected", [False, True], ids=["pipe", "file"])
     def test_standard_output(self, redirected: bool, tmp_path: Path) -> None:
         """The file alone goes there; what is printed goes to standard error."""

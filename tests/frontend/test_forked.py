@@ -179,6 +179,7 @@ sys.exit(main())
 """
 
 
+@pytest.mark.second
 def test_ctrl_c_ends_all_processes_of_a_build(tmp_path):
     """As a terminal sends it: to parent and children at once."""
     out = tmp_path / "wok.json"

@@ -172,6 +172,7 @@ def test_the_limit_is_twenty_reaches(scene: Varied, times: float) -> None:
                 check_part(varied.covered().placed(varied.placement), varied, reach)
 
 
+@pytest.mark.second
 def test_no_shipped_scene_is_refused() -> None:
     files = [*SCENES.glob("*.toml"), *(SCENES.parent / "arms").glob("*.toml")]
     files += [*(SCENES.parent / "planar").glob("*.toml"), *(SCENES.parent / "parts").glob("*.toml")]

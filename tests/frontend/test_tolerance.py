@@ -81,6 +81,7 @@ def scene() -> Scene:
     )
 
 
+@pytest.mark.second
 def test_colors_hold_wherever_the_part_may_stand(scene: Scene) -> None:
     """Against the scene with each displacement written in, built by itself."""
     asked = prepare(scene.varied(tolerance=OFTEN))

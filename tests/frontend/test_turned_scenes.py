@@ -24,6 +24,7 @@ DOWN = np.array([0.0, 0.0, -1.0])
 LIMITS = (-0.4, 0.0)  # rad, of joint 6: so narrow that no turn alone reaches the whole plate
 
 
+@pytest.mark.second
 @pytest.mark.parametrize("tool", ["", "bent", "across"])
 @pytest.mark.parametrize("kinematics", ["ur", "eaik"])
 def test_the_tool_has_the_turn_that_the_rule_gives(tool: str, kinematics: str) -> None:

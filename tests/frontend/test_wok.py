@@ -84,6 +84,7 @@ def test_other_resolutions(vertices: int) -> None:
     assert minimum(variant(vertices, 0)) == 2
 
 
+@pytest.mark.second
 def test_moved_a_little(record_property: pytest.RecordProperty) -> None:
     found = Counter(minimum(variant(500, seed)) for seed in range(1, 6))
     record_property("minima at 500 vertices", dict(found))

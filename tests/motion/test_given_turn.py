@@ -16,6 +16,7 @@ from cellcolor.motion.limits import motion_of
 from cellcolor.trajectory_checker.check import check_trajectory
 
 
+@pytest.mark.second
 def test_a_motion_with_two_turns_is_valid_and_lifts_off_to_change_them() -> None:
     """Joint 6 has so little room that no turn will do for the whole plate."""
     goal = np.array([0.3, 0.0, 0.5])

@@ -24,6 +24,7 @@ RIVALS = (
 )
 
 
+@pytest.mark.second
 @pytest.mark.parametrize("solver", RIVALS)
 @examples(5)
 @given(seed=st.integers(0, 10**4))

@@ -155,6 +155,7 @@ def test_no_time_is_no_proof(name: str) -> None:
     assert (solution.status, solution.lower_bound) == ("unknown", 0)
 
 
+@pytest.mark.second
 def test_at_the_deadline_the_best_and_a_bound(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The search is cut off by effort, which does not depend on how busy the machine is."""
     make = interruptible.make_portfolio
