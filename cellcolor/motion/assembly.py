@@ -17,7 +17,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.motion.retraced import retraced, stretches
 from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.timing import Speeds, timed
-from cellcolor.motion.transfers import Transfer
+from cellcolor.motion.ways import Transfer
 
 _NEAR = 0.01  # m, of the tip's way to and from contact, on which it keeps to the approach speed
 
