@@ -21,20 +21,19 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "support"))
 
-from ortools.sat.python import cp_model
-from rooms import hub
+from rooms import hub, planner_of
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.lab.campaign.agreement import fewest_by_vertices
 from cellcolor.lab.campaign.pool import Case, draw_case
-from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
+from cellcolor.solvers.bounds.cover import greedy_strangers, set_cover
 from cellcolor.solvers.bounds.hubs import hub_bound
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat.exact_shapes import exact_minimum
 from cellcolor.solvers.cpsat.parts import split
-from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
+from cellcolor.solvers.cpsat.routes.segment_plans import SegmentPlan, Undecided
 from cellcolor.solvers.interface import Options
 
 SECONDS = 10.0
@@ -72,17 +71,7 @@ def planned(instance: Instance) -> dict[str, int]:
     """The fewest segments of a plan, with more and more reasons why one cannot be drawn."""
     deadline = Deadline.after(SECONDS)
     fewest = set_cover(instance).bound
-
-    def run(
-        model: cp_model.CpModel, seed: int
-    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = cp_model.CpSolver()
-        solver.parameters.num_workers = 1
-        solver.parameters.random_seed = seed
-        solver.parameters.max_time_in_seconds = deadline.left
-        return solver, solver.solve(model)
-
-    planner = Planner(instance, color_regions(instance), fewest, run)
+    planner = planner_of(instance, deadline)
 
     def partings(plan: SegmentPlan) -> bool:
         return planner.find_partings(plan, deadline)

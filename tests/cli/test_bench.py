@@ -7,6 +7,7 @@ import os
 import signal
 import subprocess
 import sys
+from collections.abc import Callable
 from contextlib import redirect_stdout
 from io import StringIO
 from pathlib import Path
@@ -21,6 +22,8 @@ from cellcolor import library
 from cellcolor.lab.runs.row import Row
 from cellcolor.lab.runs.table import read_table
 from cellcolor.lab.runs.timings import START_UP, Timing
+from cellcolor.lab.workers import Task
+from cellcolor.processes import Limits
 from cellcolor.solvers.registry import GROUP
 
 pytestmark = pytest.mark.second
@@ -28,6 +31,7 @@ pytestmark = pytest.mark.second
 RING = PAPER / "ring.json"
 ZEROS = PAPER / "crossing-zeros.json"
 Capture = pytest.CaptureFixture[str]
+Work = Callable[..., object]
 
 FAKES = """
 import os, time
@@ -163,8 +167,12 @@ class TestRun:
     def test_a_solver_that_does_not_hear_of_the_end(
         self, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
     ) -> None:
-        monkeypatch.setattr("cellcolor.lab.runs.sweep._START_UP", 6.0)
-        monkeypatch.setattr("cellcolor.lab.runs.sweep._CHECKING", 0.0)
+        def impatient(function: Work, arguments: tuple[object, ...], limits: Limits) -> Task:
+            """Gives the deaf one up soon; the other has its time, however busy the machine is."""
+            limits = Limits(2.0) if "deaf" in arguments else limits
+            return Task(function, arguments, limits)
+
+        monkeypatch.setattr("cellcolor.lab.runs.sweep.Task", impatient)
         table = tmp_path / "t.csv"
         solvers = ("--solver", "deaf", "--solver", "dfs")
         assert run("bench", "run", RING, *solvers, "--time-limit", "0.1", "-o", table) == 0

@@ -11,11 +11,15 @@ from itertools import chain, count
 import networkx as nx
 from hypothesis import strategies as st
 from meshes import grid_faces, grid_points, surface
+from ortools.sat.python import cp_model
 
 from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
+from cellcolor.deadline import NEVER, Deadline
 from cellcolor.lab.families.meshes import make_mesh
+from cellcolor.solvers.bounds.cover import color_regions, set_cover
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner
 
 RED, BLUE, GREEN = 0, 1, 2
 
@@ -160,3 +164,18 @@ def hub(*colors: int | tuple[int, ...]) -> Instance:
 def four_colors_in_turn(petals: int) -> Instance:
     """A hub however large, made at once, since no minimum is worked out with it."""
     return hub(*(number % 4 for number in range(petals)))
+
+
+def planner_of(instance: Instance, deadline: Deadline = NEVER) -> Planner:
+    """Plans of an instance's segments, by one worker of CP-SAT each."""
+
+    def run(
+        model: cp_model.CpModel, seed: int
+    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
+        solver = cp_model.CpSolver()
+        solver.parameters.num_workers = 1
+        solver.parameters.random_seed = seed
+        solver.parameters.max_time_in_seconds = deadline.left
+        return solver, solver.solve(model)
+
+    return Planner(instance, color_regions(instance), set_cover(instance).bound, run)

@@ -6,34 +6,21 @@ import pytest
 from exhaustive_minima import minimum
 from hypothesis import given
 from hypothesis import strategies as st
-from ortools.sat.python import cp_model
-from rooms import graph, hub, petal_cells
+from rooms import graph, hub, petal_cells, planner_of
 
 from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER
 from cellcolor.lab.families import planar_graph
-from cellcolor.solvers.bounds.cover import color_regions, set_cover
+from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat.routes import segment_plans
-from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
+from cellcolor.solvers.cpsat.routes.segment_plans import SegmentPlan, Undecided
 from cellcolor.solvers.interface import Options
 from examples import examples
 
 RED, BLUE, GREEN = 0, 1, 2
 
 SEEDS = st.integers(0, 10**6)
-
-
-def planner_of(instance: Instance) -> Planner:
-    def run(
-        model: cp_model.CpModel, seed: int
-    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = cp_model.CpSolver()
-        solver.parameters.num_workers = 1
-        solver.parameters.random_seed = seed
-        return solver, solver.solve(model)
-
-    return Planner(instance, color_regions(instance), set_cover(instance).bound, run)
 
 
 def fewest_planned(instance: Instance, avoiding: bool = False) -> tuple[int, SegmentPlan]:
