@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from os import PathLike
+
 
 class CellcolorError(Exception):
     """Base of every error that cellcolor raises on purpose."""
@@ -29,6 +33,17 @@ class InputError(CellcolorError):
     def in_file(self, file: str) -> InputError:
         """The same error with the file named, for data that learns its file late."""
         return InputError(file, self.field, self.message)
+
+
+@contextmanager
+def naming(file: str | PathLike[str] | None) -> Iterator[None]:
+    """Name the file, if there is one, in errors that name none."""
+    try:
+        yield
+    except InputError as error:
+        if error.file or file is None:
+            raise
+        raise error.in_file(str(file)) from error
 
 
 class SolverMissing(CellcolorError):

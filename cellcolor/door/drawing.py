@@ -19,7 +19,7 @@ from cellcolor.data.solution import Solution
 from cellcolor.door.extras import extras_for
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Solvable, Subject, open_subject
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
 from cellcolor.files.writing import HTML, PNG, SVG, FileKind, Output, write
 from cellcolor.pictures.picture import Picture2D, Picture3D
@@ -251,10 +251,8 @@ def draw(picture: Picture, subject: Subject, view: View) -> Drawing:
         missing |= {"surface", "decomposition"}
     parts = {part: make[part]() for part in make if part in picture.needs}
     parts |= {part: make[part]() for part in picture.takes if part not in missing}
-    try:
+    with naming(file):
         return Drawing(picture.draw(**parts))
-    except InputError as error:
-        raise (error if error.file or file is None else error.in_file(file)) from error
 
 
 def _number(names: tuple[str, ...], asked: str | int | None, file: str | None, field: str) -> int:

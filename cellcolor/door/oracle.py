@@ -5,8 +5,7 @@ Test suites and ``cellcolor check`` use an oracle that keeps its proofs on disk.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from os import PathLike
@@ -28,7 +27,7 @@ from cellcolor.door.joint_plans import AnyPath, PathColors, colors_of_joints, co
 from cellcolor.door.reading import color_numbers, read_claim
 from cellcolor.door.result import Result
 from cellcolor.door.subject import Solvable, open_subject
-from cellcolor.errors import BeatenBound, InputError, TooLarge
+from cellcolor.errors import BeatenBound, InputError, TooLarge, naming
 from cellcolor.oracle import BetterPainting, PathVerdict, Proof, ProvenRange, Verdict, prove
 from cellcolor.oracle.improvement import better_painting, improvement_of
 from cellcolor.oracle.proof_cache import ProofCache
@@ -122,7 +121,7 @@ class Oracle:
             InputError: a cell of the surface is not planar, or an option is out of its range.
         """
         if self._proof is None:
-            with _in_file(None if self._subject.path is None else str(self._subject.path)):
+            with naming(self._subject.path):
                 self._proof = prove(self.surface, deadline, **self._options)
         return self._proof
 
@@ -193,7 +192,7 @@ class Oracle:
             plan = read_claim(plan)
         deadline = deadline or Deadline.of(self._time_limit)
         if isinstance(plan, (ContactPath, Trajectory, TrajectoryTable)):
-            with _in_file(file):
+            with naming(file):
                 found = colors_of_path(self._subject, plan, deadline)
             return self._of_path(found, deadline)
         if isinstance(plan, JointPlan):
@@ -275,17 +274,6 @@ class Oracle:
             return None
         cells = witness_in_words(proof.decomposition.instance, proof.solution.witness)
         return cells or proof.solution.reason
-
-
-@contextmanager
-def _in_file(file: str | None) -> Iterator[None]:
-    """Name the file of a surface or a plan, if it is in one, in errors that name none."""
-    try:
-        yield
-    except InputError as error:
-        if error.file or file is None:
-            raise
-        raise error.in_file(file) from error
 
 
 class KeepingOracle(Oracle):

@@ -19,7 +19,7 @@ from cellcolor.door.planned import NothingCovered, PlannedScene, PlanOutOfTime, 
 from cellcolor.door.result import Result
 from cellcolor.door.solving import solve
 from cellcolor.door.subject import Subject, scene_or_file
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import Options
 
@@ -176,11 +176,10 @@ def _with_notes(result: Result, notes: tuple[str, ...], share: float) -> Result:
 
 def _with_motion(scene: Scene, changes: Mapping[str, Any]) -> Scene:
     """The scene with some keys of its setup's table ``[motion]`` replaced."""
-    from cellcolor.frontend.tables import in_file
 
     if not changes:
         return scene
-    with in_file(scene.setup.file):
+    with naming(scene.setup.file):
         # Both keep the names of their files: the labelled surface says what it was built from.
         setup = scene.setup.varied(motion=dict(changes), file=scene.setup.file)
         return scene.varied(setup=setup, file=scene.file)

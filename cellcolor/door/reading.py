@@ -22,7 +22,7 @@ from cellcolor.data.trajectory_verdict import TrajectoryVerdict
 from cellcolor.door.extras import extras_for
 from cellcolor.door.shipped import find_file
 from cellcolor.door.subject import is_scene
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import parse_first_object, read_document, read_text
 
 if TYPE_CHECKING:
@@ -71,15 +71,13 @@ def read(source: str | PathLike[str]) -> Any:
     path = find_file(source)
     if is_scene(path):
         return _read_toml(path)
-    try:
+    with naming(path):
         document = parse_first_object(read_text(path))
         form = document.get("format")
         if not isinstance(form, str) or form not in _KINDS:
             known = ", ".join(map(repr, _KINDS))
             raise InputError(None, "format", f"must be one of {known}, is {form!r}")
         return _KINDS[form].from_document(document)
-    except InputError as error:
-        raise error.in_file(str(path)) from error
 
 
 def _read_toml(path: Path) -> Scene | Setup:

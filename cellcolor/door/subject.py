@@ -19,7 +19,7 @@ from cellcolor.decomposition import Decomposition, decomposition_of, locate
 from cellcolor.decomposition.same_graph import wrong_cell
 from cellcolor.door.extras import extras_for
 from cellcolor.door.shipped import find_file
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_document
 
 if TYPE_CHECKING:
@@ -80,10 +80,8 @@ class Subject:
             reference: where the instance's file will say that the surface is; None leaves it out.
             deadline: when the decomposition has to end.
         """
-        try:
+        with naming(self.path):
             return decomposition_of(self.surface, reference, deadline)
-        except InputError as error:
-            raise error if self.path is None else error.in_file(str(self.path)) from error
 
     @cached_property
     def decomposition(self) -> Decomposition:
@@ -313,7 +311,7 @@ def read_graph(path: Path) -> Instance | LabelledSurface:
         message = "is a mesh, which has no colors: cellcolor new makes a scene of it and an arm"
         raise InputError(str(path), None, message)
     document = read_document(path)
-    try:
+    with naming(path):
         match document.get("format"):
             case Instance.FORMAT:
                 return Instance.from_document(document)
@@ -322,5 +320,3 @@ def read_graph(path: Path) -> Instance | LabelledSurface:
             case other:
                 expected = f"{Instance.FORMAT!r} or {LabelledSurface.FORMAT!r}"
                 raise InputError(None, "format", f"must be {expected}, is {other!r}")
-    except InputError as error:
-        raise error.in_file(str(path)) from error

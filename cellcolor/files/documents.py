@@ -10,7 +10,7 @@ from typing import Any, TypeVar
 
 from pydantic import TypeAdapter, ValidationError
 
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.paths import path_of
 
 T = TypeVar("T")
@@ -89,10 +89,8 @@ def read_document(path: str | PathLike[str]) -> dict[str, Any]:
         InputError: the file is missing, unreadable, not UTF-8 or not a JSON object.
     """
     text = read_text(path)
-    try:
+    with naming(path):
         return parse_json(text)
-    except InputError as error:
-        raise error.in_file(str(path)) from error
 
 
 def read_as(path: str | PathLike[str], from_document: Callable[[dict[str, Any]], T]) -> T:
@@ -102,10 +100,8 @@ def read_as(path: str | PathLike[str], from_document: Callable[[dict[str, Any]],
         InputError: the file cannot be read, or the function refuses what it holds.
     """
     document = read_document(path)
-    try:
+    with naming(path):
         return from_document(document)
-    except InputError as error:
-        raise error.in_file(str(path)) from error
 
 
 def take_body(

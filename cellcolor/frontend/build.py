@@ -16,6 +16,7 @@ from cellcolor.data.surface import Crack, LabelledSurface
 from cellcolor.data.value import same_members
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
+from cellcolor.errors import naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.stand_in_report import report_on
 from cellcolor.frontend.links import Links
@@ -29,7 +30,6 @@ from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Task
 from cellcolor.frontend.stage_clock import Progress, StageClock
 from cellcolor.frontend.stages import Stages, with_finer_borders
-from cellcolor.frontend.tables import in_file
 from cellcolor.version import __version__
 
 if TYPE_CHECKING:
@@ -245,7 +245,7 @@ def build_prepared(prepared: PreparedScene, clock: StageClock) -> BuildResult:
         InputError: the scene asks for too much; names file and field.
         OutOfTime: the clock's deadline came first.
     """
-    with in_file(prepared.scene.file):
+    with naming(prepared.scene.file):
         return result_of(*with_finer_borders(prepared, clock), clock)
 
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.inverse import InverseKinematics
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
@@ -34,7 +34,6 @@ from cellcolor.frontend.reach.validity_tests import Workplace
 from cellcolor.frontend.scene import Scene
 from cellcolor.frontend.setup import Setup
 from cellcolor.frontend.sizes import check_points
-from cellcolor.frontend.tables import in_file
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,7 +149,7 @@ def prepare(scene: Scene | str | PathLike[str], deadline: Deadline = NEVER) -> P
     """
     if not isinstance(scene, Scene):
         scene = Scene.read(scene)
-    with in_file(scene.file):
+    with naming(scene.file):
         return _prepared(scene, deadline)
 
 
@@ -161,7 +160,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
     surface = covered.placed(scene.placement)
     check_part(surface, scene, arm.kinematics.reach)
     lengths = surface.lengths(surface.edges())
-    with in_file(setup.file):
+    with naming(setup.file):
         check_setup(setup, surface, scene, arm.kinematics.reach)
         _check_spacings(setup, lengths)
     shape = covered
@@ -175,7 +174,7 @@ def _prepared(scene: Scene, deadline: Deadline) -> PreparedScene:
         notes += note_on_crossings(covered.mesh, deadline)
     if setup.constraints.collision:
         home = None if setup.motion is None else setup.motion.home
-        with in_file(setup.file):
+        with naming(setup.file):
             wide = check_capsules(arm.near_itself, home)
         notes += () if wide is None else (wide,)
         notes += _notes_on_contacts(workplace, float(lengths.max()))

@@ -22,7 +22,7 @@ from pydantic import (
 
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.contact.collision import HalfSpace
 from cellcolor.frontend.contact.obstacle import OBSTACLES, Obstacle
 from cellcolor.frontend.parts.cover import Cover
@@ -33,7 +33,7 @@ from cellcolor.frontend.parts.rounding import rounded
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.reach.validity_tests import VALIDITY_TESTS, ValidityTest
 from cellcolor.frontend.setup import Setup
-from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, in_file, of_kind
+from cellcolor.frontend.tables import Coordinate, FileTable, Table, Vector, of_kind
 
 _UPRIGHT = (0.0, 0.0, 1.0)
 _LEAST_RISE = 0.01  # of a normal of length 1; a steeper ground is a wall
@@ -170,7 +170,7 @@ class Scene(FileTable):
         if self.cover is not None:
             surface = self.cover.patch(surface, self.folder, deadline)
         if surface.faceted:
-            with in_file(self.setup.file):
+            with naming(self.setup.file):
                 surface = rounded(surface, self.setup.task.rounding_m, deadline)
         return surface
 
@@ -220,7 +220,7 @@ class Scene(FileTable):
             raise InputError(None, "rpy_rad", "the arm's base can be turned by its yaw only")
         if self.validity_test:
             raise InputError(None, "validity_test[0]", bound)
-        with in_file(self.setup.file):
+        with naming(self.setup.file):
             if task.turn is not None:
                 raise InputError(None, "task.turn", bound)
             if any(task.gravity_m_per_s2[:2]):

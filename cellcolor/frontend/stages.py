@@ -26,7 +26,7 @@ import numpy as np
 from cellcolor.arrays import Mask
 from cellcolor.data.surface import Crack
 from cellcolor.deadline import Deadline
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.links import Links, continuous_links, valid_links
 from cellcolor.frontend.parts.surface import Surface, bisected
 from cellcolor.frontend.prepared import PreparedScene
@@ -35,7 +35,6 @@ from cellcolor.frontend.reach.slivers import SliverReport, clean
 from cellcolor.frontend.reach.validity import Candidates, Verdicts
 from cellcolor.frontend.sizes import check_turns
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.tables import in_file
 
 TURN_NOT_DEFINED = "turn not defined"
 """The reason at a vertex where the setup's rule for the tool's turn says nothing."""
@@ -121,7 +120,7 @@ def judged_in_place(
     first = 0 if known is None else len(known.surface.vertices)
     setup, surface = prepared.setup, prepared.surface
     if setup.task.turn is not None:
-        with in_file(setup.file):
+        with naming(setup.file):
             check_turns(len(surface.vertices), len(setup.task.turn.degrees))
     with clock.timed("inverse kinematics"):
         vertices, directions = surface.vertices[first:], -surface.normals[first:]

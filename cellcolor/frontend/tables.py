@@ -9,8 +9,7 @@ from __future__ import annotations
 import math
 import re
 import tomllib
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
 from typing import Annotated, Any, Generic, Self, TypeVar
@@ -27,7 +26,7 @@ from pydantic import (
 from pydantic_core import PydanticCustomError
 
 from cellcolor.data.wording import looks_like_degrees
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import first_fault, read_text
 from cellcolor.files.paths import path_of
 from cellcolor.registered import find, load
@@ -138,23 +137,12 @@ class FileTable(Table):
         for name in FileTable.model_fields:
             if name in content:
                 raise InputError(str(path), name, "unknown key")
-        with in_file(path):
+        with naming(path):
             return cls(**content, folder=path.parent, file=path)
 
     def varied(self, **changes: Any) -> Self:
         """The same table with some keys changed; see :meth:`Table.varied`."""
         return super().varied(**({"file": None} | changes))
-
-
-@contextmanager
-def in_file(file: Path | None) -> Iterator[None]:
-    """Name the file, if there is one, in errors that name none."""
-    try:
-        yield
-    except InputError as error:
-        if error.file or file is None:
-            raise
-        raise error.in_file(str(file)) from error
 
 
 def _toml(file: Path) -> dict[str, Any]:

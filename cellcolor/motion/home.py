@@ -7,10 +7,9 @@ from itertools import takewhile
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
-from cellcolor.frontend.tables import in_file
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.free_space import FreeSpace
 
@@ -41,7 +40,7 @@ def home_of(prepared: PreparedScene, motion: Motion) -> Array | None:
             if near is not None:
                 break
         if near is None:
-            with in_file(prepared.setup.file):
+            with naming(prepared.setup.file):
                 raise InputError(None, "motion.home_rad", "no free position was found; give one")
         return np.array(near)
     home, free = np.array(motion.home), FreeSpace(prepared, motion.clearance_m)
@@ -59,7 +58,7 @@ def home_of(prepared: PreparedScene, motion: Motion) -> Array | None:
         else f"; free is, for example, [{', '.join(f'{angle:g}' for angle in near)}]; "
         'home_rad = "free" finds one as well'
     )
-    with in_file(prepared.setup.file):
+    with naming(prepared.setup.file):
         message = f"the arm cannot stand there: {shown} {how}{proposed}"
         raise InputError(None, "motion.home_rad", message)
 

@@ -7,12 +7,11 @@ import math
 import numpy as np
 
 from cellcolor.data.wording import looks_like_degrees
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.likely_units import check_motion
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
-from cellcolor.frontend.tables import in_file
 from cellcolor.motion.timing import Speeds
 
 
@@ -26,7 +25,7 @@ def motion_of(prepared: PreparedScene) -> Motion:
             planar.
     """
     setup, robot = prepared.setup, prepared.robot
-    with in_file(setup.file):
+    with naming(setup.file):
         if robot.task.plane:
             message = "a planar arm does not lift its tool off the part, so no motion is planned"
             raise InputError(None, "robot.kinematics", message)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.body import Shapes
 from cellcolor.frontend.arm.inverse import (
     KINEMATICS,
@@ -27,7 +27,6 @@ from cellcolor.frontend.arm.urdf import Urdf, load_urdf, parse_urdf
 from cellcolor.frontend.parts.placement import rotation_from_rpy
 from cellcolor.frontend.reach.smooth import Measure
 from cellcolor.frontend.setup import Setup, Task
-from cellcolor.frontend.tables import in_file
 from cellcolor.memory import chunks
 
 _MOST_SOLUTIONS = 16  # of six revolute joints
@@ -157,7 +156,7 @@ def prepare_arm(setup: Setup) -> PreparedArm:
     Raises:
         InputError: one cannot be used, or a key of the setup does not fit it; names the file.
     """
-    with in_file(setup.file):
+    with naming(setup.file):
         robot = _robot(setup)
         kinematics = _kinematics(setup, robot)
         limits = conditioning(setup, kinematics.reach, robot)
