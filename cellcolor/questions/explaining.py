@@ -147,20 +147,27 @@ class _Asked:
         Raises:
             OutOfTime: the deadline came first.
         """
-        names, keys = _in_words(what)
+        known, rest = self._nearest(what)
+        found = self._relaxed(what, known, rest)
+        if self._quick and len(what) == 1 and found.levels is not known.levels:
+            (one,) = what
+            if one in self.things and one.reasons is not None:
+                self._freer[one] = found
+        return found.row
+
+    def _relaxed(
+        self, what: Sequence[Relaxation], known: _Known, rest: Sequence[Relaxation]
+    ) -> _Known:
+        """The scene without these things, from a stricter one: the rest is what it still asks."""
         try:
             if not self._quick or any(one.reasons is None for one in what):
                 relaxed = without(self._prepared, what)
-                return self._solved(border_levels(relaxed, self._clock), what).row
-            known, rest = self._nearest(what)
-            found = self._again(judged_asking_less, known, what, _reasons_of(rest))
+                return self._solved(border_levels(relaxed, self._clock), what)
+            return self._again(judged_asking_less, known, what, _reasons_of(rest))
         except InputError as error:
-            return RelaxedMinimum(
-                names, keys, None, 1, 0.0, 0.0, False, f"it cannot be built: {error}"
-            )
-        if len(what) == 1 and what[0] in self.things and found.levels is not known.levels:
-            self._freer[what[0]] = found
-        return found.row
+            note = f"it cannot be built: {error}"
+            row = RelaxedMinimum(*_in_words(what), None, 1, 0.0, 0.0, False, note)
+            return replace(known, row=row)
 
     def _nearest(self, what: Sequence[Relaxation]) -> tuple[_Known, list[Relaxation]]:
         """The scene without one of these things or none, where it is known, and the others."""
@@ -170,15 +177,14 @@ class _Asked:
         first = max(freer, key=lambda one: self._freer[one].coarse.stages.candidates.valid.sum())
         return self._freer[first], [one for one in what if one != first]
 
-    def _without_some(self, one: Relaxation, amount: float) -> RelaxedMinimum:
-        """The scene with a thing weakened by an amount."""
+    def _without_some(self, one: Relaxation, amount: float, less: _Known) -> _Known:
+        """The scene with a thing weakened by an amount, from that with less of it."""
         some = one.by(amount)
-        row = (
-            self._again(judged_asking_more, self._freer[one], [some], _reasons_of([one])).row
-            if one in self._freer and some.reasons is None
-            else self.without([some])
-        )
-        return replace(row, relaxed=(one.said_of(amount),))
+        if one in self._freer and some.reasons is None:
+            found = self._again(judged_asking_more, self._freer[one], [some], _reasons_of([one]))
+        else:
+            found = self._relaxed([some], less, [some])
+        return replace(found, row=replace(found.row, relaxed=(one.said_of(amount),)))
 
     def _again(
         self,
@@ -233,10 +239,16 @@ class _Asked:
     def least_amount(self, one: Relaxation) -> RelaxedMinimum:
         """The least amount found that saves a lift-off; if none does, the greatest."""
         tried: dict[float, RelaxedMinimum] = {}
+        too_little = self._known  # the most of it that was not enough; less is not tried again
 
         def enough(amount: float) -> bool:
-            tried[amount] = self._without_some(one, amount)
-            return _saves(tried[amount], self.base)
+            nonlocal too_little
+            found = self._without_some(one, amount, too_little)
+            tried[amount] = found.row
+            if _saves(found.row, self.base):
+                return True
+            too_little = found
+            return False
 
         high = one.most
         if not enough(high):

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER
 from cellcolor.frontend import BuildResult, Scene, build_surface, links
 from cellcolor.frontend.judging_again import judged_asking_less, judged_asking_more
-from cellcolor.frontend.prepared import prepare
+from cellcolor.frontend.prepared import PreparedScene, prepare
 from cellcolor.frontend.reach import validity
 from cellcolor.frontend.relaxing import (
     Distance,
@@ -37,7 +38,8 @@ from cellcolor.frontend.relaxing import (
     without,
 )
 from cellcolor.frontend.stage_clock import StageClock
-from cellcolor.frontend.stages import Stages, judged
+from cellcolor.frontend.stages import Judged, Stages, judged
+from cellcolor.questions import explaining
 from cellcolor.questions.explanation import Explanation, RelaxedMinimum
 from cellcolor.questions.placing import coarse_scene
 from examples import examples
@@ -299,6 +301,24 @@ def test_an_amount_saves_what_it_says_and_less_of_it_does_not(tilted: Explanatio
         numbers[lower] = cellcolor.solve(built).solution.segments
     assert list(numbers.values()) == [row.segments, tilted.base.segments]
     assert row.segments is not None and row.segments < (tilted.base.segments or 0)
+
+
+def test_an_amount_is_asked_from_the_last_that_was_not_enough(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    asked: list[tuple[float, int]] = []
+
+    def noting(prepared: PreparedScene, before: Judged, *others: Any) -> Judged:
+        ground = prepared.workplace.ground
+        valid = int(before.stages.candidates.valid.sum())
+        asked.append((-np.inf if ground is None else ground.offset_m, valid))
+        return judged_asking_less(prepared, before, *others)
+
+    monkeypatch.setattr(explaining, "judged_asking_less", noting)
+    cellcolor.explain(shipped("hemisphere_tilted", 120))
+    as_it_is, whole = max(asked)[0], asked[0][1]
+    lowered = [valid for offset, valid in asked if -np.inf < offset < as_it_is]
+    assert lowered[0] == whole < lowered[-1]  # from the scene as it is, then from a freer one
 
 
 def test_where_one_is_not_enough_the_smallest_set_is_found() -> None:
