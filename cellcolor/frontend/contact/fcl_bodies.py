@@ -13,6 +13,8 @@ from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses
 from cellcolor.frontend.arm.polyhedron import Polyhedron
 
+_AHEAD = 64  # places that are looked at together
+_SURE = 0.99  # of a distance, for rounding
 _MODELS: WeakKeyDictionary[Polyhedron, fcl.BVHModel] = WeakKeyDictionary()
 
 
@@ -104,23 +106,77 @@ def bodies_touch(first: Body, at: Placed, second: Body, second_at: Placed) -> Ma
     shapes = [body_shape(body, skin if body.solid is None else 0.0) for body in (first, second)]
     a, b = (fcl.CollisionObject(shape, fcl.Transform()) for shape in shapes)
     hit = np.zeros(len(at[1]), dtype=bool)
-    for row, (turn_a, origin_a, turn_b, origin_b) in enumerate(zip(*at, *second_at, strict=True)):
-        a.setTransform(fcl.Transform(turn_a, origin_a))
-        b.setTransform(fcl.Transform(turn_b, origin_b))
-        hit[row] = _touch(a, b, 0.0 if curved else skin)
-    for one, place, other, other_place in (
+
+    def place(row: int) -> None:
+        a.setTransform(fcl.Transform(at[0][row], at[1][row]))
+        b.setTransform(fcl.Transform(second_at[0][row], second_at[1][row]))
+
+    if curved or not skin:
+        for row in range(len(hit)):
+            place(row)
+            hit[row] = _touch(a, b, 0.0)
+    else:
+        moved, row = _Moved(second, at, second_at), 0
+        while row < len(hit):
+            place(row)
+            spare = _distance(a, b) - skin
+            hit[row] = spare < 0.0
+            row = moved.first_as_far(row, spare)
+    for one, own, other, other_own in (
         (first, at, second, second_at),
         (second, second_at, first, at),
     ):
         if one.solid is not None and not hit.all():
-            hit |= _any_inside(one.solid, place, points_of(other, other_place), ~hit)
+            hit |= _any_inside(one.solid, own, points_of(other, other_own), ~hit)
     return hit
 
 
+class _Moved:
+    """How far points of one solid move past another one, from place to place.
+
+    Neighboring places are mostly of one motion, and a solid that has come no farther than it was
+    away cannot touch.
+    """
+
+    def __init__(self, second: Body, at: Placed, second_at: Placed) -> None:
+        assert second.solid is not None
+        middle = second.solid.vertices.mean(axis=0)
+        self._radius = float(np.linalg.norm(second.solid.vertices - middle, axis=1).max())
+        back = at[0].transpose(0, 2, 1)
+        self._turns = back @ second_at[0]
+        off = second_at[0] @ middle + second_at[1] - at[1]
+        self._middles = (back @ off[:, :, None])[:, :, 0]
+
+    def first_as_far(self, row: int, spare: float) -> int:
+        """The next place after a row where the second solid may have come so much nearer, m.
+
+        Two rotations R and S take a point at the distance r to places that are at most
+        r |R - S| / sqrt(2) apart, with the Frobenius norm: their difference has the rank 2, and
+        both singular values are equal.
+        """
+        begins = row + 1
+        while spare > 0.0 and begins < len(self._middles):
+            ahead = slice(begins, begins + _AHEAD)
+            turned = np.linalg.norm(self._turns[ahead] - self._turns[row], axis=(1, 2))
+            came = np.linalg.norm(self._middles[ahead] - self._middles[row], axis=1)
+            near = came + self._radius * turned / np.sqrt(2) >= _SURE * spare
+            if near.any():
+                return begins + int(near.argmax())
+            begins += len(near)
+        return begins
+
+
 def _touch(a: fcl.CollisionObject, b: fcl.CollisionObject, skin: float) -> bool:
+    if skin:
+        return _distance(a, b) < skin
+    return bool(fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()))
+
+
+def _distance(a: fcl.CollisionObject, b: fcl.CollisionObject) -> float:
+    """How far two shapes are from each other, m; 0 if they touch."""
     if fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()):
-        return True
-    return bool(skin) and fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult()) < skin
+        return 0.0
+    return float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult()))
 
 
 def points_of(body: Body, placed: Placed) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import trimesh
 from hypothesis import given
 from hypothesis import strategies as st
 from meshed_arm import link_meshes, write_package
+from scipy.spatial.transform import Rotation
 from shipped import ROBOTS
 
 from cellcolor.arrays import Array, Mask
@@ -110,3 +112,46 @@ def test_fcl_is_spared_and_says_the_same(
     assert (hits_itself(robot, ends, poses) == hit).all()
     assert 0 < hit.sum() < len(hit)
     assert spared < 0.7 * sum(asked)
+
+
+@examples(40)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_a_motion_past_a_solid_is_judged_as_place_by_place(seed: int) -> None:
+    """Two boxes with skins of 5 mm, of which one is turned and moved in 60 small steps."""
+    rng = np.random.default_rng(seed)
+    cube = Polyhedron(*box((0.1, 0.06, 0.2)))
+    body = Body("box", 0, np.zeros(3), np.zeros(3), 0.2, False, cube, 0.005)
+    share = np.linspace(0.0, 1.0, 60)[:, None]
+    one, other = rng.uniform(-0.3, 0.3, (2, 3))
+    origins = one + share * (other - one)
+    turns = Rotation.from_rotvec(share * rng.uniform(-2.0, 2.0, 3)).as_matrix()
+    still = np.tile(np.eye(3), (60, 1, 1)), np.zeros((60, 3))
+    found = fcl_bodies.bodies_touch(body, still, body, (turns, origins))
+    alone = [
+        fcl_bodies.bodies_touch(
+            body,
+            (still[0][k : k + 1], still[1][k : k + 1]),
+            body,
+            (turns[k : k + 1], origins[k : k + 1]),
+        )[0]
+        for k in range(60)
+    ]
+    assert found.tolist() == alone
+
+
+def test_a_motion_that_stays_away_is_hardly_asked_about(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A box that moves by 1 m in 500 steps, never nearer than 0.4 m to another one."""
+    cube = Polyhedron(*box((0.1, 0.1, 0.1)))
+    body = Body("box", 0, np.zeros(3), np.zeros(3), 0.09, False, cube, 0.005)
+    origins = np.column_stack([np.linspace(-0.5, 0.5, 500), np.full(500, 0.5), np.zeros(500)])
+    still = np.tile(np.eye(3), (500, 1, 1)), np.zeros((500, 3))
+    asked: list[float] = []
+    distance = fcl_bodies._distance
+
+    def counted(*objects: Any) -> float:
+        asked.append(distance(*objects))
+        return asked[-1]
+
+    monkeypatch.setattr(fcl_bodies, "_distance", counted)
+    assert not fcl_bodies.bodies_touch(body, still, body, (still[0], origins)).any()
+    assert len(asked) < 10
