@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from os import PathLike
@@ -237,6 +238,20 @@ class LabelledSurface(WithArrays, Document):
         return replace(
             self, vertex_colors=tuple(colors), given_up=tuple(sorted(given_up)), cracks=cracks
         )
+
+    def without_colors(self, colors: Collection[int]) -> LabelledSurface:
+        """The surface without some colors, but for vertices that have no others; as many names."""
+        out = frozenset(colors)
+        kept = tuple(
+            own if out.issuperset(own) else tuple(color for color in own if color not in out)
+            for own in self.vertex_colors
+        )
+        cracks = []
+        for crack in self.cracks:
+            both = set(kept[crack.i]).intersection(kept[crack.j], crack.colors)
+            if both:
+                cracks.append(Crack(crack.i, crack.j, tuple(sorted(both))))
+        return replace(self, vertex_colors=kept, cracks=tuple(cracks))
 
     @cached_property
     def crack_colors(self) -> dict[tuple[int, int], frozenset[int]]:

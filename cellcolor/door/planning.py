@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import pi
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.objective import FEWEST_SEGMENTS
+from cellcolor.data.solution import Solution
+from cellcolor.data.wording import listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.asking import explain, tradeoff
 from cellcolor.door.extras import require_motion
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from cellcolor.frontend import Scene
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.stage_clock import StageClock
+    from cellcolor.motion.plan import MotionPlan
+    from cellcolor.motion.scene_painting import ScenePainting
     from cellcolor.pictures.report_page.content import AnsweredScene, Answers
 
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "potpourri3d", "ompl", "toppra")
@@ -34,6 +38,7 @@ _FOR_SOLVING = 0.5  # of the time that is left then; a proof can take any time
 _QUESTIONS = ("tradeoff", "explain", "place", "setups")  # that a plan's page can answer besides
 _MOVED = 0.1  # m; so far a question moves the part along x and y
 _PLACEMENTS = 32
+_DIVISIONS = 3  # that are driven, while the arm finds no way to some color
 _FOR_BUILDING = 0.6  # of the time that is left then, with several set-ups
 
 
@@ -117,29 +122,49 @@ def plan(
             has(result=result)
             if result.solution.cells is None:
                 raise OutOfTime("the time limit came before any division was found")
-        with clock.timed("painting"):
-            painting = paint_scene(
-                subject.build(),
-                subject.decomposition,
-                result.solution,
-                deadline=deadline,
-                progress=progress,
-            )
-        if len(painting.painted.minima) > 1:  # the surface was refined and solved again
-            subject = Subject(path, painting.built, painting.built.surface)
-            result = _with_notes(Result(painting.solution, subject), notes, share)
-        has(subject=subject, result=result, painted=painting.painted)
+
+        def driven(subject: Subject, result: Result) -> _Driven:
+            with clock.timed("painting"):
+                painting = paint_scene(
+                    subject.build(),
+                    subject.decomposition,
+                    result.solution,
+                    deadline=deadline,
+                    progress=progress,
+                )
+            if len(painting.painted.minima) > 1:  # the surface was refined and solved again
+                subject = Subject(path, painting.built, painting.built.surface)
+                result = _with_notes(Result(painting.solution, subject), notes, share)
+            has(subject=subject, result=result, painted=painting.painted)
+            with clock.timed("motion"):
+                planned = plan_motion(
+                    painting.built,
+                    painting.painted,
+                    painting.normals,
+                    pattern=pattern or DEFAULT_PATTERN,
+                    deadline=deadline,
+                    progress=progress,
+                    on_paths=lambda paths, measures: has(paths=paths, measures=measures),
+                )
+            return _Driven(subject, result, painting, planned)
+
+        tried = [driven(subject, result)]
+        while len(tried) < _DIVISIONS:
+            rest = _without_cut_off(tried[-1])
+            if rest is None:
+                break
+            try:
+                with clock.timed("fewest segments"):
+                    again = solve(rest, time_limit=deadline.share(_FOR_SOLVING))
+                if again.solution.cells is None:
+                    break
+                about = _cut_off_in_words(tried[-1], result.solution)
+                tried.append(driven(rest, _with_notes(again, (*notes, about), share)))
+            except OutOfTime:
+                break
+        best = min(tried, key=lambda one: len(one.planned.trajectory.unplanned))
+        subject, result, painting, planned = best.subject, best.result, best.painting, best.planned
         built = painting.built
-        with clock.timed("motion"):
-            planned = plan_motion(
-                built,
-                painting.painted,
-                painting.normals,
-                pattern=pattern or DEFAULT_PATTERN,
-                deadline=deadline,
-                progress=progress,
-                on_paths=lambda paths, measures: has(paths=paths, measures=measures),
-            )
         solution = result.solution
         with clock.timed("judging"):
             verdict = check_trajectory(
@@ -165,6 +190,36 @@ def plan(
         verdict,
         clock.seconds,
         answered,
+    )
+
+
+@dataclass(frozen=True)
+class _Driven:
+    """A division that was painted and driven, whatever became of the moves between strokes."""
+
+    subject: Subject
+    result: Result
+    painting: ScenePainting
+    planned: MotionPlan
+
+
+def _without_cut_off(driven: _Driven) -> Subject | None:
+    """The surface without the colors to which no way was found; None if that changes nothing."""
+    built = driven.painting.built
+    surface = built.surface.without_colors(driven.planned.cut_off)
+    if surface.vertex_colors == built.surface.vertex_colors:
+        return None
+    return Subject(driven.subject.path, replace(built, surface=surface), surface)
+
+
+def _cut_off_in_words(driven: _Driven, whole: Solution) -> str:
+    names = [driven.painting.built.surface.colors[color] for color in driven.planned.cut_off]
+    least = f"{whole.lift_offs} lift-offs are " + (
+        "proved" if whole.proved_for_surface else "known"
+    )
+    return (
+        f"The arm found no way to what it would do in {listed(names)}, so there is a division "
+        f"that does without, wherever it can; with all colors {least}."
     )
 
 

@@ -22,7 +22,9 @@ from cellcolor.motion.order import ordered
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.segment import Ground, SegmentStrokes, strokes_of
 from cellcolor.motion.small_triangles import SmallTriangles, corner_states
+from cellcolor.motion.strokes import Stroke
 from cellcolor.motion.transfers import Transfers
+from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.cover import Covered, check_spacing, cover
 from cellcolor.tool_paths.measures import PathMeasures, in_all
@@ -42,6 +44,8 @@ class MotionPlan:
         in_all: of all together.
         trajectory: the arm on them.
         walls: mesh edges that the paths do not cross so that joints stay inside their limits.
+        cut_off: the colors of the strokes that no planned moves join to the home position, or
+            to most of the other strokes without one.
         seconds: wall time of each stage.
     """
 
@@ -50,6 +54,7 @@ class MotionPlan:
     in_all: PathMeasures
     trajectory: Trajectory
     walls: tuple[tuple[int, int], ...]
+    cut_off: tuple[int, ...]
     seconds: dict[str, float] = field(compare=False)
 
 
@@ -155,7 +160,30 @@ def plan_motion(
         in_all(measures, motion.spacing_m),
         trajectory,
         tuple(edge for segment in covered if segment.walls for edge in segment.walls.edges),
+        _cut_off(strokes, transfers, color_of, planner.home is not None),
         clock.seconds,
+    )
+
+
+def _cut_off(
+    strokes: Sequence[Stroke], transfers: Sequence[Transfer], color_of: Sequence[int], home: bool
+) -> tuple[int, ...]:
+    """See :attr:`MotionPlan.cut_off`; the first and the last move lead from and to home."""
+    gaps = [transfer.gap is not None for transfer in transfers]
+    group = np.cumsum(gaps[:-1])  # of each stroke: how many gaps are before it
+    if home:
+        group[group == group[-1] + gaps[-1]] = 0  # what leads home begins there as well
+        main = 0
+    else:
+        main = int(np.bincount(group, [len(stroke) for stroke in strokes]).argmax())
+    return tuple(
+        sorted(
+            {
+                color_of[stroke.segment]
+                for stroke, own in zip(strokes, group.tolist(), strict=True)
+                if own != main
+            }
+        )
     )
 
 

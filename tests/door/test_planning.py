@@ -10,9 +10,11 @@ from shipped import shipped
 
 import cellcolor
 import cellcolor.frontend.prepared
+from cellcolor.arrays import Array
 from cellcolor.door.plan_files import KINDS
 from cellcolor.errors import InputError
 from cellcolor.frontend.prepared import PreparedScene
+from cellcolor.motion.ways import Transfer, Ways
 
 
 def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
@@ -38,6 +40,36 @@ def test_a_scene_is_planned_and_judged(tmp_path: Path) -> None:
     again = cellcolor.check(scene, tmp_path / "folder" / "trajectory.json")
     assert again.valid
     assert again.covered == planned.verdict.covered
+
+
+@pytest.mark.second
+def test_a_division_does_without_colors_that_no_way_leads_to(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """The wok has a division with as few segments without each of its colors."""
+    scene = shipped("wok", 200)
+    plain = cellcolor.plan(scene, spacing_m=0.05)
+    whole = plain.built.surface
+    used = sorted({one for one in plain.painted.plan.vertex_colors if one is not None})
+    color = used[1]
+    known = plain.built.configurations[:, plain.built.color_branch[color]]
+    known = known[np.isfinite(known[:, 0])]
+    between = Ways.between
+
+    def shut_off(ways: Ways, start: Array, end: Array, rounds: int) -> Transfer:
+        for at in (start, end):
+            if ways.space.largest(ways.space.step(known, at)).min() < 0.3:
+                return Transfer(np.array([start, end]), 0, "a wall")
+        return between(ways, start, end, rounds)
+
+    monkeypatch.setattr(Ways, "between", shut_off)
+    planned = cellcolor.plan(scene, spacing_m=0.05)
+    assert not planned.trajectory.unplanned
+    assert planned.verdict.valid, planned.verdict.faults
+    assert planned.trajectory.lift_offs == planned.solution.lift_offs == 1
+    assert planned.solution.proved_for_surface
+    (note,) = [note for note in planned.solution.notes if "found no way" in note]
+    assert whole.colors[color] in note and "1 lift-offs are proved" in note
 
 
 def test_a_scene_is_prepared_once(monkeypatch: pytest.MonkeyPatch) -> None:
