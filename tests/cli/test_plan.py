@@ -60,7 +60,9 @@ def asked(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     def motion(built: Any, *_: Any, **options: Any) -> Any:
         seen.update(options, motion=built.prepared.setup.motion, built=built)
         trajectory = replace(made.trajectory, unplanned=seen["unplanned"], extra_lift_offs=())
-        return SimpleNamespace(paths=made.paths, measures=made.measures, trajectory=trajectory)
+        return SimpleNamespace(
+            paths=made.paths, measures=made.measures, trajectory=trajectory, cut_off=()
+        )
 
     def verdict(*_: Any, **options: Any) -> TrajectoryVerdict:
         seen.update(options)
