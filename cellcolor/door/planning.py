@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cellcolor.data.objective import FEWEST_SEGMENTS
-from cellcolor.data.solution import Solution
 from cellcolor.data.wording import listed
 from cellcolor.deadline import Deadline, OutOfTime, TimeLimit
 from cellcolor.door.asking import explain, tradeoff
@@ -149,16 +148,17 @@ def plan(
             return _Driven(subject, result, painting, planned)
 
         tried = [driven(subject, result)]
-        while len(tried) < _DIVISIONS:
+        least = tried[0].result.solution  # the proof with all colors, which has to hold
+        while least.proved_for_surface and len(tried) < _DIVISIONS:
             rest = _without_cut_off(tried[-1])
             if rest is None:
                 break
             try:
                 with clock.timed("fewest segments"):
                     again = solve(rest, time_limit=deadline.share(_FOR_SOLVING))
-                if again.solution.cells is None:
+                if again.solution.lift_offs != least.lift_offs:
                     break
-                about = _cut_off_in_words(tried[-1], result.solution)
+                about = _cut_off_in_words(tried[-1])
                 tried.append(driven(rest, _with_notes(again, (*notes, about), share)))
             except OutOfTime:
                 break
@@ -212,14 +212,11 @@ def _without_cut_off(driven: _Driven) -> Subject | None:
     return Subject(driven.subject.path, replace(built, surface=surface), surface)
 
 
-def _cut_off_in_words(driven: _Driven, whole: Solution) -> str:
+def _cut_off_in_words(driven: _Driven) -> str:
     names = [driven.painting.built.surface.colors[color] for color in driven.planned.cut_off]
-    least = f"{whole.lift_offs} lift-offs are " + (
-        "proved" if whole.proved_for_surface else "known"
-    )
     return (
-        f"The arm found no way to what it would do in {listed(names)}, so there is a division "
-        f"that does without, wherever it can; with all colors {least}."
+        f"The arm found no way to what it would do in {listed(names)}, so this division does "
+        "without, wherever it can. As many lift-offs are proved with all colors."
     )
 
 
