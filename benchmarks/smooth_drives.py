@@ -1,20 +1,21 @@
-"""How evenly drives go: ``python benchmarks/smooth_drives.py [SCENE …]``, a row each.
+"""How evenly drives go: ``python benchmarks/smooth_drives.py [--jerk N] [SCENE …]``, a row each.
 
-Within strokes: the share of time above 90 % of the speed asked for; turns over 60 degrees in a
-meter; near-stops, which are stretches below a tenth of the speed, more than 0.3 s from both ends of
-a stroke. Of the whole drive: the jerk of joints that 99 % stay below, by third differences every
-8 ms. docs/measured/motions.md has what came out.
+``--jerk`` limits the jerks of all joints, rad/s³. Within strokes: the share of time above 90 % of
+the speed asked for; turns over 60 degrees in a meter; near-stops, which are stretches below a tenth
+of the speed, more than 0.3 s from both ends of a stroke. Of the whole drive: the jerk of joints
+that 99 % stay below, by third differences every 8 ms. docs/measured/motions.md has what came out.
 """
 
 from __future__ import annotations
 
-import sys
+import argparse
 
 import numpy as np
 
 import cellcolor
 from cellcolor.data.trajectory import Trajectory
 
+SCENES = ["square", "wok", "hemisphere_flat", "bracket"]
 SPEED = 0.05  # m/s, as in the setup
 END, EVERY = 0.3, 0.008  # s
 
@@ -45,11 +46,18 @@ def measures(trajectory: Trajectory) -> tuple[float, float, int, float]:
 
 def main() -> None:
     """Print the table."""
-    print("| scene | time above 90 % of the speed | turns in 1 m | near-stops | jerk, rad/s³ |")
-    print("|---|--:|--:|--:|--:|")
-    for scene in sys.argv[1:] or ["square", "wok", "hemisphere_flat", "bracket"]:
-        share, turns, stops, jerk = measures(cellcolor.plan(scene).trajectory)
-        print(f"| {scene} | {share:.1%} | {turns:.1f} | {stops} | {jerk:,.0f} |", flush=True)
+    parser = argparse.ArgumentParser()
+    parser.add_argument("scenes", nargs="*", default=SCENES)
+    parser.add_argument("--jerk", type=float)
+    asked = parser.parse_args()
+    limit = {} if asked.jerk is None else {"joint_jerks_rad_per_s3": [asked.jerk] * 6}
+    print("| scene | valid | s | time above 90 % of the speed | turns in 1 m | near-stops | jerk |")
+    print("|---|---|--:|--:|--:|--:|--:|")
+    for scene in asked.scenes:
+        plan = cellcolor.plan(scene, **limit)
+        share, turns, stops, jerk = measures(plan.trajectory)
+        row = f"{plan.verdict.valid} | {plan.trajectory.times[-1]:.1f} | {share:.1%} | {turns:.1f}"
+        print(f"| {scene} | {row} | {stops} | {jerk:,.0f} |", flush=True)
 
 
 if __name__ == "__main__":

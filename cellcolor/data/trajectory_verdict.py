@@ -18,6 +18,7 @@ FaultKind = Literal[
     "joint limit",
     "velocity",
     "acceleration",
+    "jerk",
     "pose",
     "off surface",
     "dragged",

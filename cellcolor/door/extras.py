@@ -27,7 +27,6 @@ _EXTRAS = {
     "gpytoolbox": "parts",
     "ompl": "motion",
     "potpourri3d": "motion",
-    "toppra": "motion",
     "mcap": "motion",
 }
 DISTRIBUTIONS = (
@@ -40,7 +39,6 @@ DISTRIBUTIONS = (
         "EAIK",
         "ompl",
         "potpourri3d",
-        "toppra",
         "mcap",
     ),
     *("gpytoolbox", "matplotlib", "plotly"),

@@ -35,6 +35,7 @@ _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
 _FAMILIES = ("ur", "eaik")
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "ompl")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
+_JERK = 1000.0  # rad/s^3, an example
 _MOST_ASKED = 300  # vertices of the part, wherever it is tried
 _FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
 """Places that are tried: of the part's middle before the robot, and of its lowest point above the
@@ -178,6 +179,7 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
         "touching": "[]",
         "velocities": "",
         "accelerations": json.dumps([_ACCELERATION] * _JOINTS),
+        "jerks": json.dumps([_JERK] * _JOINTS),
         "joints": "",
         "home": "",
     }
@@ -317,6 +319,7 @@ def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
     robot = prepared.robot
     return {
         "accelerations": json.dumps([_ACCELERATION] * robot.joints),
+        "jerks": json.dumps([_JERK] * robot.joints),
         "velocities": _velocities(robot),
         "home": "# home_rad = []" if home is None else f"home_rad = {json.dumps(home)}",
         "joints": ", ".join(robot.joint_names),

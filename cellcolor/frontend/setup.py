@@ -273,6 +273,7 @@ class Motion(Table):
     ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
     ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
     A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
+    ``joint_jerks_rad_per_s3`` limits how fast accelerations change; without it nothing does.
     Lists of joints go from base to tool, with m in the place of rad for prismatic ones;
     ``home_rad`` is where the arm begins and ends, nowhere in particular without it. ``"free"`` asks
     for a free position, which is found.
@@ -283,6 +284,7 @@ class Motion(Table):
     speed_m_per_s: Positive = 0.05
     joint_velocities_rad_per_s: tuple[Positive, ...] | None = None
     joint_accelerations_rad_per_s2: tuple[Positive, ...]
+    joint_jerks_rad_per_s3: tuple[Positive, ...] | None = None
     approach_speed_m_per_s: Positive | None = None
     retract_m: Positive = 0.05
     clearance_m: NotNegative = 0.005

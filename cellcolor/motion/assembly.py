@@ -16,7 +16,7 @@ from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.motion.retraced import retraced, stretches
 from cellcolor.motion.strokes import Stroke
-from cellcolor.motion.timing import Speeds, timed
+from cellcolor.motion.timing import Speeds, timed, within_jerks
 from cellcolor.motion.ways import Transfer
 
 _NEAR = 0.01  # m, of the tip's way to and from contact, on which it keeps to the approach speed
@@ -111,12 +111,12 @@ def assembled(
         rows.add(times, stroke.joints, stroke.points, stroke.normals, stroke.segment)
         rows.now = float(times[-1])
         last_of[stroke.segment] = rows.count - 1
-    segment = np.concatenate(rows.segments)
+    segment, joints = np.concatenate(rows.segments), np.concatenate(rows.joints)
     return Trajectory(
         name=name,
         joint_names=robot.joint_names,
-        times=np.concatenate(rows.times),
-        joints=np.concatenate(rows.joints),
+        times=within_jerks(np.concatenate(rows.times), joints, speeds),
+        joints=joints,
         points=np.concatenate(rows.points),
         normals=np.concatenate(rows.normals),
         contact=segment >= 0,

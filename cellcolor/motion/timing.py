@@ -1,32 +1,34 @@
-"""Timing of the arm: as fast as the tool's speed and the joints' limits allow (TOPP-RA).
+"""Timing of the arm: as fast as the tool's speed and the joints' limits allow.
 
-Pham and Pham, A new approach to time-optimal path parameterization based on reachability
-analysis, 2018. Between two samples every joint moves in proportion to time, so derivatives along
-the way are differences of samples, and limits hold for what is written down: velocities between
-samples, their change from one step to the next over the time from middle to middle, and how far
-the velocity of a step is off the mean of its two neighbors'.
+Between two samples every joint moves in proportion to time, so limits hold for what is written
+down: the velocity of each step, how much it differs from that of the next over the time from middle
+to middle, and how far it is off the mean of its two neighbors'. Jerks are those of
+:func:`least_jerks`.
+
+Velocities and their changes are planned in two sweeps, backward and forward, each of which makes
+every step as fast as its neighbor allows: the fastest way where all limits have that form
+(Consolini, Locatelli, Minari, Nagy and Vajk, Optimal time-complexity speed planning for robot
+manipulators, 2019).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from itertools import pairwise
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from cellcolor.arrays import Array
-from cellcolor.errors import RefusedResult
+from cellcolor.arrays import Array, Index
 
-_STEP = 0.01  # of the path's parameter, about, per sample; TOPP-RA's tolerances suit such a scale
 _LEAST = 0.001  # s, of a step; where neither tool nor joints move
-_UNEVEN = 30.0  # times longer and shorter than the median step is a step of the parameter at most
-_ROUNDS = 12  # of TOPP-RA; then what is still too fast is stretched
-_EXACT = 6  # of these rounds slow down by what the accelerations ask for, later ones by more
-_STRETCHES = 30  # of it, with what is around; then the whole motion is
-_AROUND = 121  # samples
+_MARGIN = 0.995  # of the accelerations; the sweeps take neighboring steps for about equally long
+_ROUNDS = 60  # of sweeps; 5 to 15 are enough on sharp edges
+_MARGIN_OF_JERKS = 0.98  # other choices of samples say a little more
+_CYCLE = 0.008  # s, of a controller; jerks are measured over no less
+_AROUND = 9  # samples; slowing down for a jerk spreads over so many, or it would be a jerk itself
+_STRETCHES = 200  # of what jerks too much; most drives need fewer than 30
 _MORE = 1.001  # times longer than needed, for rounding
-_MARGIN = 0.97  # of the accelerations; differences of samples exceed the derivatives a little
 
 
 @dataclass(frozen=True)
@@ -36,25 +38,24 @@ class Speeds:
     Attributes:
         velocities: (joints,) rad/s or m/s.
         accelerations: (joints,) rad/s^2 or m/s^2.
+        jerks: (joints,) rad/s^3 or m/s^3; None without a limit.
     """
 
     velocities: Array
     accelerations: Array
+    jerks: Array | None = None
 
 
 def timed(
     joints: Array, speeds: Speeds, points: Array | None = None, tool_speed: float | Array = np.inf
 ) -> Array:
-    """Times (k,) of the samples of a motion from rest to rest, from 0 on, s.
+    """Times (k,) of the samples of a motion from rest to rest, from 0 on, s; jerks are not limited.
 
     Args:
         joints: (k, joints) rad or m, unwound, neighbors near each other.
         speeds: of the joints.
         points: (k, 3) where the tip is, m; only with a speed of the tool.
         tool_speed: the tool goes no faster, m/s; one number, or one for each step (k - 1,).
-
-    Raises:
-        RefusedResult: no times were found, which for a motion from rest to rest is a bug.
     """
     if len(joints) < 2:
         return np.zeros(len(joints))
@@ -63,28 +64,17 @@ def timed(
     if points is not None:
         least = np.maximum(least, np.linalg.norm(np.diff(points, axis=0), axis=1) / tool_speed)
     least = np.maximum(least, _LEAST)
-    if len(joints) < 3:  # no sample between rest and rest
-        return _kept(np.array([0.0, *least * 2]), joints, speeds)
-    # The parameter grows as time does at full speed. Were it the sample's number, the arm would
-    # seem to jerk wherever samples get closer.
-    spans = _STEP * np.clip(least / np.median(least), 1 / _UNEVEN, _UNEVEN)
-    fastest = spans / least
-    # At a sample the steps on both sides of it have to be possible.
-    cap = np.minimum(np.append(fastest, np.inf), np.insert(fastest, 0, np.inf))
-    for number in range(_ROUNDS):
-        rates = _rates(joints, spans, cap, speeds)
-        steps = np.maximum(2 * spans / (rates[1:] + rates[:-1]), least)
-        times = np.concatenate([[0.0], np.cumsum(steps)])
-        # In sharp bends the differences say more than the derivatives do: slower just there.
+    cap = np.ones(len(least))
+    for _ in range(_ROUNDS):
+        squares = _swept(joints, least, cap, _MARGIN * speeds.accelerations)
+        times = np.concatenate([[0.0], np.cumsum(least / np.sqrt(squares))])
         excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
         if excess.max() <= 1.0:
-            break
-        slower = np.maximum(excess / _MARGIN, 1.0) ** (0.5 if number < _EXACT else 1.0)
-        around = np.maximum(
-            slower, np.maximum(np.append(slower[1:], 1), np.insert(slower[:-1], 0, 1))
-        )
-        cap = np.where(around > 1.0, np.minimum(cap, rates / around), cap)
-    return _kept(times, joints, speeds)
+            return times
+        slower = np.maximum(excess / _MARGIN, 1.0)
+        slower = np.maximum(slower[1:], slower[:-1])
+        cap = np.where(slower > 1.0, np.minimum(cap, squares / slower), cap)
+    return np.asarray(times * np.sqrt(excess.max()))
 
 
 def accelerations(times: Array, joints: Array) -> Array:
@@ -111,60 +101,100 @@ def accelerations(times: Array, joints: Array) -> Array:
     return np.asarray(least)
 
 
-def _kept(times: Array, joints: Array, speeds: Speeds) -> Array:
-    """The times, stretched around where an acceleration is still too large, or else all alike."""
+def least_jerks(times: Array, joints: Array) -> tuple[Array, Index, Index]:
+    """The least jerks of a motion from rest to rest, each by four samples a cycle or more apart.
+
+    No smooth motion through four samples has less everywhere: six times their third divided
+    difference is a mean of the jerks between the first and the last. The arm rests before the first
+    sample of the motion and after its last one.
+
+    Returns:
+        (n, joints) rad/s^3 or m/s^3, and the samples (n,) from which and to which.
+    """
+    count, pause = len(times), _CYCLE * np.arange(1, 4)
+    times = np.concatenate([times[0] - pause[::-1], times, times[-1] + pause])
+    joints = np.concatenate([joints[[0, 0, 0]], joints, joints[[-1, -1, -1]]])
+    rows = [np.arange(len(times))]
+    for _ in range(3):
+        rows = [some[rows[-1] < len(times)] for some in rows]
+        rows.append(np.searchsorted(times, times[rows[-1]] + _CYCLE * (1 - 1e-9)))
+    rows = [some[rows[-1] < len(times)] for some in rows]
+    differences = [joints[some] for some in rows]
+    for order in range(1, 4):
+        differences = [
+            (after - before) / (times[rows[k + order]] - times[rows[k]])[:, None]
+            for k, (before, after) in enumerate(pairwise(differences))
+        ]
+    first, last = (np.clip(some - 3, 0, count - 1) for some in (rows[0], rows[-1]))
+    return 6 * np.abs(differences[0]), first, last
+
+
+def within_jerks(times: Array, joints: Array, speeds: Speeds) -> Array:
+    """The times (k,) of a motion from rest to rest, slower wherever it jerks too much, s."""
+    if speeds.jerks is None or len(times) < 2:
+        return times
     for _ in range(_STRETCHES):
-        excess = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
+        excess = _excess(times, joints, speeds, _MARGIN_OF_JERKS * speeds.jerks)
         if excess.max() <= 1.0:
             return times
-        longer = np.where(excess > 1.0, np.sqrt(excess) * _MORE, 1.0)
-        # Full around what is too fast, and less and less farther away: that is smooth itself.
+        longer = np.where(excess > 1.0, excess * _MORE, 1.0)
         longer = uniform_filter1d(maximum_filter1d(longer, _AROUND), _AROUND)
         steps = np.diff(times) * np.maximum(longer[1:], longer[:-1])
-        times = np.concatenate([[0.0], np.cumsum(steps)])
-    most = float((accelerations(times, joints) / speeds.accelerations).max())
-    return np.asarray(times * max(1.0, np.sqrt(most)))
+        times = times[0] + np.concatenate([[0.0], np.cumsum(steps)])
+    most = float(_excess(times, joints, speeds, _MARGIN_OF_JERKS * speeds.jerks).max())
+    return np.asarray(times[0] + (times - times[0]) * max(1.0, most))
 
 
-def _rates(joints: Array, spans: Array, cap: Array, speeds: Speeds) -> Array:
-    """How fast the parameter grows at each sample (k,), 1/s; ``spans`` (k - 1,) are its steps."""
-    import toppra
-    from toppra.constraint import DiscretizationType, JointAccelerationConstraint, LinearConstraint
-    from toppra.interpolator import AbstractGeometricPath
+def _excess(times: Array, joints: Array, speeds: Speeds, jerks: Array) -> Array:
+    """(k,) how many times longer the steps beside a sample have to be, by jerk or acceleration."""
+    found, first, last = least_jerks(times, joints)
+    jerk = (found / jerks).max(axis=1)
+    excess = np.zeros(len(times))
+    for offset in range(int((last - first).max(initial=0)) + 1):
+        inside = first + offset <= last
+        np.maximum.at(excess, first[inside] + offset, jerk[inside])
+    bent = (accelerations(times, joints) / speeds.accelerations).max(axis=1)
+    return np.asarray(np.maximum(np.cbrt(excess), np.sqrt(bent)))
 
-    toppra.setup_logging("ERROR")
-    grid = np.concatenate([[0.0], np.cumsum(spans)])
-    steps = np.diff(joints, axis=0) / spans[:, None]
-    before, after = np.insert(steps, 0, steps[0], axis=0), np.append(steps, steps[-1:], axis=0)
-    one, other = np.insert(spans, 0, spans[0])[:, None], np.append(spans, spans[-1])[:, None]
-    derivatives: dict[int, Array] = {
-        0: joints,
-        1: (before * other + after * one) / (one + other),
-        2: 2 * (after - before) / (one + other),
-    }
 
-    class Samples(AbstractGeometricPath):  # type: ignore[misc]
-        """The samples as a path that is only ever asked at its samples."""
+def _swept(joints: Array, least: Array, cap: Array, accelerations: Array) -> Array:
+    """The squares (k - 1,) of how fast each step is, as a share of its full speed.
 
-        dof = joints.shape[1]
-        path_interval = np.array([grid[0], grid[-1]])
+    Let a step at full speed have the velocity B and the next one A, and let u and v be the squares
+    of their shares. The acceleration between them is about ((3A - B) v + (A - 3B) u) / 4 by the
+    time from middle to middle at full speed, and exactly that if u = v. Where both terms have the
+    same sign, it is enough that neither step is faster than it could be if both were the same.
+    Else a faster step allows a faster neighbor, so one sweep each way ends with the fastest steps.
 
-        def __call__(self, _positions: Array, order: int = 0) -> Array:
-            return derivatives[order]
-
-    class Cap(LinearConstraint):  # type: ignore[misc]
-        """No faster than the tool's speed and the joints' velocities allow."""
-
-        def compute_constraint_params(self, _path: Any, _grid: Array, *_: Any) -> tuple[Any, ...]:
-            bounds = np.column_stack([np.zeros(len(cap)), cap**2])
-            return None, None, None, None, None, None, bounds
-
-    limit = _MARGIN * np.column_stack([-speeds.accelerations, speeds.accelerations])
-    bend = JointAccelerationConstraint(limit, DiscretizationType.Collocation)
-    solver = toppra.algorithm.TOPPRA(
-        [Cap(), bend], Samples(), gridpoints=grid, solver_wrapper="seidel"
-    )
-    _, rates, _ = solver.compute_parameterization(0.0, 0.0)
-    if rates is None or np.isnan(rates).any():
-        raise RefusedResult("a motion from rest to rest was found to have no times")
-    return np.asarray(rates)
+    Args:
+        joints: (k, joints) rad or m.
+        least: (k - 1,) how long each step takes at full speed, s.
+        cap: (k - 1,) squares at most.
+        accelerations: (joints,) at most.
+    """
+    velocity = np.diff(joints, axis=0) / least[:, None]
+    before, after = velocity[:-1], velocity[1:]
+    middles = ((least[:-1] + least[1:]) / 2)[:, None]
+    squares = cap.copy()
+    with np.errstate(divide="ignore", invalid="ignore"):
+        same = (accelerations * middles / np.abs(after - before)).min(axis=1)
+        squares[1:] = np.minimum(squares[1:], same)
+        squares[:-1] = np.minimum(squares[:-1], same)
+        for end in (0, -1):  # rest on the other side, which takes no time
+            fastest = accelerations * least[end] / 2 / np.abs(velocity[end])
+            squares[end] = min(squares[end], fastest.min())
+        ahead, behind = 3 * after - before, after - 3 * before
+        opposed = ahead * behind < 0
+        ahead, behind = np.abs(ahead), np.abs(behind)
+        room = 4 * accelerations * middles
+        alone_before = np.where(opposed, room / behind, np.inf)
+        alone_after = np.where(opposed, room / ahead, np.inf)
+        slope_before = np.where(opposed, ahead / behind, 0.0)
+        slope_after = np.where(opposed, behind / ahead, 0.0)
+    for k in np.flatnonzero(alone_before.min(axis=1) < squares[:-1])[::-1].tolist():
+        most = (alone_before[k] + slope_before[k] * squares[k + 1]).min()
+        squares[k] = min(squares[k], most)
+    for k in np.flatnonzero(alone_after.min(axis=1) < squares[1:]).tolist():
+        most = (alone_after[k] + slope_after[k] * squares[k]).min()
+        squares[k + 1] = min(squares[k + 1], most)
+    return squares

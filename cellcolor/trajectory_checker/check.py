@@ -186,6 +186,7 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         notes.append("The setup leaves out collisions and joint limits.")
     velocity = robot.velocity
     acceleration: Array | None = None
+    jerk: Array | None = None
     tool_speed, touch_speed = np.inf, np.inf
     if not timed:
         notes.append("There are no times, so velocities and accelerations are not judged.")
@@ -196,9 +197,12 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         touch_speed = setup.motion.approach_speed_m_per_s or np.inf
         lowered = setup.motion.joint_velocities_rad_per_s
         acceleration = np.array(setup.motion.joint_accelerations_rad_per_s2)
+        if setup.motion.joint_jerks_rad_per_s3 is not None and timed:
+            jerk = np.array(setup.motion.joint_jerks_rad_per_s3)
         for key, given in (
             ("joint_velocities_rad_per_s", lowered),
             ("joint_accelerations_rad_per_s2", acceleration),
+            ("joint_jerks_rad_per_s3", setup.motion.joint_jerks_rad_per_s3),
         ):
             if given is not None and len(given) != robot.joints:
                 message = f"needs {robot.joints} numbers, has {len(given)}"
@@ -210,4 +214,6 @@ def _joint_limits(prepared: PreparedScene, timed: bool, notes: list[str]) -> Joi
         names = [robot.joint_names[joint] for joint in np.flatnonzero(np.isnan(velocity))]
         notes.append(f"Without a limit, so velocities are not judged: {', '.join(names)}.")
         velocity = np.where(np.isnan(velocity), np.inf, velocity)
-    return JointLimits(lower, upper, velocity, acceleration, tool_speed, robot.slides, touch_speed)
+    return JointLimits(
+        lower, upper, velocity, acceleration, jerk, tool_speed, robot.slides, touch_speed
+    )

@@ -1,15 +1,16 @@
-"""Times and joints: order, jumps, limits, velocities of joints and tool, accelerations."""
+"""Times and joints: order, jumps, limits, velocities of joints and tool, accelerations, jerks."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from operator import le
 
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.trajectory import Trajectory
+from cellcolor.trajectory_checker.corners import corners
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
+from cellcolor.trajectory_checker.jerks import judge_jerks
 from cellcolor.trajectory_checker.tolerances import (
     ANGLE_ROUNDING,
     BOW,
@@ -28,6 +29,7 @@ class JointLimits:
         lower, upper: rad, or m of a slide; None where the setup leaves limits and collisions out.
         velocity: rad/s or m/s.
         acceleration: rad/s² or m/s²; None where the setup has none.
+        jerk: rad/s³ or m/s³; None where the setup has none.
         tool_speed: of the tip in contact, m/s, no array; infinite where the setup has none.
         slides: which joints are prismatic.
         touch_speed: of the tip on the step onto the surface and on that off it, m/s, no array;
@@ -38,6 +40,7 @@ class JointLimits:
     upper: Array | None
     velocity: Array
     acceleration: Array | None
+    jerk: Array | None
     tool_speed: float
     slides: Mask
     touch_speed: float = np.inf
@@ -100,9 +103,11 @@ def judge_joints(
         ),
         tips,
     )
+    known = ascending & ~jumps.any(axis=1)
     if limits.acceleration is not None and len(passed) > 1:
-        known = ascending & ~jumps.any(axis=1)
         _judge_accelerations(trajectory, known, tips, limits, limits.acceleration, faults)
+    if limits.jerk is not None:
+        judge_jerks(trajectory, known, tips, limits.jerk, units, faults)
     moves: Mask = ~np.any(jumps, axis=1)
     moves[[sample for sample in trajectory.unplanned if sample < len(moves)]] = False
     touching = trajectory.contact[1:] != trajectory.contact[:-1]
@@ -254,30 +259,3 @@ def _note_accelerations(
         ),
         tips,
     )
-
-
-def corners(times: Array, joints: Array) -> Index:
-    """The samples (c,) between which all joints move in proportion to time, up to rounding.
-
-    A sample is left out if the line from the last corner to some later sample passes it, and all
-    that lie between, within a rounding of angles: many samples of a slow bend keep some of them.
-    """
-    kept = [0]
-    # For rows of a few numbers, plain floats are many times faster than arrays.
-    at, rows = times.tolist(), joints.tolist()
-    low, high = [-np.inf] * joints.shape[1], [np.inf] * joints.shape[1]
-    for k, row in enumerate(rows[1:], 1):
-        begin = kept[-1]
-        passed = at[k] - at[begin]
-        slopes = [(there - here) / passed for here, there in zip(rows[begin], row, strict=True)]
-        fits = all(map(le, low, slopes)) and all(map(le, slopes, high))
-        if k > begin + 1 and not fits:
-            kept.append(k - 1)
-            passed = at[k] - at[k - 1]
-            slopes = [(there - here) / passed for here, there in zip(rows[k - 1], row, strict=True)]
-            low, high = [-np.inf] * len(row), [np.inf] * len(row)
-        rounding = ANGLE_ROUNDING / passed
-        low = [max(least, slope - rounding) for least, slope in zip(low, slopes, strict=True)]
-        high = [min(most, slope + rounding) for most, slope in zip(high, slopes, strict=True)]
-    kept.append(len(at) - 1)
-    return np.array(kept)

@@ -18,9 +18,7 @@ from cellcolor.motion.order import ordered
 from cellcolor.motion.samples import Samples, sampled, with_normals_of
 from cellcolor.motion.sampling_planner import sampled_way
 from cellcolor.motion.strokes import Stroke, cut_where_full, trimmed
-from cellcolor.motion.timing import Speeds, _kept, accelerations, timed
 from cellcolor.motion.turns import Visit, chosen_turns
-from examples import examples
 
 ANGLES = st.floats(-3.0, 3.0)
 UP = np.array([0.0, 0.0, 1.0])
@@ -117,82 +115,6 @@ def test_a_stroke_that_winds_is_cut_as_seldom_as_can_be(turned: float, room: flo
         longer = np.concatenate([before.joints, after.joints[1:2]])
         assert not space.fits(longer)
     assert parts[-1].joints[-1] == joints[-1]
-
-
-@examples(12)
-@given(st.integers(0, 10**6), st.integers(2, 60))
-def test_times_keep_velocities_and_accelerations(seed: int, count: int) -> None:
-    rng = np.random.default_rng(seed)
-    corners = rng.uniform(-0.3, 0.3, size=(4, 3))
-    at = np.linspace(0, 3, count)
-    joints = np.column_stack([np.interp(at, np.arange(4), corners[:, j]) for j in range(3)])
-    points = 0.4 * joints
-    speeds = Speeds(np.array([1.0, 0.5, 2.0]), np.array([8.0, 3.0, 5.0]))
-    times = timed(joints, speeds, points, 0.05)
-    steps = np.diff(times)
-    assert times[0] == 0
-    assert steps.min() > 0
-    velocity = np.diff(joints, axis=0) / steps[:, None]
-    assert (np.abs(velocity) <= speeds.velocities * (1 + 1e-9)).all()
-    assert (np.linalg.norm(np.diff(points, axis=0), axis=1) <= 0.05 * steps * (1 + 1e-9)).all()
-    # From rest to rest: before the first step and after the last one nothing moves.
-    whole = np.concatenate([np.zeros((1, 3)), velocity, np.zeros((1, 3))])
-    between = (np.append(steps, 0.0) + np.insert(steps, 0, 0.0)) / 2
-    change = np.diff(whole, axis=0) / between[:, None]
-    assert (np.abs(change) <= speeds.accelerations * (1 + 1e-9)).all()
-
-
-def test_a_straight_way_is_passed_at_the_speed_that_was_asked_for() -> None:
-    joints = np.linspace(0.0, 1.0, 1001)[:, None]
-    points = np.column_stack([joints[:, 0], np.zeros((1001, 2))])
-    times = timed(joints, Speeds(np.array([3.0]), np.array([8.0])), points, 0.05)
-    # 20 s, and 0.05 / 8 s more for speeding up and for slowing down, half of each lost.
-    assert times[-1] == pytest.approx(20 + 0.05 / 8, rel=2e-3)
-
-
-def test_many_sharp_bends_slow_down_only_what_is_beside_them() -> None:
-    """Between them the tool is as fast as was asked for: nothing is stretched as a whole."""
-    rng = np.random.default_rng(1)
-    bends = 200 * np.arange(1, 25)
-    slopes = np.zeros((5000, 6))
-    for start in bends:
-        width = int(rng.integers(2, 20))
-        slopes[start : start + width] = rng.uniform(-0.02, 0.02, (width, 6))
-    joints = np.cumsum(slopes, axis=0)
-    points = np.zeros((5000, 3))
-    points[:, 0] = 0.001 * np.arange(5000)
-    times = timed(joints, Speeds(np.full(6, 3.0), np.full(6, 10.0)), points, 0.05)
-    speeds = 0.001 / np.diff(times)
-    far = np.abs(np.arange(4999)[:, None] - np.array([0, *bends, 4999])).min(axis=1) > 60
-    assert far.sum() > 1000
-    assert speeds[far] == pytest.approx(0.05)
-    velocity = np.diff(joints, axis=0) / np.diff(times)[:, None]
-    change = np.diff(velocity, axis=0) / ((times[2:] - times[:-2]) / 2)[:, None]
-    assert np.abs(change).max() <= 10.0 + 1e-6
-
-
-def test_closer_samples_do_not_slow_down() -> None:
-    """The same smooth way, with eight times as many samples in its middle: the speed stays."""
-    even = np.linspace(0.0, 1.0, 201)
-    closer = np.concatenate([even[:80], np.linspace(0.4, 0.6, 321), even[121:]])
-    for at in (even, closer):
-        joints = np.column_stack([1.5 * np.sin(5 * at), 2 * np.cos(5 * at)])
-        points = np.column_stack([joints, np.zeros(len(at))])
-        times = timed(joints, Speeds(np.full(2, 3.0), np.full(2, 5.0)), points, 0.6)
-        speeds = np.linalg.norm(np.diff(points, axis=0), axis=1) / np.diff(times)
-        assert speeds[5:-5] == pytest.approx(0.6)
-
-
-def test_a_bend_that_stays_too_fast_is_stretched_with_what_is_around_it() -> None:
-    """Not the whole way: far from it the times are those that were given."""
-    joints = 0.001 * np.arange(4000.0)[:, None]
-    joints[2000:] += 0.002  # a jolt
-    times = 0.01 * np.arange(4000.0)
-    speeds = Speeds(np.array([3.0]), np.array([12.0]))
-    kept = _kept(times, joints, speeds)
-    assert accelerations(kept, joints).max() <= 12.0 + 1e-9
-    assert np.diff(kept)[200:1800] == pytest.approx(0.01)
-    assert np.diff(kept)[2000] > 0.011
 
 
 def wall(configurations: np.ndarray) -> np.ndarray:

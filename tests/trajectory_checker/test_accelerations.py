@@ -30,7 +30,7 @@ def driven(times: Array, joint: Array) -> Trajectory:
 
 def faults(trajectory: Trajectory) -> set[FaultKind]:
     limits = JointLimits(
-        None, None, np.array([np.inf]), np.array([MOST]), np.inf, np.zeros(1, bool)
+        None, None, np.array([np.inf]), np.array([MOST]), None, np.inf, np.zeros(1, bool)
     )
     found = FaultList(trajectory, timed=True)
     judge_joints(trajectory, np.asarray(trajectory.points), limits, True, found)

@@ -1,0 +1,160 @@
+"""Times of a motion: limits kept, by computations of the tests' own, and no slower than need be."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import linprog
+
+from cellcolor.motion.timing import Speeds, _swept, least_jerks, timed, within_jerks
+from examples import examples
+
+CYCLE = 0.008  # s
+
+
+@examples(12)
+@given(st.integers(0, 10**6), st.integers(2, 60))
+def test_times_keep_velocities_and_accelerations(seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    corners = rng.uniform(-0.3, 0.3, size=(4, 3))
+    at = np.linspace(0, 3, count)
+    joints = np.column_stack([np.interp(at, np.arange(4), corners[:, j]) for j in range(3)])
+    points = 0.4 * joints
+    speeds = Speeds(np.array([1.0, 0.5, 2.0]), np.array([8.0, 3.0, 5.0]))
+    times = timed(joints, speeds, points, 0.05)
+    steps = np.diff(times)
+    assert times[0] == 0
+    assert steps.min() > 0
+    velocity = np.diff(joints, axis=0) / steps[:, None]
+    assert (np.abs(velocity) <= speeds.velocities * (1 + 1e-9)).all()
+    assert (np.linalg.norm(np.diff(points, axis=0), axis=1) <= 0.05 * steps * (1 + 1e-9)).all()
+    # From rest to rest: before the first step and after the last one nothing moves.
+    whole = np.concatenate([np.zeros((1, 3)), velocity, np.zeros((1, 3))])
+    between = (np.append(steps, 0.0) + np.insert(steps, 0, 0.0)) / 2
+    change = np.diff(whole, axis=0) / between[:, None]
+    assert (np.abs(change) <= speeds.accelerations * (1 + 1e-9)).all()
+
+
+def test_a_straight_way_is_passed_at_the_speed_that_was_asked_for() -> None:
+    joints = np.linspace(0.0, 1.0, 1001)[:, None]
+    points = np.column_stack([joints[:, 0], np.zeros((1001, 2))])
+    times = timed(joints, Speeds(np.array([3.0]), np.array([8.0])), points, 0.05)
+    # 20 s, and 0.05 / 8 s more for speeding up and for slowing down, half of each lost.
+    assert times[-1] == pytest.approx(20 + 0.05 / 8, rel=2e-3)
+
+
+def test_many_sharp_bends_slow_down_only_what_is_beside_them() -> None:
+    """Between them the tool is as fast as was asked for: nothing is stretched as a whole."""
+    rng = np.random.default_rng(1)
+    bends = 200 * np.arange(1, 25)
+    slopes = np.zeros((5000, 6))
+    for start in bends:
+        width = int(rng.integers(2, 20))
+        slopes[start : start + width] = rng.uniform(-0.02, 0.02, (width, 6))
+    joints = np.cumsum(slopes, axis=0)
+    points = np.zeros((5000, 3))
+    points[:, 0] = 0.001 * np.arange(5000)
+    times = timed(joints, Speeds(np.full(6, 3.0), np.full(6, 10.0)), points, 0.05)
+    speeds = 0.001 / np.diff(times)
+    far = np.abs(np.arange(4999)[:, None] - np.array([0, *bends, 4999])).min(axis=1) > 60
+    assert far.sum() > 1000
+    assert speeds[far] == pytest.approx(0.05)
+    velocity = np.diff(joints, axis=0) / np.diff(times)[:, None]
+    change = np.diff(velocity, axis=0) / ((times[2:] - times[:-2]) / 2)[:, None]
+    assert np.abs(change).max() <= 10.0 + 1e-6
+
+
+def test_closer_samples_do_not_slow_down() -> None:
+    """The same smooth way, with eight times as many samples in its middle: the speed stays."""
+    even = np.linspace(0.0, 1.0, 201)
+    closer = np.concatenate([even[:80], np.linspace(0.4, 0.6, 321), even[121:]])
+    for at in (even, closer):
+        joints = np.column_stack([1.5 * np.sin(5 * at), 2 * np.cos(5 * at)])
+        points = np.column_stack([joints, np.zeros(len(at))])
+        times = timed(joints, Speeds(np.full(2, 3.0), np.full(2, 5.0)), points, 0.6)
+        speeds = np.linalg.norm(np.diff(points, axis=0), axis=1) / np.diff(times)
+        assert speeds[5:-5] == pytest.approx(0.6)
+
+
+@examples(30)
+@given(st.integers(0, 10**6), st.integers(2, 20), st.integers(1, 3))
+def test_no_way_within_the_limits_is_faster(seed: int, steps: int, joints: int) -> None:
+    """A linear program over all steps at once finds no larger sum of squares."""
+    rng = np.random.default_rng(seed)
+    way = np.cumsum(rng.normal(size=(steps + 1, joints)) * rng.choice([0.01, 0.1], joints), axis=0)
+    least = rng.uniform(0.01, 0.1, steps)
+    cap = rng.uniform(0.2, 1.0, steps)
+    most = rng.uniform(1.0, 10.0, joints)
+    found = _swept(way, least, cap, most)
+    velocity = np.diff(way, axis=0) / least[:, None]
+    rows, bounds, upper = [], [], cap.copy()
+    for end in (0, -1):  # from rest in half a step, with the step's speed as it is
+        upper[end] = min(upper[end], *(most * least[end] / 2 / np.abs(velocity[end])))
+    for k, (before, after) in enumerate(pairwise(velocity)):
+        middles = (least[k] + least[k + 1]) / 2
+        for joint in range(joints):
+            row = np.zeros(steps)
+            row[k] = (after[joint] - 3 * before[joint]) / 4
+            row[k + 1] = (3 * after[joint] - before[joint]) / 4
+            rows += [row, -row]
+            bounds += [most[joint] * middles] * 2
+            bend = most[joint] * middles / abs(after[joint] - before[joint])
+            upper[k], upper[k + 1] = min(upper[k], bend), min(upper[k + 1], bend)
+    best = linprog(
+        -np.ones(steps),
+        A_ub=np.array(rows) if rows else None,
+        b_ub=bounds or None,
+        bounds=[(0.0, most_of) for most_of in upper],
+    )
+    assert found == pytest.approx(best.x, rel=1e-6, abs=1e-9)
+
+
+@examples(12)
+@given(st.integers(0, 10**6))
+def test_jerks_are_kept_for_whatever_samples_a_cycle_apart(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    turns = rng.uniform(-0.02, 0.02, size=(12, 2))
+    joints = np.cumsum(np.repeat(turns, rng.integers(3, 40, 12), axis=0), axis=0)
+    speeds = Speeds(np.array([1.0, 2.0]), np.array([8.0, 5.0]), np.array([200.0, 90.0]))
+    free = timed(joints, speeds)
+    times = within_jerks(free, joints, speeds)
+    assert (np.diff(times) >= np.diff(free) * (1 - 1e-12)).all()
+    at = np.concatenate([times[0] - CYCLE * np.array([3, 2, 1]), times])
+    at = np.concatenate([at, times[-1] + CYCLE * np.array([1, 2, 3])])
+    rows = np.concatenate([joints[[0, 0, 0]], joints, joints[[-1, -1, -1]]])
+    for begin in range(len(at) - 3):
+        for _ in range(3):
+            chosen = [begin]
+            while len(chosen) < 4:
+                beyond = np.flatnonzero(at >= at[chosen[-1]] + CYCLE)
+                if not len(beyond):
+                    break
+                chosen.append(int(beyond[min(int(rng.integers(0, 3)), len(beyond) - 1)]))
+            if len(chosen) == 4:
+                # The leading coefficient of the cubic through four points is a sixth of its jerk.
+                cubic = np.linalg.solve(np.vander(at[chosen] - at[begin]), rows[chosen])
+                assert (6 * np.abs(cubic[0]) <= speeds.jerks * 1.01).all()
+
+
+def test_a_cubic_has_its_jerk_and_no_limit_changes_no_time() -> None:
+    times = np.sort(np.random.default_rng(3).uniform(0.0, 1.0, 60))
+    found, first, last = least_jerks(times, (7 * times**3 - times)[:, None])
+    inner = (first > 2) & (last < 57)
+    assert inner.any()
+    assert found[inner] == pytest.approx(42.0)
+    speeds = Speeds(np.ones(1), np.ones(1))
+    assert within_jerks(times, times[:, None], speeds) is times
+
+
+def test_sharp_bends_cost_little_where_jerks_are_limited() -> None:
+    """Only what is beside a bend gets slower."""
+    joints = 0.001 * np.abs(np.arange(-2000.0, 2001.0))[:, None]
+    speeds = Speeds(np.array([0.05]), np.array([8.0]), np.array([300.0]))
+    free = timed(joints, speeds)
+    times = within_jerks(free, joints, speeds)
+    assert free[-1] < times[-1] < free[-1] + 0.5
+    assert np.diff(times)[200:1800] == pytest.approx(0.02)
