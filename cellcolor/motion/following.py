@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, cuts
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
@@ -116,11 +116,9 @@ def blocked(prepared: PreparedScene, joints: Array, asked: Mask, deadline: Deadl
     """
     farthest = np.where(prepared.robot.slides, _FAR_SLIDE, _FAR_TURN)
     ways = np.diff(joints, axis=0)
-    pieces = np.ceil((np.abs(ways) / farthest).max(axis=1, initial=0.0) - _ROUNDING)
-    pieces = np.where(asked, np.maximum(pieces, 1), 1).astype(np.int64)
-    step = np.repeat(np.arange(len(ways)), pieces - 1)
-    number = np.arange(len(step)) - np.repeat(np.cumsum(pieces - 1) - (pieces - 1), pieces - 1) + 1
-    between = joints[step] + (number / pieces[step])[:, None] * ways[step]
+    sizes = (np.abs(ways) / farthest).max(axis=1, initial=0.0) - _ROUNDING
+    step, place = cuts(np.where(asked, sizes, 0.0))
+    between = joints[step] + place[:, None] * ways[step]
     found = np.zeros(len(ways), dtype=bool)
     found[step[prepared.judge(between, deadline).reasons != VALID]] = True
     return found

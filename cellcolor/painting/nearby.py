@@ -6,7 +6,7 @@ from functools import cached_property
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, numbered
 from cellcolor.data.surface import LabelledSurface
 
 _RINGS = 19
@@ -82,10 +82,9 @@ def _two_steps(edges: Index, count: int) -> Index:
     degree = np.bincount(start, minlength=count)
     first = np.cumsum(degree) - degree
     # Behind each directed edge (a, b) all edges (b, c).
-    number = degree[end]
-    place = np.arange(number.sum()) - np.repeat(np.cumsum(number) - number, number)
-    behind = end[np.repeat(first[end], number) + place]
-    from_a = np.repeat(start, number)
+    before, place = numbered(degree[end])
+    behind = end[first[end][before] + place]
+    from_a = start[before]
     distinct = from_a != behind
     keys = np.concatenate([start * count + end, from_a[distinct] * count + behind[distinct]])
     keys.sort()

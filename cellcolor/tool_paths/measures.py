@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, numbered
 from cellcolor.mesh.triangle_mesh import grouped
 from cellcolor.tool_paths.rounding import Line
 from cellcolor.tool_paths.triangles import Triangles
@@ -169,9 +169,8 @@ def _sampled(points: Array, normals: Array, longest: float) -> tuple[Array, Arra
     """A path with more points, none farther from the next than asked for."""
     pieces = np.ceil(np.linalg.norm(np.diff(points, axis=0), axis=1) / longest).astype(np.int64)
     pieces = np.maximum(pieces, 1)
-    start = np.repeat(np.arange(len(pieces)), pieces)
-    share = (np.arange(len(start)) - np.repeat(np.cumsum(pieces) - pieces, pieces)) / pieces[start]
-    between = share[:, None]
+    start, number = numbered(pieces)
+    between = (number / pieces[start])[:, None]
     return tuple(  # type: ignore[return-value]
         np.vstack([(1 - between) * rows[start] + between * rows[start + 1], rows[-1:]])
         for rows in (points, normals)

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, cuts
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses
@@ -311,26 +311,14 @@ def sample_mesh(vertices: Array, faces: Faces, slack: float, most: int) -> tuple
     step = float(max(np.sqrt(2) * slack, half + np.sqrt(half**2 + double_area.sum() / (2 * most))))
 
     along_edges = _between(vertices[edges[:, 0]], vertices[edges[:, 1]], lengths, step)
-    face, place = _parts(height, step)
+    face, place = cuts(height / step)
     row_start = a[face] + place[:, None] * (c - a)[face]
     row_end = b[face] + place[:, None] * (c - b)[face]
     on_rows = _between(row_start, row_end, np.linalg.norm(row_end - row_start, axis=1), step)
     return np.concatenate([vertices, along_edges, row_start, row_end, on_rows]), step / np.sqrt(2)
 
 
-def _parts(lengths: Array, step: float) -> tuple[Faces, Array]:
-    """Where to cut lengths (k,) into the fewest equal parts of at most ``step``.
-
-    Returns:
-        which length, and at what part of it (0 to 1, ends left out).
-    """
-    counts = np.maximum(np.ceil(lengths / step).astype(np.int64), 1)
-    which = np.repeat(np.arange(len(counts)), counts - 1)
-    number = np.arange(len(which)) - np.repeat(np.cumsum(counts - 1) - (counts - 1), counts - 1) + 1
-    return which, number / counts[which]
-
-
 def _between(start: Array, end: Array, lengths: Array, step: float) -> Array:
     """Points inside segments (k, 3), at most ``step`` from each other and from the ends."""
-    which, place = _parts(lengths, step)
+    which, place = cuts(lengths / step)
     return np.asarray(start[which] + place[:, None] * (end - start)[which])

@@ -11,7 +11,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, numbered
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.collision import HalfSpace, longest_steps
@@ -79,10 +79,9 @@ class Tip:
         step = float(longest_steps(np.array([body.radius]))[0])
         pieces = np.maximum(np.ceil(way / step).astype(int), 1)
         for part in batches(pieces, _POINT):
-            count = pieces[part]
-            row = np.repeat(rows[part], count)
-            number = np.arange(len(row)) - np.repeat(np.cumsum(count) - count, count)
-            points, directions = along_edges(surface, edges[row], number / np.repeat(count, count))
+            which, number = numbered(pieces[part])
+            row = rows[part][which]
+            points, directions = along_edges(surface, edges[row], number / pieces[part][which])
             free[row[self.blocked(points, directions)]] = False
         return free
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.memory import chunks
@@ -34,8 +34,7 @@ def crossing_pairs(vertices: Array, faces: Faces, deadline: Deadline = NEVER) ->
     entries = spans.prod(axis=1)
     if entries.sum() > _MOST_PLACES:
         return None
-    face = np.repeat(np.arange(len(faces)), entries)
-    rank = np.arange(len(face)) - np.repeat(np.cumsum(entries) - entries, entries)
+    face, rank = numbered(entries)
     cell = first[face]
     for axis in (2, 1, 0):
         rank, step = np.divmod(rank, spans[face, axis])

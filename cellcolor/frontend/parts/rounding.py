@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import SHARP, Surface
@@ -113,10 +113,9 @@ class _Around:
         chord = self.unit[sides[:, 0] // 3] - self.unit[sides[:, 1] // 3]
         ends = mesh.points[mesh.edges[edges[np.linalg.norm(chord, axis=1) > _BENT]]]
         # Points on the edges, none of them farther than half the radius from the next.
-        number = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / radius * 2).astype(int)
-        edge = np.repeat(np.arange(len(ends)), number + 1)
-        step = np.arange(len(edge)) - np.repeat(np.cumsum(number + 1) - number - 1, number + 1)
-        at = (step / np.repeat(number, number + 1))[:, None]
+        steps = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / radius * 2).astype(int)
+        edge, step = numbered(steps + 1)
+        at = (step / steps[edge])[:, None]
         points = (1 - at) * ends[edge, 0] + at * ends[edge, 1]
         if not len(points):
             return np.zeros(len(self.surface.vertices), dtype=bool)

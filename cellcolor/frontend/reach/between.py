@@ -12,7 +12,7 @@ from collections.abc import Callable, Iterable
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, numbered
 from cellcolor.frontend.parts.surface import Surface, along_edges
 from cellcolor.memory import batches, check_memory
 
@@ -101,7 +101,7 @@ def remains_valid(
             if rounds == _ROUNDS:
                 result[rows] = False
                 continue
-            number, part = _numbered(count + 1)
+            part, number = numbered(count + 1)
             inner = (number > 0) & (number < count[part])
             row, way = rows[part], low[part] + (high - low)[part] * number / count[part]
             places = np.empty((len(near), len(row), 3))
@@ -120,9 +120,3 @@ def remains_valid(
                 for p in batches(count + 1, each)
             ]
     return result
-
-
-def _numbered(counts: Index) -> tuple[Index, Index]:
-    """Items of groups of given sizes, one after the other: number in the group, and group."""
-    group = np.repeat(np.arange(len(counts)), counts)
-    return np.arange(len(group)) - np.repeat(np.cumsum(counts) - counts, counts), group
