@@ -35,17 +35,31 @@ _ROOM = 0.999  # of the largest steps, for rounding
 
 
 @dataclass(frozen=True)
-class _Turned:
-    """Strokes with their turns, and the moves without contact before, between and after them.
+class _Reachable:
+    """A stroke that begins and ends where the arm can leave it, as far as it can anywhere.
+
+    Attributes:
+        onto: (k, joints) the retreat from the first sample, which is driven backwards.
+        off: (k, joints) the retreat from the last sample.
+    """
+
+    stroke: Stroke
+    onto: Array
+    off: Array
+
+
+@dataclass(frozen=True)
+class _Attempt:
+    """Strokes turned by full circles, and the moves without contact before, between and after them.
 
     Attributes:
         circles: of each stroke, the full circles (joints,) that it is turned by.
-        ways: of each move, the retreats (k, joints) that it begins and ends with.
+        retreats: of each move, those (k, joints) that it begins and ends with.
     """
 
     circles: Sequence[Index]
     strokes: list[Stroke]
-    ways: list[tuple[Array, Array]]
+    retreats: list[tuple[Array, Array]]
     transfers: list[Transfer]
 
     @property
@@ -74,17 +88,23 @@ class Transfers:
         self._motion, self._velocities = motion, velocities
         self._leaving = FreeSpace(prepared, 0.0, leaving=True)
         self.home = home_of(prepared, motion)
+        # The retreat at home has no length; without a home there is nothing to move from.
+        self._at_home = np.empty((0, prepared.robot.joints))
+        if self.home is not None:
+            self._at_home = self.home[None]
         self._ways = Ways(prepared, motion, velocities, self.home, seed, deadline)
         self._space = self._ways.space
+        # By the bytes of both ends: what share of a straight move is blocked; moves without a way.
         self._shares: dict[bytes, float] = {}
         self._hopeless: set[bytes] = set()
 
     def between_strokes(self, strokes: Sequence[Stroke]) -> tuple[list[Stroke], list[Transfer]]:
-        """The strokes with ends and turns fixed, and all motions without contact.
+        """The strokes with their ends and turns chosen, and all motions without contact.
 
         These are the way to the first stroke, those between strokes, and the way from the last
         one. Without a home position the first begins, and the last ends, where the tool is
-        retracted.
+        retracted. Turns are chosen again while some move has no way: others may be as quick. The
+        moves that are left then are planned once more with more effort.
 
         Args:
             strokes: in their order.
@@ -92,90 +112,59 @@ class Transfers:
         Raises:
             OutOfTime: the deadline came first.
         """
-        left = [self._left(stroke) for stroke in strokes]
-        strokes = [stroke for stroke, _, _ in left]
-        onto, off = [way for _, way, _ in left], [way for _, _, way in left]
-        space, home = self._space, self.home
-        visits = []
-        for way_on, stroke, way_off in zip(onto, strokes, off, strict=True):
-            span = np.concatenate([way_on, stroke.joints, way_off])
-            if not space.fits(span):
-                span = stroke.joints
-            visits.append(Visit(way_on[-1], way_off[-1], span))
-        tried: list[_Turned] = []
+        reachable = [self._reachable(stroke) for stroke in strokes]
+        visits = [self._visit(one) for one in reachable]
+        tried: list[_Attempt] = []
         for _ in range(_ATTEMPTS):
-            circles = chosen_turns(visits, home, space, self._velocities, self._detour)
+            circles = chosen_turns(visits, self.home, self._space, self._velocities, self._detour)
             if any(np.array_equal(circles, before.circles) for before in tried):
                 break
-            tried.append(self._with_turns(strokes, onto, off, circles))
-            gaps = tried[-1].gaps
-            if not gaps:
+            tried.append(self._attempt(reachable, circles))
+            if not tried[-1].gaps:
                 break
-            # Other turns may be as quick, and lead where there is a way.
-            ends = np.array([own.end for own in visits]) + space.period * circles
-            starts = np.array([own.start for own in visits]) + space.period * circles
-            if home is not None:
-                starts, ends = np.vstack([starts, home]), np.vstack([home, ends])
-            else:
-                starts, gaps = starts[1:], [gap - 1 for gap in gaps]
-            self._hopeless |= {ends[gap].tobytes() + starts[gap].tobytes() for gap in gaps}
+            shifts = [self._space.period * own for own in circles]
+            begins = [one.start + shift for one, shift in zip(visits, shifts, strict=True)]
+            ends = [one.end + shift for one, shift in zip(visits, shifts, strict=True)]
+            begins, ends = [*begins, self._at_home.ravel()], [self._at_home.ravel(), *ends]
+            self._hopeless |= {_key(ends[gap], begins[gap]) for gap in tried[-1].gaps}
         best = min(tried, key=lambda one: len(one.gaps))
+        transfers = list(best.transfers)
         for gap in best.gaps:
             rounds = max(FEW_ROUNDS, MANY_ROUNDS // len(best.gaps))
-            best.transfers[gap] = self._joined(*best.ways[gap], rounds)
-        return best.strokes, best.transfers
+            transfers[gap] = self._joined(*best.retreats[gap], rounds)
+        return best.strokes, transfers
 
-    def _with_turns(
-        self,
-        strokes: Sequence[Stroke],
-        onto: Sequence[Array],
-        off: Sequence[Array],
-        circles: Sequence[Index],
-    ) -> _Turned:
-        """The strokes and their retreats turned by full circles, and the moves between them."""
-        space, home = self._space, self.home
-        turned = [stroke.turned(own, space) for stroke, own in zip(strokes, circles, strict=True)]
-        onto, off = (
-            [self._high(way + space.period * own) for way, own in zip(ways, circles, strict=True)]
-            for ways in (onto, off)
-        )
-        ends = [
-            (way[-1], stroke.branch)
-            for ways in (onto, off)
-            for way, stroke in zip(ways, turned, strict=True)
-        ]
-        self._ways.pass_near(ends)
-        if home is not None:
-            onto, off = [*onto, home[None]], [home[None], *off]
-            ways = list(zip(off, onto, strict=True))
-            return _Turned(circles, turned, ways, [self._joined(*pair) for pair in ways])
-        ways = list(zip(off[:-1], onto[1:], strict=True))
-        between = [self._joined(*pair) for pair in ways]
-        whole = [Transfer(onto[0][::-1]), *between, Transfer(off[-1])]
-        return _Turned(circles, turned, [(onto[0], off[0]), *ways], whole)
+    def _visit(self, one: _Reachable) -> Visit:
+        """What has to fit into the limits: the retreats too, if full circles can bring them in."""
+        span = np.concatenate([one.onto, one.stroke.joints, one.off])
+        if not self._space.fits(span):
+            span = one.stroke.joints
+        return Visit(one.onto[-1], one.off[-1], span)
 
-    def _left(self, stroke: Stroke) -> tuple[Stroke, Array, Array]:
-        """A stroke that begins and ends where the arm can leave it, and both retreats.
+    def _attempt(self, reachable: Sequence[_Reachable], circles: Sequence[Index]) -> _Attempt:
+        """The strokes turned by these full circles, and the moves between them."""
+        strokes, onto, off = [], [], []
+        for one, own in zip(reachable, circles, strict=True):
+            strokes.append(one.stroke.turned(own, self._space))
+            onto.append(self._within_limits(one.onto + self._space.period * own))
+            off.append(self._within_limits(one.off + self._space.period * own))
+        ends = zip([*onto, *off], [*strokes, *strokes], strict=True)
+        self._ways.pass_near([(way[-1], stroke.branch) for way, stroke in ends])
+        retreats = list(zip([self._at_home, *off], [*onto, self._at_home], strict=True))
+        return _Attempt(circles, strokes, retreats, [self._joined(*pair) for pair in retreats])
+
+    def _reachable(self, stroke: Stroke) -> _Reachable:
+        """A stroke that begins and ends where the arm can leave it, with both retreats.
 
         A closed one begins where a straight joint move leads home as well, if it does anywhere, so
         that there is a way to every other stroke. An open one loses a little at the end, or goes
         back over itself as far as to a place that the arm can leave; if there is none, it stays as
         it is.
         """
-        if stroke.is_closed(self._space):
-            apart = np.linspace(0, len(stroke) - 1, _STARTS, endpoint=False).astype(int)
-            left: list[tuple[float, Stroke, Array]] = []
-            for at in sorted(set(apart.tolist()), key=lambda at: min(at, len(stroke) - at)):
-                begun = stroke.begun_at(at, self._space)
-                onto = self._retreat(begun, 0)
-                if len(onto) > 1:
-                    left.append((self._from_home(onto[-1]), begun, onto))
-                    if not left[-1][0]:
-                        break
-            if left:
-                _, begun, onto = min(left, key=lambda one: one[0])
-                wound = self._space.period * self._space.periods(begun.joints[-1] - onto[0])
-                return begun, onto, onto + wound
+        if stroke.is_closed(self._space) and (begun := self._begun_elsewhere(stroke)) is not None:
+            stroke, onto = begun
+            wound = self._space.period * self._space.periods(stroke.joints[-1] - onto[0])
+            return _Reachable(stroke, onto, onto + wound)
         onto = self._retreat(stroke, 0)
         if len(onto) == 1:
             stroke, onto = self._ended_elsewhere(stroke.reversed())
@@ -183,10 +172,31 @@ class Transfers:
         off = self._retreat(stroke, -1)
         if len(off) == 1:
             stroke, off = self._ended_elsewhere(stroke)
-        return stroke, onto, off
+        return _Reachable(stroke, onto, off)
+
+    def _begun_elsewhere(self, stroke: Stroke) -> tuple[Stroke, Array] | None:
+        """A closed stroke begun where the arm can leave it, and the retreat; None if nowhere.
+
+        Of such places the nearest one from which a straight joint move leads home, else the one
+        from which most of that move is free.
+        """
+        apart = np.linspace(0, len(stroke) - 1, _STARTS, endpoint=False).astype(int)
+        found: list[tuple[float, Stroke, Array]] = []
+        for at in sorted(set(apart.tolist()), key=lambda at: min(at, len(stroke) - at)):
+            begun = stroke.begun_at(at, self._space)
+            onto = self._retreat(begun, 0)
+            if len(onto) > 1:
+                found.append((self._blocked_from_home(onto[-1]), begun, onto))
+                if not found[-1][0]:
+                    break
+        return min(found, key=lambda one: one[0])[1:] if found else None
 
     def _ended_elsewhere(self, stroke: Stroke) -> tuple[Stroke, Array]:
-        """A stroke with an end that the arm can leave, and the retreat from it."""
+        """An open stroke that ends where the arm can leave it, and the retreat from there.
+
+        It is shortened by as little as will do, or goes back over itself. If nothing helps, it
+        stays as it is, and the retreat is its last configuration alone.
+        """
         spacing = self._motion.spacing_m
         steps = np.linalg.norm(np.diff(stroke.points[::-1], axis=0), axis=1)
         back = np.concatenate([[0.0], np.cumsum(steps)])  # from the end on
@@ -208,9 +218,9 @@ class Transfers:
     def _retreat(self, stroke: Stroke, at: int) -> Array:
         """Off the surface from a sample of a stroke, at most as high as the setup says.
 
-        Along the normal if that leads to where the arm keeps its clearance, otherwise in the
-        direction in which it comes to keep most of it. Direction of the tool and branch stay the
-        same. There may be no way off, and then it has no length.
+        It leads along the normal if the arm keeps its whole clearance at the end, otherwise in the
+        direction where it keeps most of it there. The tool's direction and the branch stay the
+        same. If there is no way off, the retreat is the contact alone.
 
         Returns:
             (k, joints) from the contact on, unwound.
@@ -228,7 +238,7 @@ class Transfers:
         return min(found, key=lambda one: one[:2])[2] if found else joints[None]
 
     def _off(self, joints: Array, normal: Array, direction: Array, branch: int) -> Array:
-        """One retreat (k, joints), cut where it is as high as it can be."""
+        """The retreat (k, joints) in one direction, as far as the arm can follow it."""
         height = self._motion.retract_m
         tip = forward(self._prepared.robot, joints[None]).tip[0]
         count = int(np.ceil(height / (DISTANCE * _ROOM)))
@@ -243,22 +253,27 @@ class Transfers:
         return self._cut(way[: int(np.argmin(fine)) + 1])
 
     def _cut(self, way: Array) -> Array:
-        """A way off as far as it keeps most of the clearance."""
+        """A retreat up to its last place with the whole clearance, or else with the most of it."""
         for free in self._ways.levels:
             clear = np.flatnonzero(free.clear(way[1:]))
             if len(clear):
                 return np.asarray(way[: clear[-1] + 2])
         return way[:1]
 
-    def _high(self, way: Array) -> Array:
-        """A retreat, cut where it leaves the limits, and there where it is still clear."""
+    def _within_limits(self, way: Array) -> Array:
+        """A retreat, cut before it leaves the limits, at the last place that is clear there."""
         inside = np.append(self._ways.levels[0].inside(way), False)
         if inside[:-1].all():
             return way
         return self._cut(way[: max(1, int(np.argmin(inside)))])
 
     def _joined(self, off: Array, onto: Array, rounds: int = FEW_ROUNDS) -> Transfer:
-        """Along one retreat, freely to the end of another one, and back along that."""
+        """Along one retreat, freely to the end of another one, and back along that.
+
+        Of the first and the last move without a home only the one retreat.
+        """
+        if not len(off) or not len(onto):
+            return Transfer(np.concatenate([off, onto[::-1]]))
         if len(off) == 1 and len(onto) == 1:
             off = np.concatenate([off, off])  # so that there is a sample without contact
         between = self._ways.between(off[-1], onto[-1], rounds)
@@ -267,14 +282,14 @@ class Transfers:
         return Transfer(joints, gap, between.blocked)
 
     def _blocked(self, start: Array, end: Array) -> float:
-        """What share of the samples of a straight move is not free."""
-        key = start.tobytes() + end.tobytes()
+        """What share of the samples of a straight move is not free, computed once."""
+        key = _key(start, end)
         if key not in self._shares:
             self._deadline.check()
             self._shares[key] = self._ways.share(start, end)
         return self._shares[key]
 
-    def _from_home(self, end: Array) -> float:
+    def _blocked_from_home(self, end: Array) -> float:
         """What share of a straight move between home and a configuration is not free."""
         if self.home is None:
             return 0.0
@@ -282,8 +297,8 @@ class Transfers:
         return self._blocked(self.home, near)
 
     def _detour(self, start: Array, end: Array) -> float:
-        """How much longer than a straight move the way will probably be, s; 0 if that is free."""
-        if start.tobytes() + end.tobytes() in self._hopeless:
+        """How much longer than a straight move the way will probably take, s; 0 if that is free."""
+        if _key(start, end) in self._hopeless:
             return _HOPELESS
         share = self._blocked(start, end)
         if share == 0.0:
@@ -296,6 +311,10 @@ class Transfers:
 
     def _seconds(self, start: Array, end: Array) -> float:
         return float((np.abs(end - start) / self._velocities).max())
+
+
+def _key(start: Array, end: Array) -> bytes:
+    return start.tobytes() + end.tobytes()
 
 
 def _directions(normal: Array) -> Iterator[Array]:
