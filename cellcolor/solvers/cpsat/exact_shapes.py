@@ -14,11 +14,13 @@ once at most: always in the search space ``paper``.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from cellcolor.deadline import Deadline
 from cellcolor.solvers.bounds.hubs import MOST_ENTRIES, best_grouping, recursion_size
+from cellcolor.solvers.cpsat.hub_ways import Areas, Ways, hub_ways
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph
 from cellcolor.solvers.cpsat.model.painting import Block, Painting
 from cellcolor.solvers.cpsat.parts import ConnectedPart
@@ -26,9 +28,6 @@ from cellcolor.union_find import UnionFind
 
 MOST_STATES = 20_000
 """The most states of the frontier; beyond that the hubs are left to other methods."""
-
-MOST_OPTIONS = 2_000
-"""Ways to connect shared neighbors within a hub."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +65,7 @@ def exact_minimum(part: ConnectedPart, deadline: Deadline) -> Exact | None:
         return None
     read = _Part(part, deadline)
     if read.is_tree or read.drop_rim():
-        return _Tree(read).solve()
+        return _tree_minimum(read)
     return _Hubs(read).solve()
 
 
@@ -116,79 +115,66 @@ class _Part:
         return True
 
 
-class _Tree:
-    """A part whose cells and live edges make a tree."""
-
-    def __init__(self, part: _Part) -> None:
-        self.instance, self.loops, self.joinable = part.instance, part.loops, part.joinable
-        self.deadline = part.deadline
-
-    def solve(self) -> Exact | None:
-        """From the leaves to cell 0, and back."""
-        sizes = (recursion_size([self.joinable[d] for d in own]) for own in self.loops)
-        if max(sizes) > MOST_ENTRIES:
-            return None
-        order, up = [0], {0: 0}
-        for cell in order:
-            for dart in self.loops[cell]:
-                if dart != up[cell]:
-                    beyond = self.instance.across(dart)
-                    up[beyond] = -dart
-                    order.append(beyond)
-        # Of each dart that leads down: the fewest segments of what lies there, and the colors in
-        # which joining it to a segment that is counted elsewhere saves one of them.
-        fewest: dict[int, int] = {}
-        saving: dict[int, frozenset[int]] = {}
-        for cell in reversed(order):
-            self.deadline.check()
-            dart = up[cell]
-            darts = self._down(cell, dart)
-            below = sum(fewest[d] for d in darts)
-            sets = [saving[d] for d in darts if saving[d]]
-            least = below - best_grouping(sets).links if sets else below + 1
-            if cell == 0:
-                break
-            fewest[-dart] = least
-            saving[-dart] = frozenset(
-                color
-                for color in self.joinable[dart]
-                if below - best_grouping([frozenset((color,)), *sets]).links == least - 1
-            )
-        areas: dict[int, list[tuple[int, list[int]]]] = {}
-        joined: dict[int, int] = {}
-        for cell in order:
-            self.deadline.check()
-            darts = [d for d in self._down(cell, up[cell]) if saving[d]]
-            sets = [saving[d] for d in darts]
-            if cell in joined:
-                darts, sets = [up[cell], *darts], [frozenset((joined[cell],)), *sets]
-            areas[cell] = []
-            for group in best_grouping(sets).groups if sets else ():
-                own = [darts[place] for place in group.darts]
-                areas[cell].append((group.color, own))
-                joined |= {self.instance.across(d): group.color for d in own if d != up[cell]}
-        return Exact(least, areas)
-
-    def _down(self, cell: int, up: int) -> Sequence[int]:
-        """The darts of a cell in cyclic order from the one that leads up, without that."""
-        loop = self.loops[cell]
-        if not up:
-            return loop
-        at = loop.index(up)
-        return (*loop[at + 1 :], *loop[:at])
+def _tree_minimum(part: _Part) -> Exact | None:
+    """The minimum where cells and live edges make a tree: from the leaves to cell 0, and back."""
+    sizes = (recursion_size([part.joinable[d] for d in own]) for own in part.loops)
+    if max(sizes) > MOST_ENTRIES:
+        return None
+    order, up = [0], {0: 0}
+    for cell in order:
+        for dart in part.loops[cell]:
+            if dart != up[cell]:
+                beyond = part.instance.across(dart)
+                up[beyond] = -dart
+                order.append(beyond)
+    # Of each dart that leads down: the fewest segments of what lies there, and the colors in
+    # which joining it to a segment that is counted elsewhere saves one of them.
+    fewest: dict[int, int] = {}
+    saving: dict[int, frozenset[int]] = {}
+    for cell in reversed(order):
+        part.deadline.check()
+        dart = up[cell]
+        darts = _down(part.loops[cell], dart)
+        below = sum(fewest[d] for d in darts)
+        sets = [saving[d] for d in darts if saving[d]]
+        least = below - best_grouping(sets).links if sets else below + 1
+        if cell == 0:
+            break
+        fewest[-dart] = least
+        saving[-dart] = frozenset(
+            color
+            for color in part.joinable[dart]
+            if below - best_grouping([frozenset((color,)), *sets]).links == least - 1
+        )
+    areas: dict[int, list[tuple[int, list[int]]]] = {}
+    joined: dict[int, int] = {}
+    for cell in order:
+        part.deadline.check()
+        darts = [d for d in _down(part.loops[cell], up[cell]) if saving[d]]
+        sets = [saving[d] for d in darts]
+        if cell in joined:
+            darts, sets = [up[cell], *darts], [frozenset((joined[cell],)), *sets]
+        areas[cell] = []
+        for group in best_grouping(sets).groups if sets else ():
+            own = [darts[place] for place in group.darts]
+            areas[cell].append((group.color, own))
+            joined |= {part.instance.across(d): group.color for d in own if d != up[cell]}
+    return Exact(least, areas)
 
 
-_Groups = frozenset[frozenset[int]]
-"""Groups of two neighbors and more."""
+def _down(loop: Sequence[int], up: int) -> Sequence[int]:
+    """The darts of a cell in cyclic order from the one that leads up, without that."""
+    if not up:
+        return loop
+    at = loop.index(up)
+    return (*loop[at + 1 :], *loop[:at])
 
-_Open = tuple[int, _Groups, frozenset[int]]
-"""The last dart of a group that is not closed, the groups within it, and its own petals."""
 
 _State = tuple[int, ...]
 """A label for each petal on the frontier; connected ones have the same."""
 
-_Chosen = tuple[tuple[int, tuple[int, ...]], ...]
-"""Areas of a hub, each with its color and its darts."""
+_Step = dict[_State, tuple[_State, Areas]]
+"""For each state after a hub: the state before it, and the areas of the hub."""
 
 
 class _Hubs:
@@ -198,62 +184,35 @@ class _Hubs:
     def __init__(self, part: _Part) -> None:
         self.instance, self.loops, self.joinable = part.instance, part.loops, part.joinable
         self.colors, self.deadline = part.colors, part.deadline
+        self._hubs = [cell for cell, colors in enumerate(part.colors) if len(colors) > 1]
+        self._petal: dict[int, int] = {}  # across each dart of a hub
 
     def solve(self) -> Exact | None:
         """Add hub after hub; a state says which petals on the frontier are connected."""
-        hubs = [cell for cell, colors in enumerate(self.colors) if len(colors) > 1]
-        single = [cell for cell, colors in enumerate(self.colors) if len(colors) == 1]
-        petals: UnionFind[int] = UnionFind(single)
-        for edge in self.instance.live_edges:
-            sides = self.instance.edge(edge).left, self.instance.edge(edge).right
-            many = sum(len(self.colors[side]) > 1 for side in sides)
-            if many == 2 or sides[0] == sides[1]:
-                return None
-            if not many:
-                petals.union(*sides)
-        self._petal = {
-            dart: petals[self.instance.across(dart)] for hub in hubs for dart in self.loops[hub]
-        }
-        users: dict[int, int] = {}
-        for hub in hubs:
-            for petal in {self._petal[dart] for dart in self.loops[hub]}:
-                users[petal] = users.get(petal, 0) + 1
+        petals = self._petals()
+        if petals is None:
+            return None
+        own_of = {hub: [self._petal[dart] for dart in self.loops[hub]] for hub in self._hubs}
+        users = Counter(petal for own in own_of.values() for petal in set(own))  # hubs to come
         frontier: list[int] = []
-        states: dict[_State, int] = {(): 0}
-        # Of each hub, for each state after it: the state before, and the hub's areas.
-        steps: list[dict[_State, tuple[_State, _Chosen]]] = []
-        for hub in (order := self._order(hubs)):
+        states: dict[_State, int] = {(): 0}  # with the most connections that lead to each
+        steps: list[_Step] = []
+        order = self._order()
+        for hub in order:
             self.deadline.check()
-            own = [self._petal[dart] for dart in self.loops[hub]]
+            own = own_of[hub]
             shared = {p for p in own if users[p] > 1 or p in frontier or own.count(p) > 1}
-            options = self._options(hub, shared)
-            if options is None or len(states) * len(options) > 100 * MOST_STATES:
+            color = [min(self.joinable[dart]) for dart in self.loops[hub]]
+            ways = hub_ways(self.loops[hub], color, own, shared, self.deadline)
+            if ways is None or len(states) * len(ways) > 100 * MOST_STATES:
                 return None
             places = [*frontier, *(p for p in dict.fromkeys(own) if p in shared - set(frontier))]
-            for petal in set(own):
-                users[petal] -= 1
+            users.subtract(set(own))
             kept = [place for place, petal in enumerate(places) if users[petal]]
-            at = {petal: place for place, petal in enumerate(places)}
-            found: dict[_State, int] = {}
-            step: dict[_State, tuple[_State, _Chosen]] = {}
-            ways = [
-                (links, chosen, [[at[petal] for petal in group] for group in groups])
-                for groups, (links, chosen) in options.items()
-            ]
-            for number, (state, value) in enumerate(states.items()):
-                if number % 100 == 0:
-                    self.deadline.check()
-                labels = [*state, *range(len(places), 2 * len(places) - len(state))]
-                for links, chosen, groups in ways:
-                    after, joined = _united(labels, groups)
-                    key = _canonical([after[place] for place in kept])
-                    if value + links + joined > found.get(key, -1):
-                        found[key] = value + links + joined
-                        step[key] = state, chosen
-            frontier = [places[place] for place in kept]
-            states = _best_states(found)
+            states, step = self._with_hub(states, ways, places, kept)
             if len(states) > MOST_STATES:
                 return None
+            frontier = [places[place] for place in kept]
             steps.append(step)
         areas: dict[int, list[tuple[int, list[int]]]] = {}
         last: _State = ()
@@ -263,16 +222,65 @@ class _Hubs:
         self._join_petals(areas)
         return Exact(len(petals.sets()) - states[()], areas)
 
-    def _order(self, hubs: Sequence[int]) -> list[int]:
+    def _petals(self) -> UnionFind[int] | None:
+        """The petals as sets of cells; None if two hubs touch, or a cell touches itself."""
+        petals = UnionFind(cell for cell, colors in enumerate(self.colors) if len(colors) == 1)
+        for edge in self.instance.live_edges:
+            sides = self.instance.edge(edge).left, self.instance.edge(edge).right
+            many = sum(len(self.colors[side]) > 1 for side in sides)
+            if many == 2 or sides[0] == sides[1]:
+                return None
+            if not many:
+                petals.union(*sides)
+        self._petal = {
+            dart: petals[self.instance.across(dart)]
+            for hub in self._hubs
+            for dart in self.loops[hub]
+        }
+        return petals
+
+    def _with_hub(
+        self,
+        states: dict[_State, int],
+        ways: Ways,
+        places: Sequence[int],
+        kept: Sequence[int],
+    ) -> tuple[dict[_State, int], _Step]:
+        """The states after one more hub, and how each was reached.
+
+        Args:
+            ways: of the hub.
+            places: the petals on the frontier before, then the hub's other shared petals.
+            kept: those of the places that stay on the frontier.
+        """
+        at = {petal: place for place, petal in enumerate(places)}
+        placed = [
+            (links, areas, [[at[petal] for petal in group] for group in groups])
+            for groups, (links, areas) in ways.items()
+        ]
+        found: dict[_State, int] = {}
+        step: _Step = {}
+        for state, value in states.items():
+            self.deadline.check()
+            labels = [*state, *range(len(places), 2 * len(places) - len(state))]
+            for links, areas, groups in placed:
+                after, joined = _united(labels, groups)
+                key = _canonical([after[place] for place in kept])
+                if value + links + joined > found.get(key, -1):
+                    found[key] = value + links + joined
+                    step[key] = state, areas
+        return _best_states(found), step
+
+    def _order(self) -> list[int]:
         """Breadth first from the hub that leaves the shortest frontiers, or as they come."""
         of: dict[int, list[int]] = {}
-        for hub in hubs:
+        for hub in self._hubs:
             for dart in self.loops[hub]:
                 of.setdefault(self._petal[dart], []).append(hub)
-        orders = [list(hubs)]
-        for first in hubs[:20]:
+        orders = [self._hubs]
+        for first in self._hubs[:20]:
             order = dict.fromkeys([first])
-            for start in hubs:
+            for start in self._hubs:
                 order.setdefault(start)
                 waiting = list(order)
                 for hub in waiting:
@@ -292,60 +300,7 @@ class _Hubs:
                 change[max(places)] -= 1
             return max(sum(change[: number + 1]) for number in range(len(order)))
 
-        return min(orders, key=widest) if hubs else []
-
-    def _options(self, hub: int, shared: set[int]) -> dict[_Groups, tuple[int, _Chosen]] | None:
-        """The ways to connect shared petals within a hub, each with the most links besides.
-
-        A group's links are those to petals of its own, and between those if it has no others. None
-        if there are too many ways.
-        """
-        darts = self.loops[hub]
-        petals = [self._petal[dart] for dart in darts]
-        color = [min(self.joinable[dart]) for dart in darts]
-        count = len(darts)
-        # ways[first, end]: of the darts from the one to before the other.
-        ways: dict[tuple[int, int], dict[_Groups, tuple[int, _Chosen]]] = {}
-        for first in reversed(range(count + 1)):
-            for end in range(first, count + 1):
-                self.deadline.check()
-                if first == end:
-                    ways[first, end] = {frozenset(): (0, ())}
-                    continue
-                # Groups that begin with the first dart, by their last one and shared petals.
-                open_: dict[
-                    tuple[int, _Groups, frozenset[int]], tuple[int, _Chosen, tuple[int, ...]]
-                ]
-                open_ = {(first, frozenset(), _only(petals[first], shared)): (0, (), (first,))}
-                found: dict[_Groups, tuple[int, _Chosen]] = {}
-                for last in range(first, end):
-                    for (at, groups, own), (links, chosen, members) in list(open_.items()):
-                        if at != last:
-                            continue
-                        area = (color[first], tuple(darts[m] for m in members))
-                        whole = groups | {own} if len(own) > 1 else groups
-                        for further, (more, others) in ways[last + 1, end].items():
-                            both = whole | further
-                            total = links + more
-                            if total > found.get(both, (-1,))[0]:
-                                found[both] = total, (*chosen, area, *others)
-                        for other in range(last + 1, end):
-                            if color[other] != color[first]:
-                                continue
-                            longer = own | _only(petals[other], shared)
-                            # A petal of its own is a link; a shared one is counted as it connects.
-                            link = int(petals[other] not in shared or not own)
-                            for further, (more, others) in ways[last + 1, other].items():
-                                key = other, groups | further, longer
-                                total = links + more + link
-                                if total > open_.get(key, (-1,))[0]:
-                                    open_[key] = total, (*chosen, *others), (*members, other)
-                    if len(open_) > 10 * MOST_OPTIONS:
-                        return None
-                ways[first, end] = _undominated(found)
-                if len(ways[first, end]) > MOST_OPTIONS:
-                    return None
-        return ways[0, count]
+        return min(orders, key=widest) if self._hubs else []
 
     def _join_petals(self, areas: dict[int, list[tuple[int, list[int]]]]) -> None:
         """The other sides of what hubs and petals join."""
@@ -360,10 +315,6 @@ class _Hubs:
                     cell = self.instance.across(-dart)
                     own = areas.setdefault(cell, [(min(self.colors[cell]), [])])
                     own[0][1].append(dart)
-
-
-def _only(petal: int, shared: set[int]) -> frozenset[int]:
-    return frozenset((petal,)) if petal in shared else frozenset()
 
 
 def _united(labels: Sequence[int], groups: Iterable[Sequence[int]]) -> tuple[list[int], int]:
@@ -382,20 +333,6 @@ def _canonical(labels: Iterable[int]) -> _State:
     """Labels numbered as they come."""
     number: dict[int, int] = {}
     return tuple(number.setdefault(label, len(number)) for label in labels)
-
-
-def _undominated(found: dict[_Groups, tuple[int, _Chosen]]) -> dict[_Groups, tuple[int, _Chosen]]:
-    """Without ways of which another one connects all the same petals and has no fewer links."""
-    kept: dict[_Groups, tuple[int, _Chosen]] = {}
-    order = sorted(found, key=lambda groups: (-found[groups][0], -sum(map(len, groups))))
-    for groups in order:
-        if not any(
-            all(any(group <= its for its in other) for group in groups)
-            for other, (links, _) in kept.items()
-            if links >= found[groups][0]
-        ):
-            kept[groups] = found[groups]
-    return kept
 
 
 def _best_states(found: dict[_State, int]) -> dict[_State, int]:
