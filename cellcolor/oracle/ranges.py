@@ -112,7 +112,7 @@ def prove(
     lower = min(upper, 1)
     best: Solution | None = None
     found: list[Solution] = []
-    # A further search takes about as long as that for its first division alone.
+    # A further search is not begun unless it has about the time that decomposing took.
     enough = deadline.earlier(time.monotonic() - started)
     for number, options in enumerate(searches if instance.cells else ()):
         if (enough if number else deadline).over or (number and lower == upper):

@@ -1,4 +1,4 @@
-"""Where the darts of divided cells cross their edges on a refined mesh."""
+"""Gates: the vertices at which sub-cells of divided cells cross their edges on a refined mesh."""
 
 from __future__ import annotations
 
@@ -14,12 +14,10 @@ from cellcolor.painting.refined import Refined
 
 
 def subcells_on_surface(cell: CellDivision, seams: set[int]) -> list[WholeSubCell]:
-    """The sub-cells of a cell that have a place on its border.
-
-    Sub-cells connected only through seams are left out, unless there is nothing else.
+    """The sub-cells of a cell that cross an edge of it; if none does, one of them.
 
     Args:
-        cell: the cell's division, in the cyclic list that seams make of its loops.
+        cell: the cell's division, its loops merged into one cyclic list by seams.
         seams: the seams' ids.
     """
     whole = whole_subcells(cell, seams)
@@ -56,10 +54,10 @@ def steps_by_edge(
 def choose_gates(
     subcells: Sequence[Sequence[WholeSubCell]], divided: set[int], steps: dict[int, list[Step]]
 ) -> tuple[dict[Strand, int], list[int]]:
-    """The vertex from which each dart in state 1 of a divided cell crosses its edge.
+    """The gate of each dart in state 1 of a divided cell.
 
-    The strands of an edge that are used share it evenly, and both sides of a strand get the two
-    ends of one mesh edge.
+    The strands in use share an edge evenly, and the two darts of a strand get the two ends of one
+    mesh edge.
 
     Args:
         subcells: those of each cell.
@@ -67,8 +65,8 @@ def choose_gates(
         steps: of each topological edge, in order.
 
     Returns:
-        The vertices, and the edges that cross fewer mesh edges than they have strands in use. Of
-        these no vertex is given.
+        The gates, and the edges that cross fewer mesh edges than they have strands in use, which
+        get none.
     """
     used: dict[int, set[int]] = {}
     for cell in sorted(divided):

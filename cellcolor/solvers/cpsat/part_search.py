@@ -1,4 +1,8 @@
-"""The stages of the search for the fewest segments of one part (docs/solver.md, "Search")."""
+"""The stages of the search for the fewest segments of one part (docs/solver.md, "Search").
+
+``solver`` runs them in their order, each for all parts that are not proved yet, and hands every
+stage its share of the time. A stage that runs out of it keeps what it has found.
+"""
 
 from __future__ import annotations
 
@@ -24,33 +28,34 @@ from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.interface import Options
 
 FEW_DARTS = 10
-"""The live darts of a cell up to which planning comes before counting links."""
+"""Up to so many live darts in every cell, plans come before counting links."""
 
 LITTLE = 2
-"""Segments by which plans can be expected to raise a bound."""
+"""The most segments by which plans are likely to raise a bound."""
 
-WIDE_GAP, SHARE_OF_ROUTES = 2, 1 / 4
-"""Segments above the bound from which other routes are tried before models; and what part of the
-time that is left one kind of them gets before the other has its turn."""
+WIDE_GAP = 2
+"""With so many segments above the bound, divisions and plans are improved in turns first: a model
+is not likely to close the gap."""
 
-SHARE_OF_PLANS = 1 / 2
-"""What part of the time that is then left plans get in such a turn."""
-
-MORE_TRIES = 10
-"""Segments left out in vain for each segment, once other routes have their turns."""
-
-MOVES = 1_000
-"""Moves of local search in vain for each segment, before nothing better is expected."""
+SHARE_OF_ROUTES, SHARE_OF_PLANS = 1 / 4, 1 / 2
+"""Of the time that is left in such a turn: the share of each way to improve the division, and then
+that of plans."""
 
 TURNS = 2
-"""Turns of both kinds in a row without a better division before models are tried all the same."""
+"""Turns in a row that may bring nothing before models are tried all the same."""
+
+MORE_TRIES = 10
+"""Segments left out in vain, for each segment, before a turn expects nothing better of that."""
+
+MOVES = 1_000
+"""Moves of local search in vain, for each segment, before nothing better is expected."""
 
 WINDOW_EFFORT = 0.1
 """Deterministic seconds for the model of a window."""
 
 
 class PartSearch(PartState):
-    """A part and the stages of its search, which the solver puts in order.
+    """A part and the stages of its search.
 
     Attributes:
         planning: plans, and divisions by routing them.
@@ -63,11 +68,12 @@ class PartSearch(PartState):
         super().__init__(part, options, runner, report)
         self.planning = Planning(self)
         self.models = ModelSearch(self)
-        self._turns = self._exact = 0
-        self._whole = self.best
+        self._turns = 0  # that were taken
+        self._exact = 0  # the minimum, where it is known and not believed yet
+        self._whole = self.best  # every cell painted whole
 
     def cover(self, deadline: Deadline) -> None:
-        """The first bound, and a division that follows from a smallest cover."""
+        """A smallest set cover: the first bound, and a division with every cell painted whole."""
         found = set_cover(self.instance, None, deadline, self.costs)
         self.cover_bound = max(self.bound, found.bound)
         self.planned = found.regions
@@ -78,7 +84,7 @@ class PartSearch(PartState):
         self._whole = self.best[0], canonical(self.best[0], whole)
 
     def count_links(self, deadline: Deadline) -> None:
-        """A bound by what fits side by side in cells with many edges, and a matching division."""
+        """The bound by counting links around hubs, and the division made of what was counted."""
         found = hub_bound(self.instance, deadline)
         if found.value > self.surface_bound:
             self.raise_to(found.value, for_surface=True)
@@ -88,15 +94,15 @@ class PartSearch(PartState):
             self.offer(*divide_hubs(self.connected, found.hubs, whole, self.options.seed, deadline))
 
     def count_many_links(self, deadline: Deadline) -> None:
-        """The same before plans, where a cell has more than ``FEW_DARTS`` live darts.
+        """Count links before plans, where a cell has more than ``FEW_DARTS`` live darts.
 
-        In other parts plans are quick, and their conflicts have four areas that can be drawn.
+        In other parts plans are quick, and the conflicts that they find can be drawn.
         """
         if self.instance.most_live_darts > FEW_DARTS:
             self.count_links(deadline)
 
     def count_few_links(self, deadline: Deadline) -> None:
-        """After plans, where that was not done before them."""
+        """Count links after plans, where that was not done before them."""
         if self.instance.most_live_darts <= FEW_DARTS:
             self.count_links(deadline)
 
@@ -118,11 +124,11 @@ class PartSearch(PartState):
                 self.believe_exact(deadline)
 
     def believe_exact(self, _deadline: Deadline) -> None:
-        """Take the minimum as the bound."""
+        """Take the minimum that ``solve_exactly`` found as the bound; it has no certificate."""
         self.raise_to(self._exact, for_surface=False)
 
     def drop(self, deadline: Deadline) -> None:
-        """Better divisions by leaving out a segment and rerouting all others.
+        """Better divisions by leaving segments out (ruin and recreate).
 
         Around hubs the model works better, for divisions and for the bound.
         """
@@ -147,7 +153,7 @@ class PartSearch(PartState):
         self.recolor(*self._whole, seed, deadline, FEW_MOVES, whole_first=True)
 
     def narrow_gap(self, deadline: Deadline) -> None:
-        """Take turns, where more is missing than a model is likely to close."""
+        """Take turns while the gap is wide, until some in a row bring nothing."""
         in_vain = 0
         while in_vain < TURNS and self.hubs is None and self.segments - self.bound >= WIDE_GAP:
             before, bound = self.segments, self.bound
@@ -161,10 +167,11 @@ class PartSearch(PartState):
             self._take_turns(deadline)
 
     def _take_turns(self, deadline: Deadline) -> None:
-        """Local search on a large part; on others segments left out, then windows. New seeds.
+        """Improve the division with a new seed, then plan with more effort than before.
 
-        Local search begins again from whole cells, then goes on from the best division, since what
-        it finds differs from start to start. Then plans, with more effort each time.
+        On a large part, local search begins again from whole cells, then from the best division,
+        since what it finds differs from start to start. On others, segments are left out, and then
+        windows divided again.
         """
         deadline.check()
         self._turns += 1

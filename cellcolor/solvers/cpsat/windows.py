@@ -1,19 +1,19 @@
 """A division improved window by window: large neighborhood search (Shaw, CP 1998).
 
-Some cells, the window, are divided again; all others stay as they are. What lies outside is
-contracted: a **piece** of a segment outside, that is blocks of it that are connected without the
-window, becomes one cell of one color, with all the darts by which it **faces** the window. So two
-pieces of a color that the window joins are a segment less. Three steps make a turn:
+Some cells, the **window**, are divided again; all others stay as they are. What lies outside is
+contracted: each **piece** of a segment outside (blocks of it that are connected without the window)
+becomes one cell of one color, with all the darts by which it **faces** the window. So it counts as
+a segment less when the window joins two pieces of a color. Three steps make a turn:
 
 1. ``_Window`` contracts what is outside;
 2. the small graph is divided, by ``drop_segments`` or by the full model;
 3. ``_Window.put_back`` writes what was found into the whole division.
 
-A dart outside that faces the window belongs to a block or, in state 0, shows the one before it
-along the border of its cell: this is the block that a join across it would enlarge.
+A dart outside that faces the window belongs to a block or, in state 0, shows the block before it
+along the border of its cell: the one that a join across the dart would enlarge.
 
-Small windows have small models and short routes, so that this gets on where the whole is hopeless.
-All that is done for one takes time by what it meets, not by the size of the whole.
+Small windows have small models and short routes, so this gets on where the whole is hopeless. The
+time for a window depends on what it meets, not on the size of the whole.
 """
 
 from __future__ import annotations
@@ -33,16 +33,16 @@ from cellcolor.solvers.cpsat.routes.dropping import drop_segments
 from cellcolor.union_find import UnionFind
 
 WINDOW_SIZES = (1_000, 2_000, 4_000, 8_000)
-"""Terms of a window's model, about: it is solved in some tenths of a second."""
+"""About how many terms the model of a window has; it is solved in some tenths of a second."""
 
 LARGEST_WINDOW = 30_000
-"""Terms of a window's model, with what lies around it."""
+"""Terms of a window's model with all pieces around it; a larger one is not solved."""
 
 ROUTED = 0.95
 """The share of windows that are improved by routes."""
 
 ROUTED_SIZES = (3_000, 6_000, 12_000, 25_000, 50_000)
-"""Terms that their models would have. Larger ones come as smaller ones are of no more use."""
+"""Terms that models of routed windows would have; the longer in vain, the larger the windows."""
 
 SHARE = 0.1
 """Share of the time left that the routes of one window may take."""
@@ -51,7 +51,7 @@ TRIES = 1
 """Segments left out for each segment of a window that is improved by routes."""
 
 STALE = 50
-"""Segments for each gain that is not looked for among them, before they are listed again."""
+"""Segments are listed again, since the list is out of date, once one in so many has gone."""
 
 FRUITLESS = 3
 """Tries for each segment of a division before nothing better is expected."""
@@ -73,13 +73,14 @@ def improve(
         solve: runs a model with a seed, within limits.
         seed: of the choice of windows.
         deadline: when to stop.
+        costs: what a segment of each color costs; None for 1 each.
     """
     chance = random.Random(seed)
     fruitless = gained = 0
     block_of = {dart: block for blocks in painting for block in blocks for dart in block.darts}
     segments = segments_of(graph, painting)
     while fruitless < FRUITLESS * len(segments) and not deadline.over:
-        # Small segments are the likeliest that others can do without.
+        # Small segments are the likeliest to be dispensable.
         weights = [1 / len(segment) for segment in segments]
         (segment,) = chance.choices(segments, weights)
         fruitless += 1
@@ -111,9 +112,12 @@ def improve(
 def _cells_around(
     graph: DartGraph, segment: set[int], room: float, chance: random.Random
 ) -> list[int]:
-    """A segment's cells, as many as a window has room for, and those around them.
+    """The cells of a window, breadth first from a random cell of a segment, its own cells first.
 
-    None at all if the search begins at a cell that is too large itself, or among such cells.
+    Cells that are too large for what is left of the room are left out; there may be no others.
+
+    Args:
+        room: terms of the model, about.
     """
     start = chance.choice(sorted(segment))
     found = [start]
@@ -159,7 +163,7 @@ class _Window:
     ) -> None:
         self._whole = whole
         self._cells = cells
-        # For each dart outside that faces the window the block that it belongs to or shows.
+        # By each dart outside that faces the window, the block that it belongs to or shows.
         self._facing: dict[int, Block] = {}
         inside = set(cells)
         for cell in cells:
@@ -177,7 +181,7 @@ class _Window:
     def _contracted(
         self, block_of: Mapping[int, Block]
     ) -> tuple[list[list[int]], list[frozenset[int]]]:
-        """The darts of each small cell, as they are called in the whole graph, and its colors."""
+        """The darts of each cell of the small graph, by their numbers in the whole; its colors."""
         whole, facing = self._whole, self._facing
         piece = self._pieces(block_of)
         inside: list[list[int]] = []
@@ -197,7 +201,7 @@ class _Window:
         return [*inside, *outside.values()], colors
 
     def _pieces(self, block_of: Mapping[int, Block]) -> dict[int, int]:
-        """By the id of each block outside that is connected with a facing one, its piece."""
+        """The piece of each block outside, by its ``id``: facing ones, and what they connect to."""
         darts, inside = self._whole.darts, set(self._cells)
         piece: dict[int, int] = {}
         for number, first in enumerate(self._facing.values()):
@@ -253,7 +257,7 @@ class _Window:
         return [[b for b in blocks if b.darts] or blocks[:1] for blocks in [*own, *beyond]]
 
     def put_back(self, painting: Painting, found: Painting, block_of: dict[int, Block]) -> Painting:
-        """The whole division with the window as it was found; ``block_of`` changes with it."""
+        """The whole division with the window divided as found; ``block_of`` is updated."""
         whole = self._whole
         joined = {self._darts[dart] for blocks in found for block in blocks for dart in block.darts}
         around = {whole.darts[dart].cell for dart in self._facing}
@@ -289,7 +293,7 @@ def _shown(darts: Sequence[int], blocks: Sequence[Block], dart: int) -> Block:
 
 
 def _routed(window: _Window, seed: int, deadline: Deadline) -> Painting | None:
-    """The best of the window that leaving segments out leads to; None if that is nothing better."""
+    """The best division of the window by leaving segments out; None if none is better."""
     best = None
     for better in drop_segments(
         window.graph, window.painting, _regions(window.graph), seed, deadline, TRIES

@@ -103,10 +103,10 @@ def drop_segments(
 def _without_one(
     segments: Sequence[PlannedSegment], regions: Sequence[Region], chance: random.Random
 ) -> list[PlannedSegment] | None:
-    """A segment less, the color regions of which still touch every cell; None if there is no way.
+    """The segments without one, where their color regions still touch every cell.
 
-    Where they would not, a segment in another region, that touches what is missing, takes the place
-    of a second one that is not needed then.
+    Where they would not, two segments give way to one in another region that touches what is
+    missing. None if there is no such one, or no second segment that is not needed then.
     """
     dropped, kept, missed = _left_out(segments, chance)
     if not missed:
@@ -127,8 +127,10 @@ def _without_one(
 def _exchanged(
     segments: Sequence[PlannedSegment], regions: Sequence[Region], chance: random.Random
 ) -> list[PlannedSegment] | None:
-    """A segment in another region, a large one rather than a small one, in the place of one; None
-    if no other has all cells that no segment that is left can touch."""
+    """The segments with one replaced by a segment in another region, a large one if possible.
+
+    None if no other region has all the cells that only the replaced one could touch.
+    """
     dropped, kept, missed = _left_out(segments, chance)
     others = _regions_with(missed, regions, dropped)
     if not others:
@@ -141,9 +143,9 @@ def _exchanged(
 def _left_out(
     segments: Sequence[PlannedSegment], chance: random.Random
 ) -> tuple[PlannedSegment, list[PlannedSegment], frozenset[int]]:
-    """A segment, all others, and the cells that no region of theirs has."""
+    """A random segment, all others, and the cells that none of their regions has."""
     holders = Counter(cell for segment in segments for cell in segment.cells)
-    # The fewer cells have no other segment, the likelier others can reach them.
+    # The fewer cells a segment has for itself, the likelier the others can do without it.
     weights = [1 / (1 + sum(holders[cell] == 1 for cell in s.cells)) for s in segments]
     (dropped,) = chance.choices(segments, weights)
     kept = [segment for segment in segments if segment is not dropped]
@@ -153,7 +155,7 @@ def _left_out(
 def _regions_with(
     cells: frozenset[int], regions: Sequence[Region], dropped: PlannedSegment
 ) -> list[Region]:
-    """The regions that have some cells, without that of a segment that was left out."""
+    """The regions with all of some cells, except that of the segment that was left out."""
     return [region for region in regions if cells <= region[1] and region != dropped.region]
 
 
@@ -163,7 +165,13 @@ def _kept_nodes(
     segments: Sequence[PlannedSegment],
     held: Sequence[tuple[int, set[int]]],
 ) -> list[set[int]]:
-    """For each planned segment its largest connected set of nodes that it already has."""
+    """The nodes that each planned segment already has, where routing begins; none for a new one.
+
+    Args:
+        plan: what is to be routed.
+        segments: before a segment was left out or exchanged.
+        held: the connected nodes of one color, the largest sets first; each goes to one segment.
+    """
     left = [(color, nodes, {graph.cell[node] for node in nodes}) for color, nodes in held]
     found: list[set[int]] = []
     for segment in plan:
@@ -185,7 +193,7 @@ def _kept_nodes(
 def _each_cell_once(
     segments: Sequence[PlannedSegment], cells: int, chance: random.Random
 ) -> SegmentPlan:
-    """The segments, each cell given to one of those that touch it, else to one that could."""
+    """The segments with each cell given to one of those that have it, else to one that can."""
     order = list(range(len(segments)))
     chance.shuffle(order)
     holder: dict[int, int] = {}

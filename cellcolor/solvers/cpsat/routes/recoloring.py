@@ -1,12 +1,15 @@
-"""A division improved by local search: small changes, each kept if it leaves no more segments.
+"""A division improved by local search: thousands of small moves a second (docs/routes.md).
 
-The nodes of a refined graph are painted one by one. A move takes a segment and peels it: its nodes
-take the colors of neighboring segments, the outermost first. If nothing of it is left, there is a
-segment less. What cannot be peeled, its kernel, is led to other segments on paths of few nodes.
-These paths cut other segments, and neighbors absorb the fragments. A node becomes dearer with each
-path through it, so that the search does not stay at one place.
+A move picks a segment of the painted nodes (``painted_nodes``) and tries to do without it:
 
-There are thousands of moves a second; ``painted_nodes`` says how segments follow.
+1. *Peel it.* Its nodes take the colors of neighboring segments, the outermost first. What no
+   neighbor can take is its **kernel**: mostly the nodes of cells with one color.
+2. *Lead the kernel away.* Cheapest paths connect its cells with other segments, which cuts those
+   that are crossed. A node becomes dearer with each path through it (guided local search), so that
+   the search does not stay in one place.
+3. *Absorb.* Every segment that was touched is peeled in turn, if nothing of it stays.
+
+A move that leaves more segments is taken back, except for a few that leave one more.
 """
 
 from __future__ import annotations
@@ -27,33 +30,34 @@ from cellcolor.solvers.cpsat.routes.sectors import (
 )
 
 ONE_MORE = 0.0013
-"""The chance that a division with one segment more is kept."""
+"""The chance that a move is kept although it leaves one segment more."""
 
 FAR = 3
-"""Segments above the best from which the search begins at the best again."""
+"""With more segments than these above the fewest, the search returns to the best division."""
 
-MOST_KERNELS = 12
-"""Cells of a kernel, above which the segment is joined with another instead of dissolved."""
+MOST_DISSOLVED = 12
+"""Cells of a kernel up to which all of them are led away; of a larger one a single cell is."""
 
 TO_ITS_COLOR, TO_ANY_COLOR, TO_THE_NEAREST = 0.15, 0.375, 0.45
-"""How often a move leads one cell of the kernel to a segment of the same color, of any color of the
-cell, or of that which costs least, each less the ones before it; the others dissolve the kernel."""
+"""What is done with a kernel, as cumulative shares of the moves: one cell of it is led to a segment
+of the same color, of a random color of the cell, or of the color that costs least. All other moves
+dissolve the kernel: they lead each of its cells away."""
 
 SKIPPED, GUESSED = 0.5, 0.5
 """When a kernel is dissolved: how often a cell is left out that other segments touch as well, and
-how often a cell is led to a segment of any color instead of the one that costs least."""
+how often a cell is led to a segment of a random color instead of the color that costs least."""
 
 FREE, USED, IN_VAIN, GROWTH = 0.01, 0.02, 0.05, 1.0003
-"""The cost of a node that a path need not change; what the price of a node rises by when a path
-changes it, and when that is taken back; how much more both are with each move, because old prices
+"""The cost of a node that a path need not change. What a node's price rises by when a path changes
+it, and when that is taken back. The factor by which both grow with each move, so that old rises
 count less."""
 
 FEW_MOVES = 5
-"""Moves in vain for each segment after which it is seen what a start is good for."""
+"""Moves in vain for each segment that show what a start is good for."""
 
 PAUSE = 20
-"""Moves in vain before a division is made of the nodes. That takes time by the size of the whole,
-and in the beginning nearly every move gains something."""
+"""Moves in vain before a division is made of the nodes, which takes time by the size of the whole:
+in the beginning nearly every move gains something."""
 
 
 class Recoloring:
@@ -75,7 +79,7 @@ class Recoloring:
         self._graph = graph
         self._chance = random.Random(seed)
         self._painted = PaintedNodes(graph, colors, deadline)
-        # What changing a node costs, in units of the rise, which grows with each move.
+        # What changing a node costs besides 1, in units of the rise, which grows with each move.
         self._price = [0.0] * len(colors)
         self._rise = 1.0
         # The nodes that this move has changed, with their regions before.
@@ -99,7 +103,7 @@ class Recoloring:
         return self._painted.colors(self._best)
 
     def move(self) -> None:
-        """Try to do with a segment less; what leaves more segments is taken back, nearly always."""
+        """Try to do with a segment less, and take back what leaves more segments, nearly always."""
         before = self.segments
         self._journal = []
         self._change()
@@ -128,14 +132,14 @@ class Recoloring:
         self._painted.paint(before)
 
     def _change(self) -> None:
-        """Take a segment, lead its kernel or some of it elsewhere, and let neighbors absorb it."""
+        """Pick a segment, lead its kernel or some of it away, and let neighbors absorb the rest."""
         painted, chance = self._painted, self._chance
         numbers = list(painted.nodes)
         number = chance.choice(numbers)
-        while chance.random() > len(painted.nodes[number]) ** -0.5:  # small ones rather
+        while chance.random() > len(painted.nodes[number]) ** -0.5:  # prefers small ones
             number = chance.choice(numbers)
         touched = {next(iter(painted.nodes[number]))}
-        # Peeling takes time by the size of a segment, and one with cells of one color keeps these.
+        # Nodes with one choice are never peeled; where there are some, peeling is not needed.
         kernel = sorted(painted.nodes[number] & painted.fixed) or self._peeled(number)[1]
         way = chance.random() if kernel else 0.0
         if kernel and way >= TO_THE_NEAREST:
@@ -153,11 +157,11 @@ class Recoloring:
         self._absorb(touched)
 
     def _dissolve(self, kernel: list[int], number: int) -> set[int]:
-        """Lead the cells of a kernel to other segments; hands back what that touched."""
+        """Lead the cells of a kernel to other segments; the nodes that this touched."""
         painted, chance = self._painted, self._chance
         own = painted.region[kernel[0]]
         cells = sorted({self._graph.cell[node] for node in kernel})
-        if len(cells) > MOST_KERNELS:
+        if len(cells) > MOST_DISSOLVED:
             return self._lead(self._graph.cell[chance.choice(kernel)], [own], number)
         chance.shuffle(cells)
         touched = set(kernel)
@@ -174,7 +178,7 @@ class Recoloring:
         return touched
 
     def _peeled(self, number: int) -> tuple[dict[int, int], list[int]]:
-        """The regions that the nodes of a segment can take from its neighbors; and its kernel."""
+        """The region that each node of a segment can take over from a neighbor; and the kernel."""
         segment, region = self._painted.segment, self._painted.region
         members = self._painted.nodes[number]
         found: dict[int, int] = {}
@@ -197,7 +201,7 @@ class Recoloring:
         return found, [node for node in members if node not in found]
 
     def _absorb(self, touched: Iterable[int]) -> None:
-        """Let neighbors absorb segments that were touched, where they can, the smallest first."""
+        """Let neighbors absorb whole segments among those that were touched, smallest first."""
         painted = self._painted
         for _ in range(2):
             before = self.segments
@@ -211,7 +215,14 @@ class Recoloring:
                 return
 
     def _lead(self, cell: int, regions: Sequence[int], avoided: int) -> set[int]:
-        """Lead a cell to another segment, as cheaply as can be; hands back what that touched."""
+        """Lead a cell to a segment in one of some regions, by the cheapest path.
+
+        Args:
+            avoided: the segment that the cell is to leave.
+
+        Returns:
+            The nodes that this touched; none if there is no path.
+        """
         least, path, chosen = float("inf"), [], -1
         held = self._painted.nodes.get(avoided)
         own = self._painted.region[next(iter(held))] if held else -1

@@ -114,9 +114,9 @@ def painting_of_nodes(refined: RefinedGraph, colors: Sequence[int]) -> Painting:
 def node_colors(refined: RefinedGraph, painting: Painting) -> list[int]:
     """The color of each node by a division.
 
-    A sector belongs to the sub-cell that its dart is in or, in state 0, shows. The center belongs
-    to a sub-cell that is not connected along the ring, if there is one. A segment that passes a
-    cell beside another such sub-cell falls into several sets.
+    A sector has the color of the sub-cell that its dart is in or, in state 0, shows. The center
+    goes to the sub-cell with the most separate stretches of the ring, which it connects. Of other
+    sub-cells with several stretches the nodes are not connected.
     """
     colors = [0] * len(refined.cell)
     for nodes, darts, blocks in zip(refined.nodes, refined.graph.lists, painting, strict=True):
