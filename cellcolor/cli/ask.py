@@ -26,7 +26,9 @@ from cellcolor.cli.options import (
     UNIT,
     WORKERS,
     cellcolor,
+    cover_option,
     json_option,
+    output_option,
     ranges,
 )
 from cellcolor.cli.progress import at_work, workers_for
@@ -91,13 +93,7 @@ def _documents(rows: Iterable[Any]) -> Iterable[dict[str, Any]]:
 )
 @REQUIRED
 @LEFT_ALONE
-@click.option(
-    "-o",
-    "--output",
-    metavar="FRONT.(png|svg)",
-    type=PATH,
-    help="Draw the whole front to a file.",
-)
+@output_option("FRONT.(png|svg)", "Draw the whole front to a file.")
 @json_option("Print a JSON object for each point.")
 @WORKERS
 @SEED
@@ -172,12 +168,9 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
 @cellcolor.command()
 @click.argument("scene", metavar="SCENE", type=INPUT)
 @ranges
-@click.option(
-    "--cover",
-    metavar="S",
-    type=click.FloatRange(0, 1),
-    help="The share of the surface that has to be covered, 0 to 1.  [default: as much as where the "
-    "part stands]",
+@cover_option(
+    "The share of the surface that has to be covered, 0 to 1.  [default: as much as where the "
+    "part stands]"
 )
 @_POINTS
 @click.option(
@@ -225,13 +218,10 @@ def explain(scene: Path, at: tuple[float, ...] | None, as_json: bool, **search: 
     show_default=True,
     help="Of the map, along each range; their middles are tried in place of --points.",
 )
-@click.option(
-    "-o",
-    "--output",
-    "table",
-    metavar="TABLE.csv",
-    type=PATH,
-    help="Keep each placement as it is proved; a table that is there is continued.",
+@output_option(
+    "TABLE.csv",
+    "Keep each placement as it is proved; a table that is there is continued.",
+    name="table",
 )
 @json_option("Print a JSON object for each placement.")
 @click.option("--jobs", default=1, **JOBS)
@@ -285,19 +275,14 @@ def place(
     help="A shipped arm, such as ur5e, or a URDF; once for each arm.",
 )
 @ranges
-@click.option(
-    "--cover",
-    metavar="S",
-    type=click.FloatRange(0, 1),
-    help="The share of the surface that each arm has to cover, 0 to 1.  [default: as much as the "
-    "arm that covers most where the part is put at first]",
+@cover_option(
+    "The share of the surface that each arm has to cover, 0 to 1.  [default: as much as the "
+    "arm that covers most where the part is put at first]"
 )
 @_POINTS
 @_VERTICES
 @UNIT
-@click.option(
-    "-o", "--output", metavar="OUT.(png|svg)", type=PATH, help="A picture of what each arm covers."
-)
+@output_option("OUT.(png|svg)", "A picture of what each arm covers.")
 @json_option("Print a JSON object for each arm.")
 @click.option("--jobs", default=1, **JOBS)
 @SEED
@@ -339,13 +324,10 @@ def compare(
     multiple=True,
     help="Another scene of the same part, such as with another arm. May be given several times.",
 )
-@click.option(
-    "--cover",
-    metavar="S",
-    type=click.FloatRange(0, 1),
+@cover_option(
+    "The share to be covered of what any of these set-ups reaches, 0 to 1.",
     default=1.0,
     show_default=True,
-    help="The share to be covered of what any of these set-ups reaches, 0 to 1.",
 )
 @click.option(
     "--change-over",
@@ -354,9 +336,7 @@ def compare(
     help="What a change from one set-up to the next costs, in lift-offs.  [default: as few set-ups "
     "as possible, then as few lift-offs]",
 )
-@click.option(
-    "-o", "--output", metavar="OUT.(html|png|svg)", type=PATH, help="A picture of the part."
-)
+@output_option("OUT.(html|png|svg)", "A picture of the part.")
 @click.option(
     "--plan", "folder", metavar="FOLDER", type=PATH, help="Plan a motion for each, and judge it."
 )

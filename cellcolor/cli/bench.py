@@ -10,7 +10,16 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from cellcolor.cli.ending import Exit
-from cellcolor.cli.options import CLUSTER, JOBS, PATH, SECONDS, SEED, Commands, cellcolor
+from cellcolor.cli.options import (
+    CLUSTER,
+    JOBS,
+    PATH,
+    SECONDS,
+    SEED,
+    Commands,
+    cellcolor,
+    output_option,
+)
 from cellcolor.cli.progress import progress_bar
 from cellcolor.cli.terminal import complain, say, say_lines
 from cellcolor.errors import InputError
@@ -100,12 +109,8 @@ def bench() -> None:
 )
 @click.option("--jobs", default=1, **JOBS)
 @CLUSTER
-@click.option(
-    "-o",
-    "--output",
-    metavar="TABLE.csv",
-    type=PATH,
-    help="A row for each run. An existing table is continued: its runs are not repeated.",
+@output_option(
+    "TABLE.csv", "A row for each run. An existing table is continued: its runs are not repeated."
 )
 def run(output: Path | None, **given: Any) -> Exit:
     """Run solvers on instances, each solve in a process of its own.
@@ -140,14 +145,7 @@ def summary(tables: tuple[Path, ...]) -> Exit:
 
 @bench.command()
 @_TABLES
-@click.option(
-    "-o",
-    "--output",
-    metavar="FOLDER",
-    type=PATH,
-    required=True,
-    help="Folder for the pictures, as PNG and SVG.",
-)
+@output_option("FOLDER", "Folder for the pictures, as PNG and SVG.", required=True)
 def plots(tables: tuple[Path, ...], output: Path) -> Exit:
     """Draw tables: cactus, growth, scatter against the strongest rival, performance profile."""
     from cellcolor.door.extras import extras_for
@@ -179,7 +177,7 @@ def plots(tables: tuple[Path, ...], output: Path) -> Exit:
     show_default=True,
     help="Of each measurement.",
 )
-@click.option("-o", "--output", metavar="TABLE.csv", type=PATH, help="A row for each measurement.")
+@output_option("TABLE.csv", "A row for each measurement.")
 def start_up(repetitions: int, output: Path | None) -> Exit:
     """Measure how long the program takes to start."""
     from cellcolor.cli.bench_run import command_line

@@ -25,6 +25,7 @@ from cellcolor.cli.options import (
     json_option,
     objective_of,
     one_of,
+    output_option,
 )
 from cellcolor.cli.terminal import apart_from, complain, say, say_lines
 from cellcolor.data.wording import count
@@ -47,14 +48,7 @@ if TYPE_CHECKING:
 
 @cellcolor.command()
 @click.argument("source", metavar="SCENE.toml|SURFACE.json", type=INPUT)
-@click.option(
-    "-o",
-    "--output",
-    metavar="INSTANCE.json",
-    required=True,
-    type=PATH,
-    help="The instance; other files are named after it.",
-)
+@output_option("INSTANCE.json", "The instance; other files are named after it.", required=True)
 def build(source: Path, output: Path) -> Exit:
     """Make the topological graph of a robot scene or of a labelled surface.
 
@@ -82,7 +76,6 @@ def build(source: Path, output: Path) -> Exit:
 
 def _build_scene(source: Path, output: Path) -> Instance:
     from cellcolor.cli.inputs import open_file
-    from cellcolor.data.instance import Instance
     from cellcolor.data.surface import LabelledSurface
     from cellcolor.door.subject import Subject
 
@@ -98,14 +91,12 @@ def _build_scene(source: Path, output: Path) -> Instance:
     surface = replace(built.surface, meta=built.surface.meta | {"side_file": side_path.name})
     named = Subject(source, built, surface)
     instance = named.decomposed(None if alone else surface_path.name).instance
-    files = [Output(output, kind_of_format(Instance.FORMAT), [instance.to_json().encode()])]
+    files = [Output.of(output, instance)]
     if not alone:
         # The instance last: it carries the fingerprint of its surface.
         files = [
             Output(side_path, SIDE_FILE, [built.candidates.to_bytes()]),
-            Output(
-                surface_path, kind_of_format(LabelledSurface.FORMAT), [surface.to_json().encode()]
-            ),
+            Output.of(surface_path, surface),
             *files,
         ]
     write(files, [source])
@@ -117,7 +108,6 @@ def _build_scene(source: Path, output: Path) -> Instance:
 
 def _build_surface(source: Path, output: Path) -> Instance:
     from cellcolor.cli.inputs import open_file
-    from cellcolor.data.instance import Instance
 
     found = open_file(source)
     if found.given_instance is not None:
@@ -125,17 +115,13 @@ def _build_surface(source: Path, output: Path) -> Instance:
     relative = os.path.relpath(source.resolve(), output.parent.resolve())
     reference = None if is_stream(output) else PurePath(relative).as_posix()
     instance = found.decomposed(reference).instance
-    write(
-        [Output(output, kind_of_format(Instance.FORMAT), [instance.to_json().encode()])], [source]
-    )
+    write([Output.of(output, instance)], [source])
     return instance
 
 
 @cellcolor.command()
 @click.argument("files", metavar="FILE…", nargs=-1, required=True, type=INPUT)
-@click.option(
-    "-o", "--output", metavar="OUT", type=PATH, help="A file for one input, a folder for several."
-)
+@output_option("OUT", "A file for one input, a folder for several.")
 @click.option(
     "--solver",
     metavar="NAME",
@@ -238,33 +224,30 @@ def _check_solve(
     **given: Any,
 ) -> None:
     """Refuse options that do not go together."""
-    if strands is not None and search_space == "paper":
-        raise click.UsageError("--strands needs --search-space surface")
-    if limit is not None and not every:
-        raise click.UsageError("--limit needs --all")
-    if diverse is not None and not every:
-        raise click.UsageError("--diverse needs --all")
-    if diverse is not None and limit is not None:
-        raise click.UsageError("--diverse and --limit exclude each other")
-    if every and search_space == "surface":
-        raise click.UsageError("--all needs --search-space paper: schemes are defined only there")
-    of_one_mesh = ("cover", "required", "left_alone", "warm_start")
-    if refine and (every or any(given[name] is not None for name in of_one_mesh)):
-        raise click.UsageError(
-            "--refine-until-stable excludes --cover, --required, --left-alone, --warm-start "
-            "and --all: they are of a single mesh"
-        )
-    if given["objective"] is not None and (every or refine or given["cover"] is not None):
-        raise click.UsageError(
-            "--color-cost excludes --all, --cover and --refine-until-stable: they are about the "
-            "number of segments"
-        )
-    if picture is not None and len(files) > 1:
-        raise click.UsageError("--picture is of a single file")
-    if given["warm_start"] is not None and len(files) > 1:
-        raise click.UsageError("--warm-start takes a single file")
-    if given["required"] is not None and given["cover"] is None:
-        raise click.UsageError("--required needs --cover: without it everything has to be")
+    asked = {name for name, value in given.items() if value is not None}
+    wrong = {
+        "--strands needs --search-space surface": strands is not None and search_space == "paper",
+        "--limit needs --all": limit is not None and not every,
+        "--diverse needs --all": diverse is not None and not every,
+        "--diverse and --limit exclude each other": diverse is not None and limit is not None,
+        "--all needs --search-space paper: schemes are defined only there": (
+            every and search_space == "surface"
+        ),
+        "--refine-until-stable excludes --cover, --required, --left-alone, --warm-start "
+        "and --all: they are of a single mesh": (
+            refine and (every or asked & {"cover", "required", "left_alone", "warm_start"})
+        ),
+        "--color-cost excludes --all, --cover and --refine-until-stable: they are about the "
+        "number of segments": "objective" in asked and (every or refine or "cover" in asked),
+        "--picture is of a single file": picture is not None and len(files) > 1,
+        "--warm-start takes a single file": "warm_start" in asked and len(files) > 1,
+        "--required needs --cover: without it everything has to be": (
+            "required" in asked and "cover" not in asked
+        ),
+    }
+    for message, is_wrong in wrong.items():
+        if is_wrong:
+            raise click.UsageError(message)
 
 
 @cellcolor.command()
@@ -327,14 +310,7 @@ def check(seconds: float, **given: Any) -> Exit:
     required=True,
     type=INPUT,
 )
-@click.option(
-    "-o",
-    "--output",
-    metavar="OUT.(html|png|svg)",
-    required=True,
-    type=PATH,
-    help="The picture; the ending gives its format.",
-)
+@output_option("OUT.(html|png|svg)", "The picture; the ending gives its format.", required=True)
 @click.option(
     "--view",
     metavar="NAME",

@@ -23,6 +23,7 @@ from cellcolor.cli.options import (
     cellcolor,
     motion_options,
     one_of,
+    output_option,
 )
 from cellcolor.cli.progress import at_work, stages_of
 from cellcolor.cli.terminal import complain, say, say_lines
@@ -53,13 +54,10 @@ _PATTERN = click.option(
 @cellcolor.command()
 @click.argument("source", metavar="FILE", type=INPUT)
 @click.argument("claim", metavar="SOLUTION.json", type=PATH)
-@click.option(
-    "-o",
-    "--output",
-    metavar="OUT.surface.json",
+@output_option(
+    "OUT.surface.json",
+    "The painted surface; its plan is written beside it as OUT.plan.json.",
     required=True,
-    type=PATH,
-    help="The painted surface; its plan is written beside it as OUT.plan.json.",
 )
 @click.option(
     "--tool-radius",
@@ -164,21 +162,8 @@ def check_painted(output: Path, inputs: Sequence[Path]) -> Path:
 
 def write_painted(painted: Painted, output: Path, inputs: Sequence[Path]) -> None:
     """Write both files, or after a failure none; see :func:`check_painted`."""
-    from cellcolor.data.plan import Plan
-    from cellcolor.data.surface import LabelledSurface
-
     plan_path = check_painted(output, inputs)
-    write(
-        [
-            Output(plan_path, kind_of_format(Plan.FORMAT), [painted.plan.to_json().encode()]),
-            Output(
-                output,
-                kind_of_format(LabelledSurface.FORMAT),
-                [painted.surface.to_json().encode()],
-            ),
-        ],
-        inputs,
-    )
+    write([Output.of(plan_path, painted.plan), Output.of(output, painted.surface)], inputs)
 
 
 @cellcolor.command()
@@ -195,7 +180,7 @@ def write_painted(painted: Painted, output: Path, inputs: Sequence[Path]) -> Non
 @click.option(
     "--tool-radius-m", metavar="M", required=True, type=METRES, help="Of the tool's footprint."
 )
-@click.option("-o", "--output", metavar="PATHS.json", required=True, type=PATH, help="The paths.")
+@output_option("PATHS.json", "The paths.", required=True)
 @TIME_LIMIT
 def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     """Lay a tool path on every segment of a painted surface, without a robot.
@@ -207,8 +192,8 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
     from cellcolor.data.tool_paths import ToolPaths
     from cellcolor.door.painting import cover as covered_of
 
-    inputs, kind = [source, plan], kind_of_format(ToolPaths.FORMAT)
-    check_output(output, kind, inputs)
+    inputs = [source, plan]
+    check_output(output, kind_of_format(ToolPaths.FORMAT), inputs)
     surface, colors = LabelledSurface.read(source), Plan.read(plan)
     try:
         with stages_of(source, "covering") as report:
@@ -218,7 +203,7 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
         raise OutOfTime(message) from error
     except InputError as error:
         raise error if error.file or error.field else error.in_file(str(plan)) from error
-    write([Output(output, kind, [found.paths.to_json().encode()])], inputs)
+    write([Output.of(output, found.paths)], inputs)
     say(f"wrote {output}: {found}")
     for path, measures in zip(found.paths.paths, found.measures, strict=True):
         say(f"  segment {path.segment}: {measures}")
@@ -231,14 +216,7 @@ def cover(source: Path, plan: Path, output: Path, **wanted: Any) -> Exit:
 
 @cellcolor.command()
 @click.argument("scene", metavar="SCENE.toml", type=INPUT)
-@click.option(
-    "-o",
-    "--output",
-    metavar="FOLDER",
-    required=True,
-    type=PATH,
-    help="Folder for all files; it is created if it does not exist.",
-)
+@output_option("FOLDER", "Folder for all files; it is created if it does not exist.", required=True)
 @_PATTERN
 @COVER
 @REQUIRED

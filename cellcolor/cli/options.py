@@ -177,15 +177,30 @@ TIME_LIMIT = click.option(
 WORKERS = click.option(
     "--workers", metavar="N", type=click.IntRange(1, 1000), help="CP-SAT's search workers."
 )
+
+
+def output_option(
+    metavar: str, meaning: str, *, name: str = "output", required: bool = False
+) -> Callable[[Command], Command]:
+    """The option ``-o`` for what the command writes; ``name`` is that of its parameter."""
+    return click.option(
+        "-o", "--output", name, metavar=metavar, type=PATH, required=required, help=meaning
+    )
+
+
+def cover_option(meaning: str, **default: Any) -> Callable[[Command], Command]:
+    """The option ``--cover`` for a share that has to be covered."""
+    return click.option(
+        "--cover", metavar="S", type=click.FloatRange(0, 1), help=meaning, **default
+    )
+
+
 _PLACE = (
     "a box x,y,z,x,y,z (lowest and highest corner, m), a JSON file with a mask, or a labelled "
     "surface, for what it gives up."
 )
-COVER = click.option(
-    "--cover",
-    metavar="S",
-    type=click.FloatRange(0, 1),
-    help="Cover only this share of the area, 0 to 1, with the fewest lift-offs that do.",
+COVER = cover_option(
+    "Cover only this share of the area, 0 to 1, with the fewest lift-offs that do."
 )
 REQUIRED = click.option(
     "--required", metavar="PLACE", callback=_place, help=f"What has to be covered: {_PLACE}"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from cellcolor.cli.ending import Exit
-from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option
+from cellcolor.cli.options import INPUT, PATH, cellcolor, json_option, output_option
 from cellcolor.cli.terminal import apart_from, print_json, say
 from cellcolor.data.wording import count, listed
 from cellcolor.errors import InputError
@@ -25,7 +25,7 @@ _FORMATS = ("opb", "wcnf", "mps", "dzn", "lp")
 
 @cellcolor.command()
 @click.argument("source", metavar="FILE", type=INPUT)
-@click.option("-o", "--output", metavar="OUT", required=True, type=PATH, help="The model's file.")
+@output_option("OUT", "The model's file.", required=True)
 @click.option(
     "--format",
     "kind",
@@ -73,9 +73,7 @@ def export(source: Path, output: Path, kind: str | None) -> Exit:
     help="The format that the solver was given: opb and wcnf for lines v, mps for a file of names "
     "and values, dzn for what coloring.mzn prints, lp for what clingo prints.",
 )
-@click.option(
-    "-o", "--output", metavar="SOLUTION.json", required=True, type=PATH, help="The solution."
-)
+@output_option("SOLUTION.json", "The solution.", required=True)
 def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
     """Turn the answer of a solver from outside into a solution, once the checker has passed it.
 
@@ -87,15 +85,15 @@ def answer(source: Path, given: Path, kind: str, output: Path) -> Exit:
     from cellcolor.files.documents import read_text
     from cellcolor.solvers.portable import read_answer
 
-    inputs, form = [source, given], kind_of_format(Solution.FORMAT)
-    check_output(output, form, inputs)
+    inputs = [source, given]
+    check_output(output, kind_of_format(Solution.FORMAT), inputs)
     with apart_from(output):
         instance = read_instance(source)
         try:
             solution = _checked(instance, read_answer(instance, read_text(given), kind), kind)
         except InputError as error:
             raise error.in_file(str(given)) from error
-        write([Output(output, form, [solution.to_json().encode()])], inputs)
+        write([Output.of(output, solution)], inputs)
         say(f"wrote {output}: {count(solution.segments or 0, 'segment')}")
         for note in solution.notes:
             say(note)
@@ -125,9 +123,7 @@ def _checked(instance: Instance, found: OutsideAnswer, kind: str) -> Solution:
 
 @cellcolor.command(name="import")
 @click.argument("source", metavar="PROBLEM.txt", type=PATH)
-@click.option(
-    "-o", "--output", metavar="INSTANCE.json", required=True, type=PATH, help="The instance."
-)
+@output_option("INSTANCE.json", "The instance.", required=True)
 @click.option(
     "--correct",
     "corrections",
@@ -145,10 +141,9 @@ def import_(source: Path, output: Path, corrections: tuple[str, ...]) -> Exit:
     from cellcolor.data.instance import Instance
     from cellcolor.door.shipped import library
 
-    kind = kind_of_format(Instance.FORMAT)
-    check_output(output, kind, [source])
+    check_output(output, kind_of_format(Instance.FORMAT), [source])
     instance = read_imcgs(source, corrections, output.name.removesuffix(".json"))
-    write([Output(output, kind, [instance.to_json().encode()])], [source])
+    write([Output.of(output, instance)], [source])
     with apart_from(output):
         say(f"wrote {output}: {str(instance).partition(': ')[2]}")
         for entry in library().index.entries:

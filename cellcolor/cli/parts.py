@@ -9,7 +9,15 @@ from typing import Any
 import click
 
 from cellcolor.cli.ending import INTERRUPTS, Exit
-from cellcolor.cli.options import METRES, PATH, TIME_LIMIT, UNIT, cellcolor, json_option
+from cellcolor.cli.options import (
+    METRES,
+    PATH,
+    TIME_LIMIT,
+    UNIT,
+    cellcolor,
+    json_option,
+    output_option,
+)
 from cellcolor.cli.progress import at_work
 from cellcolor.cli.terminal import apart_from, print_json, say, say_lines
 from cellcolor.deadline import Deadline
@@ -23,13 +31,7 @@ _JSON = json_option("One JSON object.")
 @cellcolor.command()
 @_PART
 @UNIT
-@click.option(
-    "-o",
-    "--output",
-    metavar="OUT.(html|png|svg)",
-    type=PATH,
-    help="A picture with the faulty places marked.",
-)
+@output_option("OUT.(html|png|svg)", "A picture with the faulty places marked.")
 @TIME_LIMIT
 @_JSON
 def inspect(
@@ -66,7 +68,7 @@ def inspect(
 @cellcolor.command()
 @_PART
 @UNIT
-@click.option("-o", "--output", metavar="MESH.obj", required=True, type=PATH, help="The mesh.")
+@output_option("MESH.obj", "The mesh.", required=True)
 @click.option(
     "--fill-holes",
     "fill_holes_m",
@@ -123,14 +125,7 @@ def repair(
 @cellcolor.command()
 @_PART
 @click.argument("arm", metavar="ARM.urdf", type=PATH)
-@click.option(
-    "-o",
-    "--output",
-    metavar="FOLDER",
-    required=True,
-    type=PATH,
-    help="Folder for the files; it is created if it does not exist.",
-)
+@output_option("FOLDER", "Folder for the files; it is created if it does not exist.", required=True)
 @click.option(
     "--tool",
     metavar="TOOL.urdf",

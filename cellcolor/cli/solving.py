@@ -26,7 +26,6 @@ from cellcolor.data.instance import Instance
 from cellcolor.data.objective import FEWEST_SEGMENTS, Objective
 from cellcolor.data.schemes import scheme_line
 from cellcolor.data.solution import Division, SearchSpace, Solution
-from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture, kind_of_plot
 from cellcolor.door.result import Result
@@ -44,8 +43,6 @@ from cellcolor.questions.places import Place
 from cellcolor.solvers.interface import PORTFOLIO, STRANDS, Options
 
 _SOLUTION = kind_of_format(Solution.FORMAT)
-_SURFACE = kind_of_format(LabelledSurface.FORMAT)
-_INSTANCE = kind_of_format(Instance.FORMAT)
 _SCHEMES = 1000  # that are listed unless --limit says otherwise
 _CHOSEN = "The schemes listed are those of {:,} that differ most from each other, by painted area."
 
@@ -283,8 +280,7 @@ def _solve(file: Path, target: Path | None, request: Request, deadline: Deadline
     if not request.every:
         if target is not None:
             _make_folder(target)
-            content = [solution.to_json().encode()]
-            write([*beside, Output(target, _SOLUTION, content)], request.inputs)
+            write([*beside, Output.of(target, solution)], request.inputs)
         return result
     with _spool(target) as spool:
         if INTERRUPTS.seen:
@@ -305,10 +301,7 @@ def _solved(result: Result, target: Path) -> Output:
     what had to be covered; its surface, or its graph."""
     what = "covered" if result.refinement is None else "refined"
     beside = target.with_name(f"{target.name.removesuffix(target.suffix)}.{what}.json")
-    surface = result.surface
-    kind = _INSTANCE if surface is None else _SURFACE
-    text = (result.instance if surface is None else surface).to_json()
-    return Output(beside, kind, [text.encode()])
+    return Output.of(beside, result.instance if result.surface is None else result.surface)
 
 
 def _make_folder(target: Path) -> None:

@@ -14,7 +14,7 @@ from cellcolor.data.surface import LabelledSurface
 from cellcolor.door.subject import Subject
 from cellcolor.errors import InputError
 from cellcolor.files.paths import path_of
-from cellcolor.files.writing import Output, kind_of_format, write
+from cellcolor.files.writing import Output, write
 
 if TYPE_CHECKING:
     import cellcolor
@@ -89,8 +89,7 @@ class Result:
         Raises:
             InputError: there is something else, or it cannot be written.
         """
-        kind = kind_of_format(Solution.FORMAT)
-        write([Output(path_of(path), kind, [self.solution.to_json().encode()])])
+        write([Output.of(path_of(path), self.solution)])
 
     def plot(self, path: str | PathLike[str] | None = None, **view: Any) -> cellcolor.Drawing:
         """Draw the segments on the surface, or the graph where there is no surface.

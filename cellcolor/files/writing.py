@@ -9,6 +9,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar, Protocol
 
 from cellcolor.errors import InputError
 from cellcolor.files.temporary import Temporary, remove_strays, undisturbed
@@ -59,6 +60,15 @@ SVG = _kind("a picture", rb"<\?xml.*<dc:title>cellcolor/picture</dc:title>")
 SIDE_FILE = _kind("a side file", rb"PK.*cellcolor/reasons\Z")
 
 
+class Writable(Protocol):
+    """A value with a file format."""
+
+    FORMAT: ClassVar[str]
+
+    def to_json(self) -> str:
+        """The file's text."""
+
+
 @dataclass(frozen=True, slots=True)
 class Output:
     """A file to be written.
@@ -72,6 +82,11 @@ class Output:
     path: Path
     kind: FileKind
     content: Iterable[bytes]
+
+    @classmethod
+    def of(cls, path: Path, value: Writable) -> Output:
+        """The file of a value."""
+        return cls(path, kind_of_format(value.FORMAT), [value.to_json().encode()])
 
 
 def is_stream(path: Path) -> bool:
