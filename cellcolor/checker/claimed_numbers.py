@@ -1,7 +1,5 @@
 """The numbers of a solution: against its division, the instance, results known from elsewhere, and
-each other.
-
-"""
+each other."""
 
 from __future__ import annotations
 

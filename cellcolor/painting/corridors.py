@@ -111,7 +111,12 @@ class Room:
 
     def corridors(self) -> list[Corridor]:
         """Those that are at most half as wide as both their ends, or too narrow for a tool that
-        fits into both; narrowest first."""
+        fits into both; narrowest first.
+
+        They are saddles of the clearance, found as in a merge tree: vertices come in with falling
+        clearance, and where one connects two parts that were apart, it is the narrowest place
+        between them.
+        """
         peak: dict[int, float] = {}
         above: dict[int, int] = {}
 
@@ -124,7 +129,6 @@ class Room:
         clearance = self.clearance.tolist()
         tree: dict[int, list[int]] = {}
         found = []
-        # Parts of segments grow down from the vertices with most clearance, until they meet.
         for vertex in np.argsort(-self.clearance, kind="stable").tolist():
             self._deadline.check()
             if self._segment[vertex] < 0:

@@ -1,8 +1,8 @@
 """The fewest segments as a 0-1 linear model (search space ``paper``, cells with one live loop).
 
-Each segment is a tree of sub-cells, hung up at one of them, its root; the objective counts the
-roots, and the cells in which nothing is joined. ``docs/models.md`` explains every group of
-constraints below, each of which is a function here.
+Each segment is a tree of sub-cells with pointers to a root; the objective counts the roots, and the
+cells in which nothing is joined. ``docs/models.md`` explains every group of constraints below, each
+of which is a function here.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ class Region(NamedTuple):
     Attributes:
         cell: the first of its cells.
         color: which one continues.
-        longest_way: no way without a circle in a tree of sub-cells crosses more edges.
+        longest_way: no path in a tree of sub-cells crosses more edges.
     """
 
     cell: int
@@ -134,8 +134,8 @@ class Coloring:
             model.exactly([-one, self._up[edge], self._up[-edge]])
 
     def _one_chain(self, loop: tuple[int, ...]) -> None:
-        """A sub-cell is a chain of darts of one color; of two that are linked one points at the
-        other, so that all lead to the one that points across its edge."""
+        """A sub-cell is a chain of darts of one color, each linked to the next. Of two linked darts
+        one points at the other, so that all lead to the one that points across its edge."""
         model = self.model
         sides: dict[tuple[int, int, int], list[int]] = defaultdict(list)
         for dart, other in combinations(loop, 2):
@@ -158,8 +158,11 @@ class Coloring:
             model.one_at_most([*links, -self.joined[abs(dart), color]])
 
     def _no_crossing(self, loop: tuple[int, ...]) -> None:
-        """Of the links that come from before a dart and end at a later one, and those that start at
-        the dart and go beyond, there is one at most. With no dart before: one link either way."""
+        """Links are arcs over a line of darts that do not cross, and no dart has two on a side.
+
+        Take two darts. Arcs from before the first to the second, and arcs from the first to beyond
+        the second, cross each other or share an end: at most one of all these is there.
+        """
         into: dict[int, list[tuple[int, int]]] = defaultdict(list)
         out: dict[int, list[tuple[int, int]]] = defaultdict(list)
         place = {dart: at for at, dart in enumerate(loop)}
@@ -177,8 +180,11 @@ class Coloring:
                 self.model.one_at_most([*over, *beyond])
 
     def _roots(self) -> None:
-        """A root is the first dart in state 1 of an undivided cell. A cell is alone if it has no
-        dart in state 1. Roots, and cells that are alone, are what is counted."""
+        """What is counted: roots, and cells that are alone, with no dart in state 1.
+
+        A root is the first dart in state 1 of an undivided cell; every segment has such a cell
+        (docs/encodings.md).
+        """
         model = self.model
         for cell, loop in enumerate(self._loops):
             alone = model.new("alone", cell)
@@ -201,10 +207,11 @@ class Coloring:
             self.model.exactly([-self._is_one[abs(dart)], *ways])
 
     def _no_circles(self) -> None:
-        """Ranks are equal along chains and fall towards the parent, so that no circle is counted.
+        """Ranks are equal along chains and fall towards the parent, so pointers form no cycle.
 
-        Ranks count joined edges on the way to the root, so none is higher than the longest way in
-        the color region. ``rank[dart, n]`` says that the rank is n or more.
+        They are in unary (order encoding): ``rank[dart, n]`` says that the rank is n or more. Ranks
+        count joined edges on the way to the root, so none is higher than the longest way in the
+        color region.
         """
         model = self.model
         cell_of = {dart: cell for cell, loop in enumerate(self._loops) for dart in loop}
@@ -234,8 +241,8 @@ class Coloring:
                     model.some(-link, -rank[one, level], *same)
 
     def _cover(self) -> None:
-        """Redundant: a color region in use has a root in it, and every cell touches one in use or
-        is alone. So the linear relaxation knows the set cover."""
+        """Redundant, so that the linear relaxation knows the set cover: a color region in use has a
+        root in it, and every cell touches one in use or is alone."""
         model = self.model
         used: dict[Region, int] = {}
         inside: dict[Region, list[int]] = defaultdict(list)
