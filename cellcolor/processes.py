@@ -67,8 +67,8 @@ class Child:
                 stderr=self._errors,
                 encoding="utf-8",
                 errors="replace",
-                # Ctrl-C reaches it by way of us only. It stays in the session, by which who watches
-                # this process finds and kills all that belongs to it.
+                # Ctrl-C reaches it through this process only. It stays in the session: whoever
+                # watches this process kills everything in its session.
                 process_group=0 if os.name == "posix" else None,
             )
         except OSError as error:

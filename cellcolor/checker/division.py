@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from cellcolor.checker.certificates import BoundVerdict, verify_bound
@@ -15,7 +15,6 @@ from cellcolor.checker.groups import Groups
 from cellcolor.checker.scheme_rules import (
     Joinable,
     PaintedCell,
-    PaintedLoops,
     crossing,
     idle_cut,
     on_loops,
@@ -75,10 +74,8 @@ def check_division(
         seams: the seams that the darts refer to.
         strands: strands per live edge.
     """
-    if [cell.id for cell in division] != [cell.id for cell in instance.cells]:
-        return Report(
-            (f"cells: must be cells 0 to {len(instance.cells) - 1}, each once",), (), None
-        )
+    if problems := _id_problems(instance, division):
+        return Report(tuple(problems), (), None)
     try:
         lists = live_lists(instance, seams, strands)
     except BadSeams as error:
@@ -91,7 +88,6 @@ def check_division(
         edge = abs(strand[0])
         return own_colors[edge] if edge in own_colors else frozenset(instance.joinable(edge))
 
-    problems: list[str] = []
     painted: list[PaintedCell] = []
     for cell, darts in zip(division, lists, strict=True):
         found = _cell_problems(instance, cell, darts) or _crossing_problems(cell, darts)
@@ -107,11 +103,12 @@ def check_division(
     stuck = unavoidable_join(painted, joinable)
     if stuck is not None and seams:
         stuck = unavoidable_join_on_loops(on_loops(instance, division, seams, strands), joinable)
-    if stuck is not None:
-        problems.append(f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0")
-    labels, segments = _segments(division)
-    problems += labels
-    return Report(tuple(problems), tuple(_not_canonical(painted)), segments)
+    canonical = [
+        reason
+        for number, cell in enumerate(painted)
+        for reason in _not_canonical(number, cell, [cell])
+    ]
+    return _legal(division, stuck, canonical)
 
 
 def check_scheme(instance: Instance, division: Division) -> Report:
@@ -124,15 +121,12 @@ def check_scheme(instance: Instance, division: Division) -> Report:
     """
     if instance.most_live_loops < 2:
         return check_division(instance, division)
-    if [cell.id for cell in division] != [cell.id for cell in instance.cells]:
-        return Report(
-            (f"cells: must be cells 0 to {len(instance.cells) - 1}, each once",), (), None
-        )
+    if problems := _id_problems(instance, division):
+        return Report(tuple(problems), (), None)
 
     def joinable(strand: Strand) -> frozenset[int]:
         return frozenset(instance.joinable(strand[0]))
 
-    problems: list[str] = []
     for cell, loops in zip(division, instance.live_loops, strict=True):
         darts = [(dart, 1) for loop in loops for dart in loop]
         problems += _cell_problems(instance, cell, darts)
@@ -145,11 +139,35 @@ def check_scheme(instance: Instance, division: Division) -> Report:
         ] or _edge_problems(division, joinable)
     if problems:
         return Report(tuple(problems), (), None)
-    stuck = unavoidable_join_on_loops(cells, joinable)
+    canonical: list[str] = []
+    for its in cells:
+        canonical += _not_canonical(its.id, its.whole, its.loops)
+        pair = its.unconnected_pair()
+        if pair is not None:
+            canonical.append(
+                f"cells[{its.id}].subcells: {pair[0]} and {pair[1]} have one color and no chain "
+                "of loops connects them"
+            )
+    return _legal(division, unavoidable_join_on_loops(cells, joinable), canonical)
+
+
+def _id_problems(instance: Instance, division: Division) -> list[str]:
+    if [cell.id for cell in division] == [cell.id for cell in instance.cells]:
+        return []
+    return [f"cells: must be cells 0 to {len(instance.cells) - 1}, each once"]
+
+
+def _legal(division: Division, stuck: Strand | None, not_canonical: Sequence[str]) -> Report:
+    """The report on a division whose cells and joined edges are legal.
+
+    Args:
+        stuck: an edge in state 0 that has to show one joinable color on both sides; None if none.
+    """
+    problems, segments = _segments(division)
     if stuck is not None:
-        problems.append(f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0")
-    labels, segments = _segments(division)
-    return Report(tuple(problems + labels), tuple(_not_canonical_on_loops(cells)), segments)
+        text = f"edge {_edge(stuck)}: shows one joinable color on both sides in state 0"
+        problems.insert(0, text)
+    return Report(tuple(problems), tuple(not_canonical), segments)
 
 
 def check_solution(
@@ -292,39 +310,14 @@ def _segments(division: Division) -> tuple[list[str], int]:
     return problems, len(components)
 
 
-def _not_canonical(cells: Sequence[PaintedCell]) -> list[str]:
-    reasons = []
-    for number, cell in enumerate(cells):
-        block = superfluous(cell)
-        if block is not None:
-            reasons.append(f"cells[{number}].subcells[{block}]: fewer than two darts in state 1")
-        cut = idle_cut(cell)
-        if cut is not None:
-            reasons.append(
-                f"cells[{number}]: a cut between {_text(cut[0])} and {_text(cut[1])} "
-                "separates equal colors"
-            )
-    return reasons
-
-
-def _not_canonical_on_loops(cells: Sequence[PaintedLoops]) -> list[str]:
-    reasons = []
-    for cell in cells:
-        block = superfluous(cell.whole)
-        if block is not None:
-            reasons.append(f"cells[{cell.id}].subcells[{block}]: fewer than two darts in state 1")
-        reasons += [
-            f"cells[{cell.id}]: a cut between {_text(cut[0])} and {_text(cut[1])} "
-            "separates equal colors"
-            for cut in filter(None, map(idle_cut, cell.loops))
-        ]
-        pair = cell.unconnected_pair()
-        if pair is not None:
-            reasons.append(
-                f"cells[{cell.id}].subcells: {pair[0]} and {pair[1]} have one color and no chain "
-                "of loops connects them"
-            )
-    return reasons
+def _not_canonical(number: int, cell: PaintedCell, loops: Sequence[PaintedCell]) -> Iterator[str]:
+    """Why the division of a cell is not that of a scheme, as far as single loops tell."""
+    block = superfluous(cell)
+    if block is not None:
+        yield f"cells[{number}].subcells[{block}]: fewer than two darts in state 1"
+    for cut in filter(None, map(idle_cut, loops)):
+        between = f"{_text(cut[0])} and {_text(cut[1])}"
+        yield f"cells[{number}]: a cut between {between} separates equal colors"
 
 
 def _text(dart: Strand) -> str:

@@ -253,7 +253,11 @@ class Instance(Document):
                 "cells": [
                     [
                         cell.colors,
-                        sorted([*loop[at:], *loop[:at]] for loop, at in _from_smallest(cell.loops)),
+                        sorted(
+                            [*loop[at:], *loop[:at]]
+                            for loop in cell.loops
+                            for at in (loop.index(min(loop)),)
+                        ),
                     ]
                     for cell in self.cells
                 ],
@@ -273,11 +277,6 @@ class Instance(Document):
             # The old fingerprint depends on the order of colors, which an instance does not keep.
             instance.__dict__["sha256_of_version_1"] = _fingerprint_of_version_1(document)
         return instance
-
-
-def _from_smallest(loops: Sequence[tuple[int, ...]]) -> list[tuple[tuple[int, ...], int]]:
-    """Each loop with the place of its smallest dart."""
-    return [(loop, loop.index(min(loop))) for loop in loops]
 
 
 def _given(document: dict[str, Any], **optional: object) -> dict[str, Any]:

@@ -117,7 +117,7 @@ class LibraryEntry(Value):
         file: an instance, or a labelled surface that is decomposed into one, seen from the index;
             null where the graph is not here.
         outside: where it can be found otherwise; null for a file that is here.
-        sha256: of the bytes of the file, be it here or outside.
+        sha256: of the bytes of the file, which may be here or outside.
         fingerprint: of the graph: what solutions refer to it by (docs/formats.md).
         cells: how many.
         edges: how many.

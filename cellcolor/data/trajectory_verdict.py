@@ -91,7 +91,7 @@ class CoveredArea(Value):
         most_visits: of any place.
         visited_again_share: share of the area visited at all that is visited more than once.
         repeated_m: length of the passes that run along an earlier one.
-        stated_repeated_m: length of what of it the trajectory itself states.
+        stated_repeated_m: the part of that length that the trajectory itself states.
         length_m: of all that is done in contact.
         length_times_spacing_per_area: 1 if passes lie side by side at just the spacing.
     """

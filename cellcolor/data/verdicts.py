@@ -150,7 +150,7 @@ class PlanVerdict(AboutAFile):
             no fewer are, null where that is open or the plan not valid.
         gap: how many segments more than lower_bound, which is the most that can be saved; null
             when the plan is not valid.
-        on_mesh: between what the fewest segments of plans on this mesh lie, as far as is known.
+        on_mesh: the range of the fewest segments of plans on this mesh, as far as it is known.
         improvement: how it can have fewer segments; null where no such painting is known.
         why: of an optimal plan why there cannot be fewer segments, a clause; null where nothing
             needs a reason or none is known.

@@ -19,7 +19,6 @@ from cellcolor.solvers.interface import Options
 
 if TYPE_CHECKING:
     from cellcolor.arrays import Array, Mask
-    from cellcolor.data.surface import LabelledSurface
 
 _FOR_FRONT = 0.5  # of the time that is left
 
@@ -89,7 +88,9 @@ def rest_of(
     if wanted.left_alone is not None:
         whole = subject.surface
         subject = left_alone(subject, wanted.left_alone)
-        notes = (_alone_in_words(whole, subject.surface),)
+        left = sorted(set(subject.surface.given_up) - set(whole.given_up))
+        share = whole.vertex_areas[left].sum() / whole.vertex_areas.sum()
+        notes = (f"{share:.1%} of the surface can be covered and is left alone on purpose.",)
     if wanted.whole or subject.graph(options.deadline).nothing_to_cover:
         return subject, notes, 1.0
     options = replace(options, deadline=options.deadline.share(_FOR_FRONT))
@@ -164,12 +165,6 @@ def _without_cells(subject: Subject, cells: Sequence[int]) -> Subject:
     if subject.given_instance is not None:
         return Subject(None, given_instance=subject.given_instance.without_cells(cells)[0])
     return _restricted(subject, np.isin(_cells(subject), cells))
-
-
-def _alone_in_words(whole: LabelledSurface, rest: LabelledSurface) -> str:
-    left = sorted(set(rest.given_up) - set(whole.given_up))
-    share = whole.vertex_areas[left].sum() / whole.vertex_areas.sum()
-    return f"{share:.1%} of the surface can be covered and is left alone on purpose."
 
 
 def _share_in_words(front: Front, point: FrontPoint, cover: float) -> str:

@@ -128,7 +128,7 @@ def _line(path: Path | None, entry: dict[str, Any] | None) -> str:
     """A line about a name: the file's own words, and what the index knows of the graph."""
     if path is not None and path.suffix == ".toml":
         kind = "robot" if path.parent.name == "robots" else "scene"
-        about = f"{kind}: {_first_sentence(_comment(path))}"
+        about = f"{kind}: {_comment(path).split('. ')[0].removesuffix('.')}."
         return about if entry is None else f"{about} Its graph: {_known(entry)}"
     if entry is None:
         return "graph or surface, not in the index"
@@ -152,7 +152,3 @@ def _comment(path: Path) -> str:
             break
         comment.append(line.removeprefix("#").strip())
     return " ".join(comment)
-
-
-def _first_sentence(text: str) -> str:
-    return text.split(". ")[0].removesuffix(".") + "."

@@ -13,7 +13,6 @@ import re
 import numpy as np
 
 from cellcolor.arrays import Array
-from cellcolor.data.tool_paths import ToolPath
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.files.writing import FileKind
 
@@ -30,7 +29,9 @@ def tool_paths_yaml(planned: PlannedMotion) -> bytes:
         if not paths:
             lines.append("- []\n")
         for number, path in enumerate(paths):
-            poses = np.concatenate([path.points, _orientations(path)], axis=1)
+            z = path.normals / np.linalg.norm(path.normals, axis=1, keepdims=True)
+            turns = quaternions(_travel(path.points, z), z)
+            poses = np.concatenate([path.points, turns], axis=1)
             for row, pose in enumerate(poses.tolist()):
                 outer = "- " if number == row == 0 else "  "
                 middle = "- " if row == 0 else "  "
@@ -38,12 +39,6 @@ def tool_paths_yaml(planned: PlannedMotion) -> bytes:
                 members = ", ".join(f"{key}: {value:.9f}" for key, value in keys)
                 lines.append(f"{outer}{middle}- {{{members}}}\n")
     return "".join(lines if len(lines) > 1 else [_MARK, "[]\n"]).encode()
-
-
-def _orientations(path: ToolPath) -> Array:
-    """(k, 4) unit quaternions x, y, z, w of the poses along a path."""
-    z = path.normals / np.linalg.norm(path.normals, axis=1, keepdims=True)
-    return quaternions(_travel(path.points, z), z)
 
 
 def _travel(points: Array, z: Array) -> Array:

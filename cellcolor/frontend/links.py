@@ -126,7 +126,7 @@ def valid_links(
     if prepared.setup.constraints.collision:
         _in_parts(free_part, chunks(len(asked), each), deadline)
     spacing = prepared.setup.continuity.validity_spacing_m
-    assert spacing is not None  # asked by who calls
+    assert spacing is not None  # the caller has checked
     counts = np.maximum(np.ceil(surface.lengths(edges) / spacing).astype(int), 2)
     at_vertices = tracked.reshape(-1, *candidates.valid.shape, 3)
     longest = prepared.judge.tracked_steps

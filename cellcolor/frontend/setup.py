@@ -119,7 +119,7 @@ class Turn(Table):
 
     @property
     def is_choice(self) -> bool:
-        """Whether a set of turns is given, be it of one only: then colors are named after them."""
+        """Whether a set of turns is given, even a set of one: then colors are named after them."""
         return self.turns is not None or self.turns_deg is not None
 
     @property

@@ -22,7 +22,7 @@ from cellcolor.solvers.interface import STRANDS, Options
 
 @dataclass(frozen=True, slots=True)
 class ProvenRange:
-    """Between what the fewest segments of a surface lie, both ends included.
+    """The range that the fewest segments of a surface lie in, both ends included.
 
     Attributes:
         lower: no division of the surface has fewer segments.

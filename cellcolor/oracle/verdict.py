@@ -89,7 +89,7 @@ class Verdict:
 
     @property
     def on_mesh(self) -> ProvenRange | None:
-        """Between what the fewest segments of plans on this mesh lie, as far as is known.
+        """The range of the fewest segments of plans on this mesh, as far as it is known.
 
         None when the plan is not valid or nothing was proved.
         """

@@ -28,7 +28,7 @@ class Borders:
 
     Attributes:
         length_m: of all borders between segments, m.
-        cost: mean over the area that has a color of what the caller's cost says of it; 0 without.
+        cost: mean of the caller's cost over the area that has a color; 0 if there is no such cost.
         narrow: corridors in which the tool's footprint does not stay inside.
         narrowest: the narrowest corridor; None if all are wider than three tool radii.
         repeated_m2: area that the tool passes over a second time where its footprint cannot stay

@@ -144,7 +144,9 @@ class Room:
                     best = other  # the side of the vertex itself from now on
                 elif lower >= 2 * clearance[vertex] or clearance[vertex] < self.radius <= lower:
                     way = (vertex, *self._roomward(tree, best), *self._roomward(tree, other))
-                    found.append(self._corridor(way))
+                    x, y, z = self._nearby.surface.vertices[vertex].tolist()
+                    width = 2 * clearance[vertex]
+                    found.append(Corridor(self._segment[vertex], width, (x, y, z), way))
                 peak[first] = max(peak[first], peak[second])
                 above[second] = first
                 tree[vertex].append(other)
@@ -156,11 +158,6 @@ class Room:
         for other in self._nearby.around[vertex]:
             if self._segment[other] == self._segment[vertex] and self._joined(vertex, other):
                 yield other
-
-    def _corridor(self, way: tuple[int, ...]) -> Corridor:
-        x, y, z = self._nearby.surface.vertices[way[0]].tolist()
-        width = 2 * float(self.clearance[way[0]])
-        return Corridor(self._segment[way[0]], width, (x, y, z), way)
 
     def _roomward(self, tree: dict[int, list[int]], first: int) -> list[int]:
         """The vertices on the way from one to where the tool has room, that one left out."""

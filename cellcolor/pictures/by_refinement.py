@@ -70,7 +70,7 @@ def _branches(step: RefinedStep) -> list[tuple[str, ...]]:
 
 
 def _without_counterpart(before: Sequence[int], cells: Labels) -> Mask:
-    """Which cells (k,) have not the same of the older vertices as one cell of the step before."""
+    """Which cells (k,) do not have exactly the older vertices of one cell of the step before."""
     owners: dict[int, set[int]] = defaultdict(set)
     owned: dict[int, set[int]] = defaultdict(set)
     for old, new in zip(before, cells[: len(before)].tolist(), strict=True):

@@ -6,7 +6,6 @@ import textwrap
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
 from cellcolor.frontend.parts.inspection import Inspection
 from cellcolor.pictures.palette import FAINT
 from cellcolor.pictures.picture import Layer, Picture3D, SpaceLines
@@ -25,7 +24,9 @@ def faulty_part(inspection: Inspection) -> Picture3D:
     if len(faces) > _MOST:
         notes.append(f"{_MOST:,} of {len(faces):,} faces are drawn.")
         faces = faces[np.linspace(0, len(faces) - 1, _MOST).astype(np.int64)]
-    layers = [Layer("part", FAINT, *_compact(inspection.vertices, faces), solid=True)]
+    used, number = np.unique(faces, return_inverse=True)
+    corners_of = number.reshape(-1, 3).astype(np.int64)
+    layers = [Layer("part", FAINT, inspection.vertices[used], corners_of, solid=True)]
     places = inspection.facts.places
     for (name, corners), fill in zip(places.faces.items(), _FILLS, strict=True):
         if len(corners):
@@ -46,8 +47,3 @@ def faulty_part(inspection: Inspection) -> Picture3D:
     return Picture3D(
         title, tuple(layers), tuple(lines), (), tuple(notes), eye / np.linalg.norm(eye)
     )
-
-
-def _compact(vertices: Array, faces: Index) -> tuple[Array, Index]:
-    used, number = np.unique(faces, return_inverse=True)
-    return vertices[used], number.reshape(-1, 3).astype(np.int64)

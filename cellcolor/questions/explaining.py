@@ -1,10 +1,10 @@
 """``cellcolor.explain``: which limit, obstacle or test costs a lift-off.
 
-Each thing that a scene asks for is relaxed alone, and the scene solved without it, with proof. More
-reach can need more lift-offs, so number and area are told together. Of what saves a lift-off the
-least amount that does is looked for by bisection. Where no single thing does, sets of two and three
-are tried: the smallest that do are minimal correction sets, as in the analysis of constraints that
-contradict each other (Liffiton and Sakallah, 2008).
+Each thing that a scene asks for is relaxed alone, and the scene is solved without it, with proof.
+More reach can need more lift-offs, so number and area are told together. For a thing that saves a
+lift-off, bisection looks for the least amount that does. Where no single thing does, sets of two
+and three are tried: the smallest that do are minimal correction sets, as in the analysis of
+constraints that contradict each other (Liffiton and Sakallah, 2008).
 """
 
 from __future__ import annotations
@@ -109,7 +109,7 @@ def _rank(row: RelaxedMinimum) -> tuple[float, float]:
 
 @dataclass(frozen=True, eq=False)
 class _Known:
-    """A scene that is solved: its surfaces, the finest last, their stages, and its row."""
+    """A solved scene: each surface on the way to the finest, with its stages, and the result."""
 
     levels: list[tuple[PreparedScene, Judged]]
     row: RelaxedMinimum
@@ -121,14 +121,20 @@ class _Known:
 
 
 class _Asked:
-    """A scene whose stages are known, asked for its minimum without some things."""
+    """A scene whose stages are known, asked for its minimum without some things.
+
+    A relaxed scene is seldom built from scratch (``_solved``). If its things are tests only, it is
+    judged from a known scene, with only the tests that differ (``_again``); and if the same
+    candidates and links are valid there, it need not be solved either. Known are the scene as it
+    is, and the scenes without one thing in which more was valid (``_freer``).
+    """
 
     def __init__(self, prepared: PreparedScene, options: Options) -> None:
         self._prepared, self._options = prepared, options
         self._known = self._solved(border_levels(prepared, self._clock), ())
         self.base, self.things = self._known.row, relaxations_of(prepared)
         self._quick = self._known.coarse.stages.named and prepared.scene.tolerance is None
-        # Without one of the things, where more is valid then.
+        # The scene without each thing that was tried alone, where more is valid then.
         self._freer: dict[Relaxation, _Known] = {}
 
     @property
@@ -158,7 +164,11 @@ class _Asked:
     def _relaxed(
         self, what: Sequence[Relaxation], known: _Known, rest: Sequence[Relaxation]
     ) -> _Known:
-        """The scene without these things, from a stricter one: the rest is what it still asks."""
+        """The scene without these things, judged from a stricter one that is known.
+
+        Args:
+            rest: those of the things that the known scene still asks for.
+        """
         try:
             if not self._quick or any(one.reasons is None for one in what):
                 relaxed = without(self._prepared, what)
@@ -170,7 +180,10 @@ class _Asked:
             return replace(known, row=row)
 
     def _nearest(self, what: Sequence[Relaxation]) -> tuple[_Known, list[Relaxation]]:
-        """The scene without one of these things or none, where it is known, and the others."""
+        """The known scene to judge from, and those of these things that it still asks for.
+
+        It is the scene without the one thing that frees most, or the scene as it is.
+        """
         freer = [one for one in what if one in self._freer]
         if not freer:
             return self._known, list(what)
@@ -178,7 +191,11 @@ class _Asked:
         return self._freer[first], [one for one in what if one != first]
 
     def _without_some(self, one: Relaxation, amount: float, less: _Known) -> _Known:
-        """The scene with a thing weakened by an amount, from that with less of it."""
+        """The scene with a thing weakened by an amount.
+
+        Args:
+            less: the scene with it weakened by less, to judge from.
+        """
         some = one.by(amount)
         if one in self._freer and some.reasons is None:
             found = self._again(judged_asking_more, self._freer[one], [some], _reasons_of([one]))
@@ -193,7 +210,12 @@ class _Asked:
         what: Sequence[Relaxation],
         reasons: frozenset[str],
     ) -> _Known:
-        """The scene without some things, from one that differs by what some tests ask only."""
+        """The scene without some things, judged from a known one that differs in some tests only.
+
+        Args:
+            judged_anew: judges with more or with fewer tests.
+            reasons: the tests in which the two differ.
+        """
         relaxed, first = without(self._prepared, what), None
         for prepared, before in known.levels:
             here = replace(relaxed, surface=prepared.surface)
@@ -237,7 +259,7 @@ class _Asked:
         return _Known(known, row)
 
     def least_amount(self, one: Relaxation) -> RelaxedMinimum:
-        """The least amount found that saves a lift-off; if none does, the greatest."""
+        """The row of the least amount that saves a lift-off; if none does, of the greatest."""
         tried: dict[float, RelaxedMinimum] = {}
         too_little = self._known  # the most of it that was not enough; less is not tried again
 
@@ -294,7 +316,7 @@ class _Asked:
         return []
 
     def _refuses(self, one: Relaxation, things: Sequence[Relaxation], free: Judged) -> bool:
-        """Whether a thing alone refuses a candidate that is valid without all things."""
+        """Whether a thing alone refuses a candidate that is valid without any of the things."""
         only = without(self._prepared, [other for other in things if other != one])
         test, valid = only.judge.only(_reasons_of([one])), free.stages.candidates.valid
         verdicts = test(free.stages.candidates.configurations[valid], self._options.deadline)

@@ -42,7 +42,7 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
     Args:
         name: of the solver.
         options: for the solver.
-        start: whether it is to start from a division, be it in the options yet or not.
+        start: whether it is to start from a division, even if the options have none yet.
         schemes: whether it is to list all optimal schemes.
 
     Raises:

@@ -66,7 +66,7 @@ class SurfaceUnderTest:
 
     @property
     def bounds(self) -> ProvenRange:
-        """Between what the fewest segments lie; from the cache where it is known there."""
+        """The range of the fewest segments; from the cache where it is known there."""
         return self._oracle.bounds
 
     def judge(self, plan: AnyPlan) -> Verdict:

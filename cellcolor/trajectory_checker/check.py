@@ -52,8 +52,8 @@ def check_trajectory(
         built: the scene and its labelled surface: the area that has a color has to be covered.
         trajectory: what is judged.
         timed: whether its times mean anything; without them velocities are not judged.
-        tells: whether it can say what it leaves out. A table cannot: of it whatever no branch can
-            do counts as stated.
+        tells: whether it can say what it leaves out. A table cannot, so it may leave out whatever
+            no branch can reach.
         minimum_lift_offs: what its lift-offs are compared with.
         limits: what it has to cover and may repeat; the usual ones without.
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
@@ -84,17 +83,17 @@ class FaultList:
         text: Callable[[int, int], str],
         places: Array,
     ) -> None:
-        """The same for every joint: ``at_fault`` and ``excess`` (k, joints), a text of row and
-        joint that the joint's name goes before.
+        """The same for each joint; ``text`` says of a row and a joint what follows its name.
+
+        Args:
+            at_fault, excess: (k, joints).
         """
         for joint in np.flatnonzero(at_fault.any(axis=0)).tolist():
-            name = self._joint_names[joint]
-            said = partial(_of_joint, name, joint, text)
+
+            def said(row: int, joint: int = joint) -> str:
+                return f"{self._joint_names[joint]} {text(row, joint)}"
+
             self.add_stretches(kind, at_fault[:, joint], excess[:, joint], said, places, joint)
-
-
-def _of_joint(name: str, joint: int, text: Callable[[int, int], str], row: int) -> str:
-    return f"{name} {text(row, joint)}"
 
 
 def stretches(of: Mask) -> list[tuple[int, int]]:

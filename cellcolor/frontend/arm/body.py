@@ -99,12 +99,6 @@ def mesh_bodies(
     return StandIn(link, file, chosen, vertices, faces, (_polyhedral(link, joint, solid),))
 
 
-def box_body(link: str, joint: int, size: tuple[float, ...], turn: Array, center: Array) -> Body:
-    """A box whose middle is at ``center`` (3,) and whose sides lie along ``turn`` (3, 3)."""
-    vertices, faces = box(size)
-    return _polyhedral(link, joint, Polyhedron(vertices @ turn.T + center, faces))
-
-
 def _polyhedral(link: str, joint: int, solid: Polyhedron) -> Body:
     return Body(link, joint, *capsule_around(solid.vertices), flat=False, solid=solid)
 
@@ -195,7 +189,9 @@ def place_shapes(
             joint, turn = int(at.parentJoint), np.array(at.placement.rotation)
             center = np.array(at.placement.translation)
             if shape.kind == "box":
-                bodies.append(box_body(link, joint, shape.sizes, turn, center))
+                corners, sides = box(shape.sizes)
+                solid = Polyhedron(corners @ turn.T + center, sides)
+                bodies.append(_polyhedral(link, joint, solid))
                 continue
             place = f"link[{link}].collision[{number}].mesh"
             file = find_mesh(shape.file, tree.file, place, tree.folder, shapes.package_folders)
@@ -208,7 +204,7 @@ def place_shapes(
 
 
 def _primitives(own: tuple[LinkShape, ...], placed: list[pin.GeometryObject]) -> list[Primitive]:
-    """The round shapes of a link, as far as Pinocchio knows them with its numbers."""
+    """The round shapes of a link, placed as Pinocchio has read them."""
     return [
         Primitive(
             shape.kind,

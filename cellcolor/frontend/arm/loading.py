@@ -106,7 +106,11 @@ def load_robot(
         lower, upper = within_limits(whole, moving, frames, *limits)
     except InputError as error:
         raise _in_its_file(error, arm, tool) from error
-    bodies = hung_on(bodies, whole, frames, joints)
+    # Bodies behind a follower hang on its frame; where they are at zero stays the same.
+    number = {frame.link: joints + 1 + index for index, frame in enumerate(frames)}
+    bodies = tuple(
+        replace(body, joint=_carrier(whole, body.link, number, body.joint)) for body in bodies
+    )
     tip = model.frames[model.getFrameId(tip_link, pin.FrameType.BODY)]
     names = tuple(model.names[1:])
     endless = np.array([whole.kinds[name] == CONTINUOUS for name in names], dtype=bool)
@@ -300,18 +304,8 @@ def following_frames(
     return tuple(found)
 
 
-def hung_on(
-    bodies: tuple[Body, ...], urdf: Urdf, frames: tuple[FollowingFrame, ...], joints: int
-) -> tuple[Body, ...]:
-    """The bodies, those behind a follower on its frame; where they are at zero stays the same."""
-    number = {frame.link: joints + 1 + index for index, frame in enumerate(frames)}
-    return tuple(
-        replace(body, joint=_carrier(urdf, body.link, number, body.joint)) for body in bodies
-    )
-
-
 def _carrier(urdf: Urdf, link: str, number: Mapping[str, int], joint: int) -> int:
-    """The frame of the last follower before a link, as far as it is not before a moving joint."""
+    """The frame of the last follower between a link and the joint that moves it, or of that joint."""
     for each in reversed(urdf.chain(link)):
         if each in number:
             return number[each]
@@ -330,8 +324,8 @@ def within_limits(
     """Limits (joints,) of the chain in which its followers are inside of theirs as well.
 
     Raises:
-        InputError: there is no position of a leader where its follower is inside, or the follower
-            is in several places for one angle of the leader, which is told from no other then.
+        InputError: there is no position of a leader where its follower is inside, or the leader can
+            turn by more than a circle and the follower is elsewhere after a full one.
     """
     lower, upper = lower.copy(), upper.copy()
     joints = {joint.get("name", ""): joint for joint in urdf.xml.findall("joint")}

@@ -121,7 +121,7 @@ class PlanarThree(PlanarTwo):
     free_turn: ClassVar[TaskSpace | None] = None
 
     def _check_locked(self, files: RobotFiles) -> None:
-        """The third joint is solved for by who asks for the turn."""
+        """No joint is locked: the one that turns the tool is solved for with the turn."""
 
 
 class ScaraWithoutTurn(PlanarTwo):
@@ -167,4 +167,4 @@ class Scara(ScaraWithoutTurn):
     free_turn: ClassVar[TaskSpace | None] = None
 
     def _check_locked(self, files: RobotFiles) -> None:
-        """The third turning joint is solved for by who asks for the turn."""
+        """No joint is locked: the one that turns the tool is solved for with the turn."""

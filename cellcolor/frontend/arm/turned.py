@@ -85,23 +85,6 @@ def shoulder_of(robot: Robot) -> Array:
     return nearest_points(origins[0], axes[0], origins[1], axes[1])[0]
 
 
-def last_frames(
-    robot: Robot, points: Array, directions: Array, across: Array
-) -> tuple[Array, Array]:
-    """Where the frame behind the last joint is, with the tool in some poses.
-
-    Args:
-        points: (n, 3) of the tip, m.
-        directions, across: (n, 3) unit vectors of the tool's z and x axis, at right angles.
-
-    Returns:
-        Rotations (n, 3, 3) and origins (n, 3) in m.
-    """
-    tools = np.stack([across, np.cross(directions, across), directions], axis=2)
-    rotation = tools @ robot.tip[:3, :3].T
-    return rotation, points - turned(rotation, robot.tip[:3, 3])
-
-
 def on_last_axis(robot: Robot) -> Robot:
     """The same arm with another tool, whose turn is free: on the last axis, beside the true tip.
 
@@ -271,7 +254,9 @@ class TurnedKinematics(InverseKinematics):
         self, points: Array, directions: Array, across: Array
     ) -> tuple[Array, Array, Array]:
         """Rotations of the last frame, and tips and directions of the tool on the last axis."""
-        rotation, origin = last_frames(self._robot, points, directions, across)
+        tools = np.stack([across, np.cross(directions, across), directions], axis=2)
+        rotation = tools @ self._robot.tip[:3, :3].T
+        origin = points - turned(rotation, self._robot.tip[:3, 3])
         tip = self.straight.tip
         return rotation, origin + rotation @ tip[:3, 3], rotation @ tip[:3, 2]
 

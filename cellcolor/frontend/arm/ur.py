@@ -135,7 +135,8 @@ def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
         if abs(float((p[joint] - p[other]) @ np.cross(w[joint], w[other]))) > tolerance:
             raise refuse(joint, f"its axis does not meet that of joint {other + 1}")
 
-    shoulder, wrist, knuckle = (_crossing(p[i], w[i], p[j]) for i, j in _MEETING)
+    # Where axes meet at right angles, or the common normal of two meets the first.
+    shoulder, wrist, knuckle = (p[i] + ((p[j] - p[i]) @ w[i]) * w[i] for i, j in _MEETING)
     z1 = -w[0] if w[0, 2] < 0 else w[0]  # up in the world, so that the names mean the same
     z2 = w[1] * np.sign((wrist - shoulder) @ w[1])
     z5 = w[4] * np.sign((knuckle - wrist) @ w[4])
@@ -179,11 +180,6 @@ def ur_geometry(robot: Robot, tolerance: float = _TOLERANCE) -> UrGeometry:
 
 
 _MEETING = ((0, 1), (3, 4), (4, 5))
-
-
-def _crossing(p: Array, u: Array, q: Array) -> Array:
-    """Where the line p + t u meets another one through q at right angles."""
-    return p + ((q - p) @ u) * u
 
 
 def _across(vector: Array, axis: Array) -> Array:

@@ -105,18 +105,6 @@ class LinkShape:
     file: str = ""
 
 
-def shapes_of(file: Path, name: str, link: ET.Element) -> tuple[LinkShape, ...]:
-    """The collision shapes of a link, in their order.
-
-    Raises:
-        InputError: one is of another kind, or its numbers cannot be used.
-    """
-    return tuple(
-        _shape(file, f"link[{name}].collision[{index}]", collision)
-        for index, collision in enumerate(link.findall("collision"))
-    )
-
-
 def _shape(file: Path, field: str, collision: ET.Element) -> LinkShape:
     check_origin(file, field, collision)
     geometry = collision.find("geometry")
@@ -206,7 +194,7 @@ class Urdf:
     def settled_followers(self) -> tuple[dict[str, Follower], dict[str, float]]:
         """Those of the ``locked`` joints that move, and the positions of the others.
 
-        What follows a follower is written as if it followed the first leader at first hand. One
+        What follows a follower is written as if it followed the first leader directly. One
         whose leader is fixed stands where it is with the leader at zero.
 
         Raises:
@@ -346,7 +334,10 @@ def check_urdf(
         raise InputError(str(file), "robot", f"needs one root link, has {len(roots)}: {roots}")
     shapes, shapeless = {}, []
     for name, element in links.items():
-        own = shapes_of(file, name, element)
+        own = tuple(
+            _shape(file, f"link[{name}].collision[{number}]", collision)
+            for number, collision in enumerate(element.findall("collision"))
+        )
         if own:
             shapes[name] = own
         elif name in driven or any(element.find(tag) is not None for tag in _THING):

@@ -266,7 +266,7 @@ class _Below(Solid):
         self._below = below
 
     def meets(self, mesh: Solid) -> bool:  # noqa: ARG002
-        """Not known of faces; who asks has vertices as well."""
+        """False: it cannot be known of faces, and callers ask about the vertices as well."""
         return False
 
     def _touches(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:

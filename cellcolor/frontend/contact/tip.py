@@ -87,5 +87,5 @@ class Tip:
 
 
 def _ends(body: Body) -> Iterable[Array]:
-    """Points (3,) between which the body lies, as far as its axis goes or its solid."""
+    """The ends (3,) of the body's axis, or the corners of its solid."""
     return (body.start, body.end) if body.solid is None else body.solid.outline

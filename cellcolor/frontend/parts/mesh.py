@@ -63,11 +63,7 @@ def mesh_surface(
             fit, before or after halving edges.
     """
     deadline.check()
-    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
-    if len(unknown):  # here already: a repair would take -1 for the last one
-        face, corner = unknown[0]
-        message = f"there is no vertex {faces[face, corner]}"
-        raise InputError(None, f"faces[{face}][{corner}]", message)
+    check_corners(vertices, faces)  # here already: a repair would take -1 for the last one
     if mend and len(faces) and np.isfinite(vertices).all():
         # Sizes first: a triangle that is far too long for a unit looks like one without area.
         _check_size(vertices[np.unique(faces)], meters_per_unit)
@@ -100,6 +96,19 @@ def mesh_surface(
         raise InputError(None, f"vertices[{vertex}]", "has no normal: its faces cancel out")
     normals /= size
     return Surface(mesh.points * meters_per_unit, mesh.corners, normals, faceted=True)
+
+
+def check_corners(vertices: Array, faces: Faces) -> None:
+    """Refuse a face that has a vertex which is not there.
+
+    Raises:
+        InputError: names the corner.
+    """
+    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
+    if len(unknown):
+        face, corner = unknown[0]
+        message = f"there is no vertex {faces[face, corner]}"
+        raise InputError(None, f"faces[{face}][{corner}]", message)
 
 
 def _repaired(vertices: Array, faces: Faces) -> tuple[Array, Faces]:

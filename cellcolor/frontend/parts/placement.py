@@ -76,7 +76,7 @@ class Tolerance(Table):
         return self
 
     def displaced(self, placement: Placement, center: Array) -> list[Placement]:
-        """A sample of placements, always the same: all as far off and turned as far as may be.
+        """A sample of placements, always the same, all with the largest displacement and turn.
 
         Directions and axes are opposite in pairs, so that no side is favored.
 

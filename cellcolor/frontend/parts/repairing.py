@@ -25,7 +25,7 @@ from cellcolor.frontend.parts.cleaning import (
     used,
     without_flat,
 )
-from cellcolor.frontend.parts.mesh import summed_normals
+from cellcolor.frontend.parts.mesh import check_corners, summed_normals
 from cellcolor.frontend.parts.surface import Faces
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -127,11 +127,7 @@ def _check(vertices: Array, faces: Faces) -> None:
     if len(bad):
         row, axis = bad[0]
         raise InputError(None, f"vertices[{row}][{axis}]", "is not a finite number")
-    unknown = np.argwhere((faces < 0) | (faces >= len(vertices)))
-    if len(unknown):
-        face, corner = unknown[0]
-        message = f"there is no vertex {faces[face, corner]}"
-        raise InputError(None, f"faces[{face}][{corner}]", message)
+    check_corners(vertices, faces)
     if not len(faces):
         raise InputError(None, "faces", "there are none")
 

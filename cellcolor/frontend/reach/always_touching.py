@@ -88,11 +88,7 @@ def _pairs(robot: Robot) -> _Pairs:
 
 
 def _touch(robot: Robot, pairs: list[tuple[int, int]], ends: Array, poses: Poses) -> Mask:
-    return hits_itself(_only(robot, pairs), ends, poses)
-
-
-def _only(robot: Robot, pairs: list[tuple[int, int]]) -> Robot:
-    return replace(robot, tested_pairs=tuple(pairs))
+    return hits_itself(replace(robot, tested_pairs=tuple(pairs)), ends, poses)
 
 
 def _depth(robot: Robot, pairs: list[tuple[int, int]], ends: Array) -> str:

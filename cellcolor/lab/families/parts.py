@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -218,7 +217,9 @@ def _filled(
             return True
         disc = {center, *neighbors[center]} if rng.random() < 0.3 else {center}
         ring = {other for vertex in disc for other in neighbors[vertex]} - disc
-        if not sets[center] or used & (disc | ring) or not _alike(sets, disc | ring):
+        if not sets[center] or used & (disc | ring):
+            continue
+        if len({sets[vertex] for vertex in disc | ring}) > 1:
             continue
         present = np.flatnonzero(labels.reached[center]).tolist()
         absent = sorted(set(range(BRANCH_COUNT)) - set(present))
@@ -238,7 +239,3 @@ def _filled(
             continue
         used |= disc | ring
     return not colored and not bare
-
-
-def _alike(sets: list[tuple[int, ...]], vertices: Iterable[int]) -> bool:
-    return len({sets[vertex] for vertex in vertices}) == 1

@@ -224,7 +224,7 @@ def _apart(cells: Iterable[int], touching: Sequence[set[int]]) -> list[int]:
 
 
 def _groups(demands: Sequence[Collection[int]]) -> list[list[int]]:
-    """The places of demands, apart where no region, by way of whichever others, meets two."""
+    """The places of demands in groups that no chain of regions connects."""
     first: dict[int, int] = {}
     together = UnionFind(range(len(demands)))
     for place, numbers in enumerate(demands):

@@ -66,7 +66,7 @@ def merge_further(
 
     Args:
         merged: the cells, under names of their own.
-        colors: of each cell that is looked at those of its colors that matter.
+        colors: of each cell that is looked at, the colors that matter.
         apart: cells with different values here are not merged.
     """
     return _merged(merged.loops, merged.sides, merged.joinable, colors, apart)

@@ -64,7 +64,8 @@ def exact_minimum(part: ConnectedPart, deadline: Deadline) -> Exact | None:
     if instance.most_live_loops > 1:
         return None
     read = _Part(part, deadline)
-    if read.is_tree or read.drop_rim():
+    # Edges connect all cells, so they make a tree if there are fewer of them than cells.
+    if len(read.joinable) < 2 * len(read.loops) or read.drop_rim():
         return _tree_minimum(read)
     return _Hubs(read).solve()
 
@@ -87,11 +88,6 @@ class _Part:
         self.joinable = {
             dart: frozenset(part.instance.joinable(dart)) for loop in self.loops for dart in loop
         }
-
-    @property
-    def is_tree(self) -> bool:
-        """Whether there are fewer edges than cells, since edges connect all of them."""
-        return len(self.joinable) < 2 * len(self.loops)
 
     def drop_rim(self) -> bool:
         """Leave out the rim of a wheel; False and nothing left out if this is none."""

@@ -77,20 +77,17 @@ class Problem:
         """The joinable colors of a dart's edge."""
         return self.colors[abs(dart)]
 
-    def may_link(self, one: int, other: int) -> bool:
-        """Whether two darts of a cell can be in one sub-cell, with both joins counted.
+    def pairs(self) -> Iterator[Pair]:
+        """All pairs of darts that can be in one sub-cell, with both joins counted.
 
         They need a common color. They cannot be the two sides of one edge: that join would lead
         from the sub-cell back to itself, and such joins are not counted.
         """
-        return one != -other and not self.colors_of(one).isdisjoint(self.colors_of(other))
-
-    def pairs(self) -> Iterator[Pair]:
-        """All pairs of darts that may be linked."""
         for cell in self.cells:
             for place, one in enumerate(cell):
                 for other in cell[place + 1 :]:
-                    if self.may_link(one, other):
+                    common = not self.colors_of(one).isdisjoint(self.colors_of(other))
+                    if common and one != -other:
                         yield one, other
 
     @cached_property
