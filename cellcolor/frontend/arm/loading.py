@@ -305,7 +305,7 @@ def following_frames(
 
 
 def _carrier(urdf: Urdf, link: str, number: Mapping[str, int], joint: int) -> int:
-    """The frame of the last follower between a link and the joint that moves it, or of that joint."""
+    """The frame of the last follower between a link and its moving joint, or of that joint."""
     for each in reversed(urdf.chain(link)):
         if each in number:
             return number[each]
