@@ -16,7 +16,6 @@ from pydantic import (
     ValidationInfo,
     field_serializer,
     field_validator,
-    model_serializer,
     model_validator,
 )
 
@@ -47,6 +46,8 @@ class Ground(Table):
         normal: (3,) out of the ground, of any length; it points up, if only a little.
     """
 
+    NEWER = ("normal",)
+
     height_m: Coordinate
     normal: Vector = _UPRIGHT
 
@@ -57,14 +58,6 @@ class Ground(Table):
         if not normal[2] > _LEAST_RISE * float(np.linalg.norm(normal)):
             raise ValueError("must point up; a wall or a ceiling is an obstacle, a half-space")
         return normal
-
-    @model_serializer(mode="wrap")
-    def _normal_if_tilted(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before there were tilted grounds stay the same to the byte."""
-        content: dict[str, Any] = whole(self)
-        if self.normal == _UPRIGHT:
-            del content["normal"]
-        return content
 
     @property
     def half_space(self) -> HalfSpace:
@@ -106,6 +99,8 @@ class Scene(FileTable):
     new one, and holds it to the same rules as a file.
     """
 
+    NEWER = ("validity_test", "cover", "tolerance")
+
     name: Annotated[str, Field(min_length=1)]
     setup: Annotated[Setup, BeforeValidator(_setup)]
     object: AnyPart
@@ -124,15 +119,6 @@ class Scene(FileTable):
         if isinstance(content, dict) and "robot" in content and "setup" not in content:
             message = "is a robot's setup, not a scene; a scene names it as its 'setup'"
             raise InputError(None, None, message)
-        return content
-
-    @model_serializer(mode="wrap")
-    def _optional_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before there were these keys stay the same to the byte."""
-        content: dict[str, Any] = whole(self)
-        for key in ("validity_test", "cover", "tolerance"):
-            if not getattr(self, key):
-                del content[key]
         return content
 
     @field_serializer("setup", mode="wrap")

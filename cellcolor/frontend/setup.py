@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import itertools
 import math
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
 from pydantic import (
     Field,
     FiniteFloat,
-    SerializerFunctionWrapHandler,
-    model_serializer,
     model_validator,
 )
 from pydantic_core import PydanticCustomError
@@ -29,16 +27,6 @@ from cellcolor.frontend.tables import (
 
 MeshCollision = Literal["hull", "exact", "capsules"]
 """What stands for a link's mesh: its convex hull, nothing but itself, or capsules around it."""
-_NEWER = (
-    "kinematics",
-    "may_touch",
-    "mount_position_m",
-    "mount_rpy_rad",
-    "fixed_joints",
-    "package_folders",
-    "mesh_collision",
-    "mesh_collision_of",
-)
 
 
 class RobotFiles(Table):
@@ -56,6 +44,17 @@ class RobotFiles(Table):
     ``package://`` is looked for in ``package_folders`` first.
     """
 
+    NEWER = (
+        "kinematics",
+        "may_touch",
+        "mount_position_m",
+        "mount_rpy_rad",
+        "fixed_joints",
+        "package_folders",
+        "mesh_collision",
+        "mesh_collision_of",
+    )
+
     arm_urdf: str
     flange_link: str
     tool_urdf: str
@@ -71,16 +70,6 @@ class RobotFiles(Table):
     mesh_collision: MeshCollision = "hull"
     mesh_collision_of: dict[str, MeshCollision] = Field(default_factory=dict)
 
-    @model_serializer(mode="wrap")
-    def _newer_if_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before there were the newer keys stay the same to the byte."""
-        content: dict[str, Any] = whole(self)
-        for name in _NEWER:
-            usual = type(self).model_fields[name].get_default(call_default_factory=True)
-            if getattr(self, name) == usual:
-                del content[name]
-        return content
-
 
 _SAME_TURN_DEG = 1e-6  # turns nearer than this, modulo a full circle, are one
 _MOST_TURNS = 360
@@ -94,6 +83,8 @@ class Turn(Table):
     as it can across the surface's normal. With ``turns`` equally spaced ones or a list
     ``turns_deg`` the arm has a choice; they are counted from there about the tool's z axis.
     """
+
+    NEWER = ("along", "towards_m", "turns", "turns_deg")  # as in a file: what is given
 
     along: Vector | None = None
     towards_m: Position | None = None
@@ -130,12 +121,6 @@ class Turn(Table):
         count = self.turns or 1
         return tuple(360.0 * number / count for number in range(count))
 
-    @model_serializer(mode="wrap")
-    def _what_is_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """What is not given is not written, as in a file."""
-        content: dict[str, Any] = whole(self)
-        return {key: value for key, value in content.items() if value is not None}
-
 
 _Tilt = Annotated[FiniteFloat, Field(ge=-1.2, le=1.2), IN_RADIANS]  # further, the tool lies flat
 
@@ -149,6 +134,8 @@ class Task(Table):
     The tip link may stay off the surface by ``stand_off_m``, and the tool's axis off the normal by
     ``tilt_rad`` and ``lead_rad`` (``docs/frontend/validity.md``, "Stand-off and tilt").
     """
+
+    NEWER = ("edge_radius_m", "turn", "stand_off_m", "lead_rad", "tilt_rad")
 
     normal_force_n: NotNegative
     contact_radius_m: Annotated[FiniteFloat, Field(ge=0.001)] = 0.005
@@ -173,15 +160,6 @@ class Task(Table):
     def rounding_m(self) -> float:
         """The radius over which the normals of a mesh are rounded."""
         return self.contact_radius_m if self.edge_radius_m is None else self.edge_radius_m
-
-    @model_serializer(mode="wrap")
-    def _newer_if_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before there were these keys stay the same to the byte."""
-        content: dict[str, Any] = whole(self)
-        for key in ("edge_radius_m", "turn", "stand_off_m", "lead_rad", "tilt_rad"):
-            if getattr(self, key) == type(self).model_fields[key].default:
-                del content[key]
-        return content
 
 
 def _one_of_each(table: Table, *names: str) -> None:
@@ -213,6 +191,8 @@ class Continuity(Table):
     With ``border_length_m`` longer mesh edges are bisected where colors end or have a crack.
     """
 
+    NEWER = ("border_length_m",)
+
     base_step_rad: Annotated[FiniteFloat, Field(gt=0), IN_RADIANS]
     step_per_length_rad_per_m: NotNegative
     near_singular_determinant: NotNegative | None = None
@@ -225,14 +205,6 @@ class Continuity(Table):
     def _complete(self) -> Self:
         _one_of_each(self, "near_singular_determinant")
         return self
-
-    @model_serializer(mode="wrap")
-    def _border_length_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before borders could be refined stay the same to the byte."""
-        content: dict[str, Any] = whole(self)
-        if self.border_length_m is None:
-            del content["border_length_m"]
-        return content
 
 
 Share = Annotated[FiniteFloat, Field(ge=0, lt=1)]
@@ -299,6 +271,8 @@ class Motion(Table):
 class Setup(FileTable):
     """Robot, task, thresholds, continuity, sliver policy and motion, shared by scenes."""
 
+    NEWER = ("margins",)
+
     robot: RobotFiles
     task: Task
     thresholds: Thresholds
@@ -307,11 +281,3 @@ class Setup(FileTable):
     margins: Margins = Margins()
     slivers: Slivers | None = None
     motion: Motion | None = None
-
-    @model_serializer(mode="wrap")
-    def _margins_if_any(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
-        """Surfaces of before there were margins stay the same to the byte."""
-        content: dict[str, Any] = whole(self)
-        if self.margins == Margins():
-            content.pop("margins", None)
-        return content

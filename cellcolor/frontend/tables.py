@@ -12,7 +12,7 @@ import tomllib
 from collections.abc import Mapping
 from os import PathLike
 from pathlib import Path
-from typing import Annotated, Any, Generic, Self, TypeVar
+from typing import Annotated, Any, ClassVar, Generic, Self, TypeVar
 
 import numpy as np
 from pydantic import (
@@ -21,7 +21,9 @@ from pydantic import (
     ConfigDict,
     Field,
     FiniteFloat,
+    SerializerFunctionWrapHandler,
     ValidationError,
+    model_serializer,
 )
 from pydantic_core import PydanticCustomError
 
@@ -63,7 +65,8 @@ Position = tuple[Coordinate, Coordinate, Coordinate]
 class Table(BaseModel):
     """A table of a scene or setup.
 
-    Lists and arrays of numpy are taken for tuples.
+    Lists and arrays of numpy are taken for tuples. Keys in ``NEWER`` came after others; they are
+    not written where they have their default, so that older surfaces stay the same to the byte.
 
     Raises:
         InputError: an unknown or missing key, a value of the wrong type or out of range; names the
@@ -71,6 +74,7 @@ class Table(BaseModel):
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+    NEWER: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, /, **content: Any) -> None:
         try:
@@ -81,6 +85,15 @@ class Table(BaseModel):
     # Without this mark pydantic would call __init__ for a table inside another one, and the error
     # would not know where in the outer one it is.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @model_serializer(mode="wrap")
+    def _newer_if_given(self, whole: SerializerFunctionWrapHandler) -> dict[str, Any]:
+        content: dict[str, Any] = whole(self)
+        for name in self.NEWER:
+            usual = type(self).model_fields[name].get_default(call_default_factory=True)
+            if getattr(self, name) == usual:
+                content.pop(name, None)
+        return content
 
     def __hash__(self) -> int:
         """Pydantic's own does not bear keys that hold tables with names of the user's."""
