@@ -19,7 +19,7 @@ from cellcolor.solvers.cpsat.model.full import (
     seams_size,
 )
 from cellcolor.solvers.cpsat.model.loops_apart import build_apart, loops_apart, read_apart
-from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical
+from cellcolor.solvers.cpsat.model.painting import Block, Painting, canonical, moved
 from cellcolor.solvers.cpsat.model.seams import Seamed, SeamWriter
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.union_find import UnionFind
@@ -129,17 +129,8 @@ class FewestCuts:
     def _offer(self, graph: DartGraph, painting: Painting) -> None:
         """Keep a painting's canonical form if it has fewer cutting paths than the best so far."""
         free = self._writer.graph
-        index = {dart.name: number for number, dart in enumerate(free.darts)}
-        settled = canonical(
-            free,
-            [
-                [
-                    Block(block.color, {index[graph.darts[dart].name] for dart in block.darts})
-                    for block in unseamed(graph, blocks)
-                ]
-                for blocks in painting
-            ],
-        )
+        whole = [unseamed(graph, blocks) for blocks in painting]
+        settled = canonical(free, moved(graph, whole, free))
         cuts = count_cuts(self._instance, free, settled)
         if cuts < self._cuts and (seamed := self._writer.write(settled)) is not None:
             self._cuts, self.best = cuts, seamed

@@ -24,10 +24,10 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.cpsat.cuts import unseamed
 from cellcolor.solvers.cpsat.model.dart_graph import dart_graph
 from cellcolor.solvers.cpsat.model.painting import (
-    Block,
     Painting,
     canonical,
     division_of,
+    moved,
     painting_of,
 )
 from cellcolor.solvers.cpsat.model.seams import SeamWriter
@@ -167,15 +167,8 @@ class _Search:
             return None
         strands = dict.fromkeys(self._instance.live_edges, 1)
         seamed = dart_graph(self._instance, graph.colors, strands, start.seams)
-        index = {dart.name: number for number, dart in enumerate(graph.darts)}
-        painting = [
-            [
-                Block(block.color, {index[seamed.darts[dart].name] for dart in block.darts})
-                for block in unseamed(seamed, blocks)
-            ]
-            for blocks in painting_of(seamed, start.division)
-        ]
-        settled = canonical(graph, painting)
+        whole = [unseamed(seamed, blocks) for blocks in painting_of(seamed, start.division)]
+        settled = canonical(graph, moved(seamed, whole, graph))
         return settled if self._is_scheme(settled) else None
 
     def _counted(self, deadline: Deadline, given: Mapping[int, Blocks] | None = None) -> Frontier:
