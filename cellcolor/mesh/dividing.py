@@ -172,10 +172,3 @@ def unit_everywhere(mesh: TriangleMesh, normals: Array) -> Array:
 def small_areas(mesh: TriangleMesh) -> Array:
     """The areas (6 m,) of the small triangles: a sixth of their triangle each."""
     return np.repeat(mesh.areas / 6, 6)
-
-
-def small_triangle_at(mesh: TriangleMesh, triangle: int, point: Array) -> int:
-    """The number of the small triangle of a triangle that a point (3,) on it lies in."""
-    (shares,) = mesh.shares(np.array([triangle]), point[None])
-    corner = int(np.argmax(shares))
-    return 6 * triangle + 2 * corner + int(shares[corner - 1] > shares[(corner + 1) % 3])

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import assume, given
+from hypothesis import given
 from hypothesis import strategies as st
-from triangles import any_meshes, bumpy_ball
+from triangles import any_meshes
 
 from cellcolor.mesh.dividing import (
     everywhere,
     small_areas,
-    small_triangle_at,
     small_triangles,
     unit_everywhere,
 )
@@ -44,19 +43,3 @@ def test_linear_values_stay_linear(mesh: TriangleMesh, seed: int) -> None:
     assert np.allclose(everywhere(mesh, mesh.points @ way), fine.points @ way)
     lengths = np.linalg.norm(unit_everywhere(mesh, mesh.points), axis=1)
     assert np.allclose(lengths, np.linalg.norm(fine.points, axis=1) > 0)
-
-
-@given(st.integers(0, 10**6), st.integers(0, 319))
-def test_points_are_in_the_small_triangle_that_is_named(seed: int, triangle: int) -> None:
-    mesh = bumpy_ball(seed)
-    shares = np.random.default_rng(seed).dirichlet([1.0, 1.0, 1.0])
-    point = shares @ mesh.points[mesh.corners[triangle]]
-    named = small_triangle_at(mesh, triangle, point)
-    fine, _ = small_triangles(mesh)
-    found = []
-    for number in range(6 * triangle, 6 * triangle + 6):
-        weights = np.linalg.lstsq(fine.points[fine.corners[number]].T, point)[0]
-        assume(np.abs(weights).min() > 1e-6)  # not on a side of two
-        if (weights > 0).all():
-            found.append(number)
-    assert found == [named]

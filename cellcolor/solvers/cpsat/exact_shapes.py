@@ -44,10 +44,9 @@ class Exact:
 
     def painting(self, graph: DartGraph) -> Painting:
         """The division on a graph with a strand of each live edge."""
-        index = {dart.name: number for number, dart in enumerate(graph.darts)}
         return [
             [
-                Block(color, {index[dart, 1] for dart in darts})
+                Block(color, {graph.number_of[dart, 1] for dart in darts})
                 for color, darts in self.areas.get(cell) or [(min(colors), [])]
             ]
             for cell, colors in enumerate(graph.colors)

@@ -59,7 +59,6 @@ def divide_hubs(
         tuple(seams.values()),
         part.loops,
     )
-    index = {dart.name: number for number, dart in enumerate(graph.darts)}
     painting = [
         [] if cell in areas else [Block(color_of[cell], set())]
         for cell in range(len(instance.cells))
@@ -72,8 +71,8 @@ def divide_hubs(
                     beyond = instance.across(strand[0])
                     if color_of[beyond] != area.color:
                         continue
-                    painting[beyond][0].darts.add(index[twin(strand)])
-                block.darts.add(index[strand])
+                    painting[beyond][0].darts.add(graph.number_of[twin(strand)])
+                block.darts.add(graph.number_of[strand])
             if block.darts:
                 painting[hub].append(block)
         painting[hub] = painting[hub] or [Block(own_areas[0].color, set())]

@@ -238,10 +238,9 @@ class _Search:
             for seam in seam_places(self._instance, self._loops)
         ]
         graph = self._whole_graph(seams)
-        index = {dart.name: number for number, dart in enumerate(graph.darts)}
         painting = [
             [
-                Block(color, {index[name] for name in names})
+                Block(color, {graph.number_of[name] for name in names})
                 for color, names in found.get(cell, [(cheapest(colors, self._costs), [])])
             ]
             for cell, colors in enumerate(self._own)

@@ -252,10 +252,9 @@ def strands_in_turn(
     docs/bounds.md, "Crossing an edge twice".
     """
     seams = {seam.id for seam in graph.seams}
-    index = {dart.name: number for number, dart in enumerate(graph.darts)}
     for edge in graph.edges:
         signed, strand = graph.darts[edge].name
-        higher = index.get((signed, strand + 1))
+        higher = graph.number_of.get((signed, strand + 1))
         if higher is None or abs(signed) in seams:
             continue
         twin, higher_twin = graph.darts[edge].twin, graph.darts[higher].twin

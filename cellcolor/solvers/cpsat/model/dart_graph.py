@@ -57,6 +57,11 @@ class DartGraph:
         """Each cell's darts in one list; cyclic where seams connect its loops."""
         return tuple(tuple(dart for loop in loops for dart in loop) for loops in self.loops)
 
+    @cached_property
+    def number_of(self) -> dict[Strand, int]:
+        """The index of each dart by its name."""
+        return {dart.name: number for number, dart in enumerate(self.darts)}
+
     @property
     def edges(self) -> list[int]:
         """One dart of every strand: the one with the lower index."""

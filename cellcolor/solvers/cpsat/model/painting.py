@@ -42,18 +42,22 @@ def division_of(
 
 def moved(graph: DartGraph, painting: Painting, target: DartGraph) -> Painting:
     """A painting on a graph with the same or more strands; the strands it does not know are cut."""
-    index = {dart.name: number for number, dart in enumerate(target.darts)}
     return [
-        [Block(b.color, {index[graph.darts[dart].name] for dart in b.darts}) for b in cell]
+        [
+            Block(b.color, {target.number_of[graph.darts[dart].name] for dart in b.darts})
+            for b in cell
+        ]
         for cell in painting
     ]
 
 
 def painting_of(graph: DartGraph, division: Division) -> Painting:
     """A solution's division on a graph that has the strands it names, or more."""
-    index = {dart.name: number for number, dart in enumerate(graph.darts)}
     return [
-        [Block(s.color, {index[strand_of(dart)] for dart in s.darts}) for s in cell.subcells]
+        [
+            Block(s.color, {graph.number_of[strand_of(dart)] for dart in s.darts})
+            for s in cell.subcells
+        ]
         for cell in division
     ]
 

@@ -112,10 +112,9 @@ class SeamWriter:
                 replace(seam, strands=width) for seam, width in zip(own, cell.widths, strict=True)
             ]
         graph = dart_graph(self._instance, self._colors, self._strands, seams)
-        index = {dart.name: number for number, dart in enumerate(graph.darts)}
         return graph, [
             [
-                Block(block.color, {index[name] for name in part})
+                Block(block.color, {graph.number_of[name] for name in part})
                 for block, parts in zip(blocks, cell.parts, strict=True)
                 for part in parts
             ]
