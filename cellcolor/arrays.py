@@ -1,4 +1,4 @@
-"""The NumPy arrays that pass between modules, by what they hold; and a step that many take."""
+"""The NumPy arrays that pass between modules, by what they hold; and steps that many take."""
 
 from __future__ import annotations
 
@@ -29,3 +29,15 @@ def cuts(sizes: Array) -> tuple[Index, Array]:
     parts = np.maximum(np.ceil(sizes).astype(np.int64), 1)
     which, number = numbered(parts - 1)
     return which, (number + 1) / parts[which]
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors (..., 3) at length 1; those of length 0 stay 0."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(lengths > 0, lengths, 1.0))
+
+
+def angles_between(first: Array, second: Array) -> Array:
+    """Angles (k,) between unit vectors (k, 3), rad; one of the two may be a single vector (3,)."""
+    chord = np.linalg.norm(first - second, axis=1)
+    return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))

@@ -9,7 +9,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, unit
 from cellcolor.exports.interface import ArmAxes, NotForThisArm, PlannedMotion
 from cellcolor.exports.samples import stretches
 from cellcolor.exports.tool_poses import quaternions
@@ -161,7 +161,7 @@ def recording(planned: PlannedMotion) -> bytes:
         x = np.zeros_like(own.normals)
         x[np.arange(len(x)), np.argmin(np.abs(own.normals), axis=1)] = 1
         x -= np.sum(x * own.normals, axis=1, keepdims=True) * own.normals
-        tips = quaternions(x / np.linalg.norm(x, axis=1, keepdims=True), own.normals)
+        tips = quaternions(unit(x), own.normals)
         poses = [*_frames(planned.axes, own.joints), (own.points, tips)]
         places = [np.concatenate(pose, axis=1) for pose in poses]
         for row, moment in enumerate(moments):

@@ -10,7 +10,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, unit
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.exports.samples import Samples, stretches
 from cellcolor.exports.tool_poses import quaternions
@@ -77,7 +77,7 @@ def steady_frames(normals: Array) -> Array:
     z points out of the surface. From a frame to the next the turn is the smallest that takes one
     normal to the other, so x does not swing with the line that the tool follows.
     """
-    z = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    z = unit(normals)
     x = np.empty_like(z)
     start = np.eye(3)[np.argmin(np.abs(z[0]))]
     for row, own in enumerate(z):

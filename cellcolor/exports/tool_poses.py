@@ -12,7 +12,7 @@ import re
 
 import numpy as np
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, unit
 from cellcolor.exports.interface import PlannedMotion
 from cellcolor.files.writing import FileKind
 
@@ -29,7 +29,7 @@ def tool_paths_yaml(planned: PlannedMotion) -> bytes:
         if not paths:
             lines.append("- []\n")
         for number, path in enumerate(paths):
-            z = path.normals / np.linalg.norm(path.normals, axis=1, keepdims=True)
+            z = unit(path.normals)
             turns = quaternions(_travel(path.points, z), z)
             poses = np.concatenate([path.points, turns], axis=1)
             for row, pose in enumerate(poses.tolist()):
@@ -61,8 +61,7 @@ def _across(vectors: Array, z: Array) -> Array:
     part = vectors - np.sum(vectors * z, axis=1, keepdims=True) * z
     lengths = np.linalg.norm(part, axis=1, keepdims=True)
     clear = lengths > 1e-9
-    unit: Array = np.where(clear, part / np.where(clear, lengths, 1), 0)
-    return unit
+    return np.asarray(np.where(clear, part / np.where(clear, lengths, 1), 0))
 
 
 def quaternions(x: Array, z: Array) -> Array:
@@ -85,9 +84,8 @@ def quaternions(x: Array, z: Array) -> Array:
     for a, (row, column) in enumerate(((2, 1), (0, 2), (1, 0))):
         products[:, a, 3] = products[:, 3, a] = matrix[:, row, column] - matrix[:, column, row]
     largest = np.argmax(np.diagonal(products, axis1=1, axis2=2), axis=1)
-    rows = products[np.arange(len(x)), largest]
-    unit = rows / np.linalg.norm(rows, axis=1, keepdims=True)
-    nearer = np.sum(unit[1:] * unit[:-1], axis=1)
-    first = np.where(unit[:1, 3] < 0, -1.0, 1.0)
+    turns = unit(products[np.arange(len(x)), largest])
+    nearer = np.sum(turns[1:] * turns[:-1], axis=1)
+    first = np.where(turns[:1, 3] < 0, -1.0, 1.0)
     signs = np.cumprod(np.concatenate([first, np.where(nearer < 0, -1.0, 1.0)]))
-    return np.asarray(unit * signs[:, None])
+    return np.asarray(turns * signs[:, None])

@@ -14,9 +14,10 @@ import numpy as np
 import trimesh
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, unit
 from cellcolor.data.wording import count
-from cellcolor.frontend.contact.fcl_bodies import frames_along, mesh_model
+from cellcolor.frontend.arm.kinematics import frames_along
+from cellcolor.frontend.contact.fcl_bodies import mesh_model
 from cellcolor.frontend.contact.stand_in_report import StandInReport
 from cellcolor.frontend.parts.surface import Faces, Surface
 from cellcolor.frontend.reach.continuity import Coloring
@@ -254,7 +255,7 @@ def _spread(mesh: TriangleMesh) -> tuple[Array, Faces]:
 def _visible(shape: fcl.CollisionObject, eye: Array, points: Array) -> Mask:
     """Whether nothing of the shape lies before points (k, 3) of it, (k,)."""
     sights = (1 - _SHORT) * (points - eye)
-    turns, middles = frames_along(eye, eye + sights)
+    turns, middles = frames_along(unit(sights)), eye + sights / 2
     visible = np.zeros(len(points), dtype=bool)
     for row, length in enumerate(np.linalg.norm(sights, axis=1).tolist()):
         if length:

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 _Pieces = dict[tuple[bool, bool, bool], list[tuple[int, int, int]]]
@@ -164,9 +164,7 @@ def everywhere(mesh: TriangleMesh, values: Array) -> Array:
 
 def unit_everywhere(mesh: TriangleMesh, normals: Array) -> Array:
     """Unit normals (n, 3) at points, and so at middles and centroids; 0 where they cancel out."""
-    turned = everywhere(mesh, normals)
-    lengths = np.linalg.norm(turned, axis=1, keepdims=True)
-    return np.asarray(turned / np.where(lengths > 0, lengths, 1.0))
+    return unit(everywhere(mesh, normals))
 
 
 def small_areas(mesh: TriangleMesh) -> Array:

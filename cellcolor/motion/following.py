@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Mask, cuts
+from cellcolor.arrays import Array, Mask, angles_between, cuts
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
@@ -17,7 +17,7 @@ from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.parts.surface import Surface
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.smooth import follow_edges
-from cellcolor.motion.samples import Samples, angles_between
+from cellcolor.motion.samples import Samples
 
 _BOW = 0.3  # of the way between two samples, for the tip: where normals turn fast, steps are short
 _BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, angles_between
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
@@ -38,12 +38,6 @@ class Samples:
 
     def __len__(self) -> int:
         return len(self.points)
-
-
-def angles_between(first: Array, second: Array) -> Array:
-    """Angles (k,) between unit vectors (k, 3), rad."""
-    chord = np.linalg.norm(first - second, axis=1)
-    return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
 
 
 def with_normals_of(samples: Samples, mesh: TriangleMesh, normals: Array) -> Samples:

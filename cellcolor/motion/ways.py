@@ -9,14 +9,14 @@ from itertools import pairwise
 import numpy as np
 from scipy.sparse.csgraph import dijkstra
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, angles_between
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
 from cellcolor.motion.following import joint_space
 from cellcolor.motion.free_space import FreeSpace
-from cellcolor.motion.samples import DISTANCE, TURN, angles_between
+from cellcolor.motion.samples import DISTANCE, TURN
 from cellcolor.motion.sampling_planner import sampled_way
 
 # Bounds in rad are in units of a slide as well (JointSpace.units).

@@ -36,7 +36,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, unit
 from cellcolor.frontend.arm.kinematics import (
     bytes_of_poses,
     forward,
@@ -247,8 +247,7 @@ class NearIdeal:
         starts = [both_sides_of_folds(self.robot, own)]
         angle, distance = self.off
         for way in _AROUND:
-            tilted = directions + _FARTHER * angle * np.roll(way, 1)
-            tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
+            tilted = unit(directions + _FARTHER * angle * np.roll(way, 1))
             moved = self.closed_form(points + _FARTHER * distance * way, tilted)
             moved[nearest(moved, own) < _ANOTHER] = np.nan
             starts.append(moved)

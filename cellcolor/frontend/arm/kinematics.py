@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, unit
 from cellcolor.errors import InputError
 from cellcolor.frontend.arm.robot import FREE_TURN, Robot, TaskSpace
 from cellcolor.frontend.setup import Continuity, Setup, Thresholds
@@ -217,8 +217,7 @@ def two_across(tool_axis: Array) -> Array:
     """Two unit vectors (n, 2, 3) that make a right-handed frame with the tool axis (n, 3)."""
     # A perpendicular that is never near zero: cross with the coordinate axis farthest off.
     farthest = np.eye(3)[np.argmin(np.abs(tool_axis), axis=1)]
-    first = np.cross(tool_axis, farthest)
-    first /= np.linalg.norm(first, axis=1, keepdims=True)
+    first = unit(np.cross(tool_axis, farthest))
     return np.stack([first, np.cross(tool_axis, first)], axis=1)
 
 

@@ -8,9 +8,9 @@ from weakref import WeakKeyDictionary
 import fcl
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, unit
 from cellcolor.frontend.arm.body import Body
-from cellcolor.frontend.arm.kinematics import Poses
+from cellcolor.frontend.arm.kinematics import Poses, frames_along
 from cellcolor.frontend.arm.polyhedron import Polyhedron
 
 _AHEAD = 64  # places that are looked at together
@@ -55,17 +55,7 @@ def body_poses(body: Body, ends: Array, poses: Poses | None = None) -> tuple[Arr
         return poses.body_rotation[:, body.joint], poses.body_origin[:, body.joint]
     if not body.length:
         return np.tile(np.eye(3), (len(start), 1, 1)), start
-    return frames_along(start, end)
-
-
-def frames_along(start: Array, end: Array) -> tuple[Array, Array]:
-    """Rotations (n, 3, 3) that turn z from start to end, (n, 3), and the middles between (n, 3)."""
-    z = end - start
-    with np.errstate(invalid="ignore"):  # a point has no direction
-        z /= np.linalg.norm(z, axis=1, keepdims=True)
-    x = np.cross(z, np.eye(3)[np.argmin(np.abs(z), axis=1)])
-    x /= np.linalg.norm(x, axis=1, keepdims=True)
-    return np.stack([x, np.cross(z, x), z], axis=2), (start + end) / 2
+    return frames_along(unit(end - start)), (start + end) / 2
 
 
 Placed = tuple[Array, Array]

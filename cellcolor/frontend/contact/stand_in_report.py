@@ -9,7 +9,7 @@ import numpy as np
 import trimesh
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Mask
+from cellcolor.arrays import Array, Mask, unit
 from cellcolor.frontend.arm.body import Body, StandIn
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.solids import sample_mesh
@@ -132,8 +132,7 @@ def _inside(body: Body, points: Array) -> Mask:
         ends = (np.broadcast_to(end, points.shape) for end in (body.start, body.end))
         return np.asarray(segment_distance(points, points, *ends) <= body.radius + _ROUNDING)
     a, b, c = (body.solid.vertices[body.solid.faces[:, k]] for k in range(3))
-    normals = np.cross(b - a, c - a)
-    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    normals = unit(np.cross(b - a, c - a))
     inside = np.ones(len(points), dtype=bool)
     for normal, corner in zip(normals, a, strict=True):
         inside &= (points - corner) @ normal <= _ROUNDING

@@ -8,7 +8,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, FiniteFloat, field_validator, model_validator
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, angles_between
 from cellcolor.data.wording import count
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
@@ -127,7 +127,7 @@ class Cover(Table):
         chosen = np.ones(len(whole.faces), dtype=bool)
         if self.normal is not None:
             along = np.array(self.normal.direction) / np.linalg.norm(self.normal.direction)
-            chosen &= _angles(whole.mesh.triangle_normals, along) <= self.normal.within_rad
+            chosen &= angles_between(whole.mesh.triangle_normals, along) <= self.normal.within_rad
         if self.box is not None:
             corners = whole.vertices[whole.faces]
             inside = (corners >= self.box.low_m) & (corners <= self.box.high_m)
@@ -149,18 +149,12 @@ class Cover(Table):
         return np.asarray(part == np.argsort(-area, kind="stable")[self.component])
 
 
-def _angles(normals: Array, other: Array) -> Array:
-    """Angles (m,) between unit vectors (m, 3) and (3,) or (m, 3), rad."""
-    chord = np.linalg.norm(normals - other, axis=1)
-    return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
-
-
 def _grown(whole: Surface, region: Region) -> Mask:
     """The faces on the same side of all sharp edges as the face nearest to the seed."""
     mesh = whole.mesh
     edges, sides = mesh.pairs
     sharp = np.zeros(len(mesh.edges), dtype=bool)
-    turned = _angles(*(mesh.triangle_normals[side // 3] for side in sides.T))
+    turned = angles_between(*(mesh.triangle_normals[side // 3] for side in sides.T))
     sharp[edges] = turned > region.sharp_rad
     part = mesh.parts(sharp)
     return np.asarray(part == part[_nearest_face(whole, np.array(region.seed_m))])

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from cellcolor.arrays import Array, Index, Mask, numbered
+from cellcolor.arrays import Array, Index, Mask, numbered, unit
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import SHARP, Surface
@@ -133,7 +133,7 @@ class _Around:
         )
         sums = np.zeros((len(rows), 3))
         np.add.at(sums, which, weights[:, None] * self.unit[face])
-        return np.asarray(sums / np.linalg.norm(sums, axis=1, keepdims=True))
+        return unit(sums)
 
     def _reached(self, rows: Index, radius: float) -> tuple[Index, Index, Array] | None:
         """The faces that balls around vertices reach, in them, from the vertices' own faces.

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, angles_between
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.parts.placement import Placement, rotation_from_rpy
 from cellcolor.frontend.sizes import check_refinement, check_vertices
@@ -72,8 +72,7 @@ class Surface:
     def turns(self, edges: Faces) -> Array:
         """Angles (k,) between the normals at the ends of mesh edges (k, 2), rad."""
         i, j = edges.T
-        chord = np.linalg.norm(self.normals[i] - self.normals[j], axis=1)
-        return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
+        return angles_between(self.normals[i], self.normals[j])
 
 
 def along_edges(surface: Surface, edges: Index, way: Array) -> tuple[Array, Array]:
