@@ -77,7 +77,6 @@ def colors_of_joints(
 
     Raises:
         InputError: the subject is no scene, or has other numbers of vertices or joints.
-        OutOfTime: the deadline came first.
     """
     built = _built(subject)
     with extras_for("a plan in joint angles"):
@@ -111,7 +110,6 @@ def colors_of_path(subject: Subject, given: AnyPath, deadline: Deadline = NEVER)
 
     Raises:
         InputError: the subject is no scene, or the path is of another arm.
-        OutOfTime: the deadline came first.
     """
     built = _built(subject)
     with extras_for("a tool path in joint angles"):

@@ -171,7 +171,6 @@ class Subject:
 
         Raises:
             InputError: the surface cannot be used, or has another graph.
-            OutOfTime: the deadline came first.
         """
         instance = self.given_instance
         if instance is None or instance.surface is None:
@@ -290,7 +289,6 @@ def build_scene(
 
     Raises:
         InputError: the scene cannot be used, or the front end is not installed.
-        OutOfTime: the deadline came first.
     """
     with extras_for("the front end" if not isinstance(scene, Path) else scene):
         from cellcolor.frontend import build_surface

@@ -256,9 +256,6 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
         prepared: the scene, with the surface that the stages were asked about.
         stages: of this surface.
         clock: the time they have taken.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     clock.begin("report")
     surface, limits = labelled(prepared, stages, clock.seconds)

@@ -113,7 +113,6 @@ def judged_in_place(
     Raises:
         InputError: a color has two configurations on one vertex; there are too many vertices for
             the turns of the tool.
-        OutOfTime: the deadline came first.
     """
     deadline = clock.deadline
     names, known = prepared.kinematics.branches, None if before is None else before.stages
@@ -224,7 +223,6 @@ def run_stages(prepared: PreparedScene, clock: StageClock) -> Stages:
     Raises:
         InputError: a color has two configurations on one vertex; there are too many vertices for
             the turns of the tool; a displaced part stands in a link that cannot move.
-        OutOfTime: the deadline came first.
     """
     return judged(prepared, clock).stages
 
@@ -286,7 +284,6 @@ def with_finer_borders(prepared: PreparedScene, clock: StageClock) -> tuple[Prep
 
     Raises:
         InputError: there would be too many vertices, or as the stages do.
-        OutOfTime: the deadline came first.
     """
     *_, (prepared, last) = border_levels(prepared, clock)
     return prepared, last.stages

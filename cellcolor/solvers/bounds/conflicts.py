@@ -67,7 +67,6 @@ def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflic
     All returned conflicts are true, but there may be more.
 
     Args:
-        instance: the topological graph.
         first: a color region.
         second: another one.
     """
@@ -91,7 +90,6 @@ class RegionPair:
     remain only between merged cells of one color and merged cells of both.
 
     Args:
-        instance: the topological graph.
         first: a color region.
         second: another one.
 

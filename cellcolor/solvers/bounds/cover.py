@@ -51,7 +51,6 @@ def color_regions(
     No segment reaches beyond one of these (docs/semantics.md, section 4).
 
     Args:
-        instance: the topological graph.
         colors: the colors each cell may be painted in, if not all of its own.
 
     Returns:
@@ -96,7 +95,6 @@ def set_cover(
     least as many segments as regions in a smallest cover. This holds in both search spaces.
 
     Args:
-        instance: the topological graph.
         colors: the colors each cell may be painted in, if not all of its own.
         deadline: when to stop with the best cover and bound so far.
         costs: what a segment of each color costs; None for 1 each.
@@ -130,9 +128,7 @@ def hard_cells(
     has its own cells: repeatedly, a cell is added that a smallest cover of the others misses.
 
     Args:
-        instance: the topological graph.
         value: how many color regions are needed, or fewer; what they cost, if they have costs.
-        deadline: when to give up.
         costs: what a segment of each color costs, 1 or more; None for 1 each.
 
     Returns:
@@ -204,7 +200,6 @@ def greedy_strangers(instance: Instance, without: Collection[int] = ()) -> list[
     """Cells of which no two lie in one color region, found quickly but not always the most.
 
     Args:
-        instance: the topological graph.
         without: cells to remove first.
     """
     colors = [frozenset(() if c.id in without else c.colors) for c in instance.cells]

@@ -67,10 +67,6 @@ def best_grouping(
     Args:
         colors: those that each dart can be joined in, one at least, in cyclic order.
         apart: a dart that must not be in one group with the first one.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     count = len(colors)
     tables = _Tables(
@@ -167,10 +163,6 @@ def links_bound(
 
     Args:
         loops: the colors that each dart can be joined in, loop by loop, in cyclic order.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     if len(loops) == 1:
         if recursion_size(loops[0]) > MOST_ENTRIES:
@@ -262,7 +254,6 @@ def hub_bound(instance: Instance, deadline: Deadline = NEVER) -> HubBound:
     """The best bound from hubs chosen one after the other.
 
     Args:
-        instance: the topological graph.
         deadline: when to stop with the hubs found so far.
     """
     found = HubBound(0, cells=tuple(greedy_strangers(instance)))

@@ -46,7 +46,6 @@ def merge_cells(instance: Instance, colors: Mapping[int, frozenset[int]]) -> Mer
     of one merged cell stays, because it is a handle. Dead darts are left out.
 
     Args:
-        instance: the topological graph.
         colors: the colors that each cell may be painted in, of the cells that are looked at.
     """
     loops = {cell: instance.cells[cell].loops for cell in colors}

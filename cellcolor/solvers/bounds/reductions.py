@@ -96,7 +96,6 @@ def enough_crossings(
     several live loops, nor about edges with the same cell on both sides.
 
     Args:
-        instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
 
     Returns:

@@ -309,10 +309,6 @@ class Tangles:
 
         Args:
             plan: segments.
-            deadline: when to stop.
-
-        Raises:
-            OutOfTime: the deadline came first.
         """
         plan = _among_themselves(plan)
         whole = self._seen_by(plan, _signs(plan))

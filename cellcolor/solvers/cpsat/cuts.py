@@ -33,7 +33,6 @@ class FewestCuts:
     of the divisions whose cutting paths connect no loops.
 
     Args:
-        instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge that are enough.
         written: strands of each live edge in the division that is handed out.
@@ -144,7 +143,6 @@ def count_cuts(instance: Instance, graph: DartGraph, painting: Painting) -> int:
     """The fewest curves that divide the cells into the painting's sub-cells.
 
     Args:
-        instance: the topological graph.
         graph: its dart graph, seams put in.
         painting: a legal painting of it.
     """

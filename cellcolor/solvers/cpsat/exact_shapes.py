@@ -54,11 +54,7 @@ class Exact:
 
 
 def exact_minimum(part: ConnectedPart, deadline: Deadline) -> Exact | None:
-    """The minimum of a forest or of hubs with one-colored neighbors; None for other parts.
-
-    Raises:
-        OutOfTime: the deadline came first.
-    """
+    """The minimum of a forest or of hubs with one-colored neighbors; None for other parts."""
     instance = part.instance
     if instance.most_live_loops > 1:
         return None

@@ -35,10 +35,6 @@ def divide_hubs(
         hubs: no two of which share a live edge; the links of each are limited.
         whole: a color for each other cell. One with a single dart takes that of the hub's group.
         seed: of what is tried where hubs have several loops.
-        deadline: when to give up.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     instance = part.instance
     color_of = dict(whole)

@@ -39,13 +39,9 @@ def hub_ways(
         colors: of each dart.
         petals: across each dart.
         shared: petals whose connections matter outside.
-        deadline: when to stop.
 
     Returns:
         The ways; None if there are too many.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     count = len(darts)
     own_shared = [frozenset((petal,)) & shared for petal in petals]

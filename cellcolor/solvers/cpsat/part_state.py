@@ -165,7 +165,6 @@ class PartState:
             graph: the part's.
             painting: where to begin.
             seed: of the choice of moves.
-            deadline: when to stop.
             moves: in vain, for each segment.
             whole_first: whether to begin with cells that are painted whole.
         """

@@ -50,7 +50,6 @@ def split(instance: Instance, colors: Sequence[frozenset[int]]) -> list[Connecte
     Segments never reach from one into another, so their minima and bounds add up.
 
     Args:
-        instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own, one at least.
     """
     loops = instance.live_loops

@@ -116,7 +116,6 @@ class Planning:
 
         Raises:
             Undecided: none was found, nor that there is none.
-            OutOfTime: the deadline came first.
         """
         while True:
             deadline.check()

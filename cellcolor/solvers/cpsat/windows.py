@@ -68,11 +68,9 @@ def improve(
     """Better and better divisions of a graph, each with a segment less, or one that costs less.
 
     Args:
-        graph: the dart graph.
         painting: a canonical painting of it.
         solve: runs a model with a seed, within limits.
         seed: of the choice of windows.
-        deadline: when to stop.
         costs: what a segment of each color costs; None for 1 each.
     """
     chance = random.Random(seed)

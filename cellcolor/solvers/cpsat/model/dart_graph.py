@@ -113,7 +113,6 @@ def widened(
     """Seams with as many strands as are ever needed.
 
     Args:
-        instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge.
         loops: the loops between which seams run.
@@ -143,7 +142,6 @@ def dart_graph(
     """Put strands and seams into the instance's loops and leave out what is dead.
 
     Args:
-        instance: the topological graph.
         colors: the colors each cell may be painted in, all or some of its own.
         strands: strands of each live edge.
         seams: one for each further loop of a cell, all from the cell's first loop; None leaves the

@@ -110,14 +110,9 @@ def full_model(
     """The model that minimizes the number of segments, or what they cost.
 
     Args:
-        graph: the dart graph.
         regions: the color regions of the instance, for the set-cover constraint.
         groups: the functions that add its constraints.
-        deadline: when to stop.
         costs: what a segment of each color costs; None for 1 each.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
     model = cp_model.CpModel()
     variables = make_variables(model, graph)
@@ -308,7 +303,6 @@ def _forest(graph: DartGraph, painting: Painting, fixed: set[int]) -> _Forest | 
     """A forest with its roots in undivided cells, None if a segment has no such cell.
 
     Args:
-        graph: the dart graph.
         painting: what to connect.
         fixed: cells that have to have the roots of their segments.
     """

@@ -35,7 +35,6 @@ def least_left_out(
     """The cells left out when a number of segments covers the most, in the search space ``paper``.
 
     Args:
-        instance: the topological graph.
         weights: of each cell, 0 or more.
         segments: the most that there may be.
         required: cells that must not be left out.

@@ -115,7 +115,6 @@ def canonical(
     graph without seams there are no more cutting paths than before either (docs/encodings.md).
 
     Args:
-        graph: the dart graph.
         painting: what is legal on it.
         changed: the cells in which it is not a scheme's yet; None for all of them, and to work on
             the painting's own blocks. Cells that stay as they are keep their lists of blocks.

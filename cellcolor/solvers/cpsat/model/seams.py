@@ -77,7 +77,6 @@ class SeamWriter:
     """Writes paintings of one graph whose cells have their loops apart.
 
     Args:
-        instance: the topological graph.
         strands: strands of each live edge.
         solve: runs a model.
 

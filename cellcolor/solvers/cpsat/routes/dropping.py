@@ -52,11 +52,9 @@ def drop_segments(
     An equally good division replaces the old one, so the search does not stay at one division.
 
     Args:
-        graph: the dart graph.
         painting: a canonical painting of it.
         regions: the color regions of the instance.
         seed: of the choice of segments and of routing.
-        deadline: when to stop.
         tries: for each segment, before nothing better is expected.
     """
     chance = random.Random(seed)

@@ -33,9 +33,6 @@ class PaintedNodes:
         segment: of each node, the number of its segment.
         nodes: of each segment, by its number.
         count: of each region, how many segments it has.
-
-    Raises:
-        OutOfTime: the deadline came first.
     """
 
     def __init__(self, graph: RefinedGraph, colors: Sequence[int], deadline: Deadline) -> None:

@@ -286,11 +286,9 @@ def recolor(
     """Better and better divisions of a graph, each with a segment less at least.
 
     Args:
-        graph: the dart graph.
         painting: a canonical painting of it.
         seed: of the choice of moves.
         enough: segments that are few enough.
-        deadline: when to stop.
         moves: for each segment, before nothing better is expected.
         rings: of sectors in a cell. One leaves room enough in most cells. With none, each cell is
             painted whole, which makes a move several times quicker.

@@ -81,7 +81,6 @@ class Planner:
     """Makes plans for an instance that respect all partings and tangles found so far.
 
     Args:
-        instance: the topological graph.
         regions: its color regions.
         fewest: the size of a smallest cover: as few regions can touch every cell, not fewer.
         solve: runs a model with a seed, within limits.
@@ -227,21 +226,13 @@ class Planner:
 
         Args:
             plan: made by :meth:`plan`.
-            deadline: when to stop.
             avoiding: whether to look also for tangles that need segments to avoid some cells. They
                 rule out more plans, but the model has to decide about more cells then.
-
-        Raises:
-            OutOfTime: the deadline came first.
         """
         return self.find_partings(plan, deadline) or self._find_tangles(plan, deadline, avoiding)
 
     def find_partings(self, plan: SegmentPlan, deadline: Deadline) -> bool:
-        """Look for two segments of a plan that would cross; returns whether there are any.
-
-        Raises:
-            OutOfTime: the deadline came first.
-        """
+        """Look for two segments of a plan that would cross; returns whether there are any."""
         return any(self._find(plan, every, deadline) for every in (False, True))
 
     def _find_tangles(self, plan: SegmentPlan, deadline: Deadline, avoiding: bool) -> bool:

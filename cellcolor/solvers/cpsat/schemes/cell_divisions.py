@@ -32,10 +32,6 @@ def divisions(
         known: of each of its darts the color in which its edge is joined, ``ZERO`` if it is in
             state 0, None if that is open.
         can_be_drawn: whether blocks of a cell with several loops do not cross.
-        deadline: when to stop.
-
-    Raises:
-        OutOfTime: the deadline has passed.
     """
     darts = graph.lists[cell]
     options = [

@@ -59,7 +59,6 @@ class OptimalSchemes(Iterator[Division]):
     finds nothing, schemes are looked for that differ from a known one in a few cells.
 
     Args:
-        instance: the topological graph.
         options: deadline, seed, and a division to start from.
         segments: the minimum.
 

@@ -63,7 +63,6 @@ class Frontier:
         regions: color and cells of each color region.
         segments: of the schemes, the fewest there are.
         can_be_drawn: whether the blocks of a cell with several loops do not cross.
-        deadline: when to stop.
         given: cells that are divided in one way only, all as in one scheme.
 
     Attributes:
@@ -71,7 +70,6 @@ class Frontier:
 
     Raises:
         TooLarge: there are too many fronts, or darts of one cell.
-        OutOfTime: the deadline came first.
     """
 
     def __init__(

@@ -64,7 +64,6 @@ def choices_with(
     """The choices that are left when one more cell is painted; none if its edges rule out all.
 
     Args:
-        graph: the dart graph.
         before: the choices without the cell: colors of the zeros, and clauses.
         cell: the cell.
         ways: to show colors in it.
@@ -90,7 +89,6 @@ def _clauses(graph: DartGraph, cell: int, own: ShownColors, shown: ShownColors) 
     """What the zeros of a cell have to heed.
 
     Args:
-        graph: the dart graph.
         cell: the cell.
         own: the colors of its zeros.
         shown: those of all zeros, also of cells painted before.

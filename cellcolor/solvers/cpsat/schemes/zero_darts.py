@@ -30,12 +30,7 @@ def zeros_can_differ(
     each color of a block is tried for it.
 
     Args:
-        graph: the dart graph.
         painting: the blocks of each cell.
-        deadline: when to stop.
-
-    Raises:
-        OutOfTime: the deadline has passed.
     """
     open_loops = {}
     for loops, blocks in zip(graph.loops, painting, strict=True):
