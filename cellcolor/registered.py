@@ -30,7 +30,6 @@ def find(name: str, own: Mapping[str, str], group: str, field: str | None = None
     """What is registered by a name. Nobody can replace what is this package's own.
 
     Args:
-        name: what is asked for.
         own: what this package has, as ``module:name`` by name.
         group: of the entry points of others.
         field: to be named in errors.

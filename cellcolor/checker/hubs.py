@@ -33,7 +33,6 @@ class Hubs:
 
     Args:
         regions: the color regions that each cell lies in, without those that were left out.
-        hubs: the cells.
     """
 
     def __init__(
@@ -78,7 +77,6 @@ class Hubs:
         """The most links that a cell can have, or more.
 
         Args:
-            hub: the cell.
             count: called once for each choice that is tried.
         """
         loops = self._live_loops(hub)

@@ -126,9 +126,7 @@ class PlanSearch:
         """
         Args:
             regions: the color regions that each cell lies in; these cells have to be touched.
-            conflicts: between segments.
             budget: how many choices may be tried.
-            tangles: of segments.
             costs: what a segment of each color costs, 1 or more; None for 1 each.
         """
         self.tried = 0

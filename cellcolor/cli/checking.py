@@ -137,8 +137,6 @@ def _on_solution(subject: Subject, claim: Path, name: str) -> SolutionVerdict:
     """The verdict on a solution's file, and on the schemes that follow the solution in it.
 
     Args:
-        subject: what was solved.
-        claim: the file.
         name: what the verdict says that the file is.
 
     Raises:

@@ -69,7 +69,6 @@ def at_work(file: Path, work: str, late: str) -> Iterator[Callable[[str], None]]
 
     Args:
         file: what is worked on; an error without a file is one of this file.
-        work: what is done.
         late: what is said where the time limit comes first.
 
     Raises:

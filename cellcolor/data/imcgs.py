@@ -63,7 +63,6 @@ def read_imcgs(
     named ``c3``.
 
     Args:
-        path: the file.
         corrections: replacements for wrong lines about edges, see :func:`parse_correction`. They
             are recorded in ``meta``.
         name: of the instance; None for the name of the file without its suffix.

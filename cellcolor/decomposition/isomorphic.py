@@ -25,8 +25,6 @@ def isomorphic(one: Instance, other: Instance, deadline: Deadline = NEVER) -> bo
     mean nothing.
 
     Args:
-        one: a topological graph.
-        other: another.
         deadline: when to give up; asked between rounds, and not in the last step.
     """
     import networkx as nx  # slow to import

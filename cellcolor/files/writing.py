@@ -182,7 +182,6 @@ def write(outputs: Sequence[Output], inputs: Sequence[Path] = ()) -> None:
     is renamed.
 
     Args:
-        outputs: the files.
         inputs: files that the same command reads; :func:`check_output` is called with them again.
 
     Raises:

@@ -254,7 +254,6 @@ def result_of(prepared: PreparedScene, stages: Stages, clock: StageClock) -> Bui
 
     Args:
         prepared: the scene, with the surface that the stages were asked about.
-        stages: of this surface.
         clock: the time they have taken.
     """
     clock.begin("report")

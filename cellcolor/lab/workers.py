@@ -58,7 +58,6 @@ def as_they_end(
     a while, does not disturb the work where there is one worker.
 
     Args:
-        workers: who does the work.
         tasks: each with a name of any kind, which is handed back with the result.
     """
     left = iter(tasks)

@@ -53,7 +53,6 @@ def cut(
     """The pieces of all triangles that are cut at once at new points on their sides.
 
     Args:
-        mesh: what to cut.
         new: (k,) see :func:`new_points`.
         first: (m,) the side that the pieces of each triangle begin with, which must be cut if any
             is, and followed by a second one if two are; None takes the first such side.
@@ -82,7 +81,6 @@ def halved(mesh: TriangleMesh, marked: Mask) -> tuple[TriangleMesh, Index]:
     """A mesh with edges cut in the middle; the new points come last, in the order of their edges.
 
     Args:
-        mesh: what to cut.
         marked: (k,) which edges.
 
     Returns:
@@ -108,7 +106,6 @@ def bisected_corners(mesh: TriangleMesh, marked: Mask) -> Index:
     """The triangles (p, 3) once marked edges are bisected, in each the longest side first.
 
     Args:
-        mesh: what to cut.
         marked: (k,) which edges, see :func:`with_longest_sides`.
     """
     names = _from(_longest(mesh), mesh.corners, new_points(mesh, marked)[mesh.edge_of_side])

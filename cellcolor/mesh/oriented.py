@@ -14,7 +14,6 @@ def directed_edges(faces: NDArray[np.int64], vertex_count: int) -> dict[tuple[in
 
     Args:
         faces: (m, 3) vertex indices, counter-clockwise seen from outside.
-        vertex_count: number of vertices.
 
     Returns:
         ``{(i, j): k}`` for every triangle (i, j, k), three entries a triangle.

@@ -33,7 +33,6 @@ def within(
     """The vertices within a distance of some, along the surface, and their distances in m.
 
     Args:
-        nearby: the mesh.
         starts: distances to begin with, and vertices.
         reach: the largest distance, m.
     """

@@ -47,7 +47,6 @@ def move_borders(
     """Move the borders between the segments of a painting; its surface stays.
 
     Args:
-        painted: any painting.
         tool_radius_m: radius of the footprint, m. None takes the mean length of a mesh edge: then
             a corridor of that width has a row of vertices inside.
         cost: (n, colors) cost of painting a vertex in a color, from 0 (best) to 1; None for 0.

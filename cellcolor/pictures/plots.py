@@ -31,7 +31,6 @@ def render_plot(plot: Plot, kind: str) -> bytes:
     """The plot's file; the same plot gives the same bytes.
 
     Args:
-        plot: what to draw.
         kind: ``png`` or ``svg``.
     """
     with mpl.rc_context(_STYLE):
@@ -115,7 +114,6 @@ def render_front(front: Front, kind: str) -> bytes:
     """The largest share that each number of lift-offs covers, with what is left out.
 
     Args:
-        front: its points.
         kind: ``png`` or ``svg``.
     """
     at = [point.lift_offs for point in front]

@@ -38,7 +38,6 @@ def render(picture: Picture2D | Picture3D, kind: str) -> bytes:
     """The picture's file; the same picture gives the same bytes.
 
     Args:
-        picture: what to draw.
         kind: ``png`` or ``svg``.
     """
     with mpl.rc_context(_STYLE):

@@ -40,8 +40,6 @@ def check_able(name: str, options: Options, *, start: bool = False, schemes: boo
     """Reject a task that a solver does not declare.
 
     Args:
-        name: of the solver.
-        options: for the solver.
         start: whether it is to start from a division, even if the options have none yet.
         schemes: whether it is to list all optimal schemes.
 

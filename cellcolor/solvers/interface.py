@@ -174,7 +174,6 @@ class SchemeSolver(Solver, Protocol):
         """Every scheme (docs/semantics.md, section 3) with the fewest segments, each once.
 
         Args:
-            options: how to search.
             segments: the fewest, which have been proved before.
 
         Raises:

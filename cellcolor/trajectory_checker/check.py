@@ -50,7 +50,6 @@ def check_trajectory(
 
     Args:
         built: the scene and its labelled surface: the area that has a color has to be covered.
-        trajectory: what is judged.
         timed: whether its times mean anything; without them velocities are not judged.
         tells: whether it can say what it leaves out. A table cannot, so it may leave out whatever
             no branch can reach.

@@ -59,7 +59,6 @@ def judge_left_out(
     fail there: the planner tests other points than the vertices of the fine mesh.
 
     Args:
-        trajectory: what is judged.
         fine: the surface, refined.
         areas: (n,) reachable area of each vertex of the fine mesh, m².
         reached: (n,) which vertices are covered.
@@ -67,7 +66,6 @@ def judge_left_out(
         asked: (n,) of which that was asked; the others are closely covered.
         failing: (p,) at which stated places the segment's branches fail.
         spacing: the setup's, between passes, m.
-        faults: where they are noted.
     """
     if not trajectory.left_out:
         return

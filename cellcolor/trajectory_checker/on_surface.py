@@ -31,7 +31,6 @@ def judge_contact(
         rows: (c,) its rows in contact.
         located: the nearest points of the surface to these.
         direction: whether the task holds the tool against the normal.
-        faults: where faults are noted.
 
     Returns:
         (c,) whether the tip is on the surface.

@@ -182,7 +182,6 @@ def exact_solutions(
     """Solutions of an arm whose closed form is its own.
 
     Args:
-        robot: the arm.
         candidates: (n, s, joints) in rad, NaN where there is none.
         points: (n, 3) where the tip has to be, m.
         directions: (n, 3) unit vectors of the tool.

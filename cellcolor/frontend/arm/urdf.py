@@ -239,7 +239,6 @@ def parse_urdf(text: str, file: Path, folder: Path = Path()) -> Urdf:
     """Check a URDF text.
 
     Args:
-        text: the XML.
         file: what errors name; it is not read.
         folder: what relative file names in it are relative to.
 

@@ -100,7 +100,6 @@ class Tolerance(Table):
         Args:
             placement: where the part should stand.
             center: (3,) of the part, in the world, m.
-            rng: what draws.
             count: how many; None for ``samples``.
             at_most: whether they may be off less than the tolerance allows, evenly within it.
         """

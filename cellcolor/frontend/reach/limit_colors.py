@@ -68,7 +68,6 @@ def limit_colors(
     """Divide the colors that do not fit into the joint limits as a whole.
 
     Args:
-        robot: with the limits.
         coloring: colors modulo full circles.
         configurations: (n, branches, joints) in rad.
         edges: (k, 2) all mesh edges.

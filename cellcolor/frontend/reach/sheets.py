@@ -112,7 +112,6 @@ class SheetKinematics(InverseKinematics):
 
         Args:
             own: the arm's family, which knows no names.
-            tracker: follows solutions.
             poses: points (n, 3) in m and unit vectors (n, 3) of the tool at the vertices.
             joints: (n, sheets, joints) in rad, NaN for none.
             valid: (n, sheets) which of them are followed.
@@ -263,7 +262,6 @@ def sheets_of(surface: Surface, links: Index, nodes: Mask, solutions: Solutions)
     """Which solution of a vertex each sheet has, (n, sheets), -1 for none; largest sheets first.
 
     Args:
-        surface: the part.
         links: (l, 3), see :meth:`Linking.links`, of all mesh edges.
         nodes: (n, s) which solutions are valid.
         solutions: (n, s) of all vertices.

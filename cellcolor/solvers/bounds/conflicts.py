@@ -65,10 +65,6 @@ def conflicts(instance: Instance, first: Region, second: Region) -> list[Conflic
     """All known conflicts between segments in two color regions.
 
     All returned conflicts are true, but there may be more.
-
-    Args:
-        first: a color region.
-        second: another one.
     """
     found: dict[frozenset[frozenset[MergedCell]], Conflict] = {}
     pair = RegionPair(instance, first, second)

@@ -306,9 +306,6 @@ class Tangles:
 
         Up to a limit, these are all tangles of two segments; if there are none, those of three; if
         there are none either, one larger tangle.
-
-        Args:
-            plan: segments.
         """
         plan = _among_themselves(plan)
         whole = self._seen_by(plan, _signs(plan))

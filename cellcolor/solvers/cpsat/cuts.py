@@ -37,7 +37,6 @@ class FewestCuts:
         strands: strands of each live edge that are enough.
         written: strands of each live edge in the division that is handed out.
         segments: the fewest segments there are.
-        runner: runs models.
 
     Attributes:
         bound: no division with ``segments`` segments has fewer cutting paths.

@@ -240,7 +240,6 @@ class _Hubs:
         """The states after one more hub, and how each was reached.
 
         Args:
-            ways: of the hub.
             places: the petals on the frontier before, then the hub's other shared petals.
             kept: those of the places that stay on the frontier.
         """

@@ -31,7 +31,6 @@ def divide_hubs(
     """Divide hubs into groups of darts with many links, and paint all other cells whole.
 
     Args:
-        part: the cells.
         hubs: no two of which share a live edge; the links of each are limited.
         whole: a color for each other cell. One with a single dart takes that of the hub's group.
         seed: of what is tried where hubs have several loops.

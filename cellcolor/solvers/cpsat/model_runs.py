@@ -74,7 +74,6 @@ class Runner:
 
         Args:
             solver: see above.
-            model: what to solve.
             found: called with the objective of each better solution, in a thread of the solver.
         """
         status, interrupt = solve_interruptibly(solver, model, found)

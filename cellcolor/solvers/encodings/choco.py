@@ -48,7 +48,6 @@ class Ranks:
         """Write the model.
 
         Args:
-            problem: what to solve.
             fewest: a lower bound of the number of segments.
         """
         from pychoco.model import Model

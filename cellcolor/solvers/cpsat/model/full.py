@@ -166,9 +166,6 @@ def fewest_subcells(
     across seams do not count.
 
     Args:
-        model: the model.
-        graph: its dart graph.
-        v: its variables.
         alone: per cell, whether it has no dart in state 1.
         segments: how many there have to be.
         more: further literals, each of which counts like one more sub-cell.
@@ -303,7 +300,6 @@ def _forest(graph: DartGraph, painting: Painting, fixed: set[int]) -> _Forest | 
     """A forest with its roots in undivided cells, None if a segment has no such cell.
 
     Args:
-        painting: what to connect.
         fixed: cells that have to have the roots of their segments.
     """
     blocks = [block for cell in painting for block in cell]

@@ -91,7 +91,6 @@ def build_apart(
 
     Args:
         apart: the instance with loops apart.
-        graph: its dart graph.
         regions: color regions of the original instance.
         segments: how many segments a division has to have; the fewest there are.
         groups: whether cutting paths may connect loops. Loops so connected form a group, which

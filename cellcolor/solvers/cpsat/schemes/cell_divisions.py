@@ -28,7 +28,6 @@ def divisions(
 
     Args:
         graph: the dart graph, loops apart.
-        cell: the cell.
         known: of each of its darts the color in which its edge is joined, ``ZERO`` if it is in
             state 0, None if that is open.
         can_be_drawn: whether blocks of a cell with several loops do not cross.

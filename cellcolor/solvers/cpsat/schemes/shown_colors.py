@@ -65,7 +65,6 @@ def choices_with(
 
     Args:
         before: the choices without the cell: colors of the zeros, and clauses.
-        cell: the cell.
         ways: to show colors in it.
         open_darts: those towards the cells that are still not painted.
     """
@@ -89,7 +88,6 @@ def _clauses(graph: DartGraph, cell: int, own: ShownColors, shown: ShownColors) 
     """What the zeros of a cell have to heed.
 
     Args:
-        cell: the cell.
         own: the colors of its zeros.
         shown: those of all zeros, also of cells painted before.
     """
