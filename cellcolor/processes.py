@@ -303,7 +303,7 @@ def _complaint(end: End | None, code: int, limits: Limits, said: str) -> str:
 
 
 def _last_line(errors: IO[bytes]) -> str:
-    """The last of what a process complained of; empty if it said nothing."""
+    """The last line of a process's error output; empty if there is none."""
     errors.seek(0)
     return errors.read().decode(errors="replace").strip().rpartition("\n")[2]
 

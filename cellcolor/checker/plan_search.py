@@ -312,7 +312,7 @@ class PlanSearch:
 
         Args:
             numbers: those of the segments in each color region.
-            connected: the conflicts of which some segment is the first, and the second, as bits.
+            connected: bits of the conflicts whose first segment is found, and whose second is.
         """
         able = []
         for region in self._regions[cell]:

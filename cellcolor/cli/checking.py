@@ -52,7 +52,7 @@ class Request:
     Attributes:
         subject: the file or shipped name of an instance, a labelled surface or a scene, or ``-``.
         claim: a solution of it, a plan on its surface, or a trajectory for the scene, or ``-``.
-        seconds: the time limit, by which kept ranges that are not exact are judged.
+        seconds: the time limit; a kept range that is not exact is used if its was no shorter.
         deadline: when that is over.
     """
 

@@ -140,7 +140,7 @@ def judge_trajectory(
     if isinstance(given, TrajectoryTable):
         given = completed(given, built.robot, deadline)
     report("proven minimum")
-    # Half of the time is for the judge, who has something to say whatever is proved.
+    # Half of the time is for the judge: it has a verdict whatever is proved.
     bounds = prove(built.surface, deadline.share(0.5)).bounds
     return check_trajectory(
         built,

@@ -32,7 +32,7 @@ class Wanted:
             all of it.
         required: what has to be covered whatever the share leaves out.
         left_alone: what must not be covered.
-        objective: without a share, its price of what is left uncovered decides.
+        objective: without a share, its price for area left uncovered decides.
 
     Raises:
         InputError: the share is not from 0 to 1, or something is required without share and price.

@@ -221,7 +221,7 @@ def _cut_off_in_words(driven: _Driven) -> str:
 
 
 def _with_notes(result: Result, notes: tuple[str, ...], share: float) -> Result:
-    """The result with what is said of what was left out on purpose."""
+    """The result with notes on what was left out on purpose."""
     solution = replace(result.solution, notes=(*notes, *result.solution.notes))
     return replace(result, solution=solution, covered_share=share)
 
@@ -263,7 +263,7 @@ def _answered(
     Args:
         names: of the questions.
         subject: a scene, built, nothing left out.
-        deadline: when to be content with the answers so far.
+        deadline: when to return the answers so far.
         progress: told what is being done.
     """
     from cellcolor.pictures.report_page.content import AnsweredScene

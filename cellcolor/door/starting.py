@@ -125,7 +125,7 @@ def new(
 
 @dataclass(frozen=True)
 class FoundArm:
-    """An arm of a family that was found out.
+    """An arm whose family was recognized.
 
     Attributes:
         urdf: its file.
@@ -315,7 +315,7 @@ def _home(prepared: PreparedScene) -> list[float] | None:
 
 
 def _found(prepared: PreparedScene, home: list[float] | None) -> dict[str, str]:
-    """What of the setup's file only the prepared scene tells."""
+    """The keys of the setup's file that only the prepared scene tells."""
     robot = prepared.robot
     return {
         "accelerations": json.dumps([_ACCELERATION] * robot.joints),

@@ -45,7 +45,7 @@ class Links:
 
     @classmethod
     def of(cls, edges: Index, linked: Mask) -> Links:
-        """Links of which no reason is known."""
+        """Links, without the reasons of those that are missing."""
         return cls(edges, linked, np.full(linked.shape, VALID, dtype=np.uint8))
 
 

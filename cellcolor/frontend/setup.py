@@ -219,7 +219,7 @@ class Constraints(Table):
 
 
 class Margins(Table):
-    """How far arm and tool stay from everything, at least; a touch is what they avoid without.
+    """How far arm and tool stay from everything, at least; without any, they only must not touch.
 
     The region where the tool works has its own room, ``contact_radius_m`` of the task.
     """

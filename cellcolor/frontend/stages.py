@@ -256,7 +256,7 @@ def judged(prepared: PreparedScene, clock: StageClock, before: Judged | None = N
 def _held(
     prepared: PreparedScene, stages: Stages, elsewhere: Sequence[Stages], clock: StageClock
 ) -> Stages:
-    """What of the stages holds at every displacement."""
+    """The stages with the candidates and links that hold at every displacement."""
     candidates = stages.candidates
     held: Mask = np.all([one.candidates.valid for one in elsewhere], axis=0)
     names, reasons = (*candidates.reason_names, OFF), candidates.reasons.copy()

@@ -84,8 +84,8 @@ def improvement_of(
 ) -> Improvement | None:
     """Which two segments of a plan the better painting has in one.
 
-    There are two, since it has fewer. Of all such pairs it is the one of which the smaller part
-    within the better segment is the largest.
+    There are two, since it has fewer. Of all such pairs it is the one whose smaller part within
+    the better segment is largest.
 
     Args:
         segment_of: (n,) the plan's segment of each vertex, -1 where it has no color.

@@ -153,7 +153,7 @@ class Room:
         return sorted(found, key=lambda corridor: corridor.width_m)
 
     def _onward(self, vertex: int) -> Iterator[int]:
-        """The neighbors of a vertex to which its segment leads on."""
+        """The neighbors of a vertex that its segment joins to it."""
         for other in self._nearby.around[vertex]:
             if self._segment[other] == self._segment[vertex] and self._joined(vertex, other):
                 yield other

@@ -29,7 +29,7 @@ MODEL = shipped_folder() / "models" / "constraints" / "coloring.lp"
 """The answer set program."""
 
 _OPTIONS = ("--opt-strategy=usc,stratify", "--parallel-mode=2")
-"""Two threads that search core-guided and stratified: of what was tried, the quickest."""
+"""Two threads that search core-guided and stratified: the quickest of the settings tried."""
 
 _MOST_CROSSINGS = 5_000_000
 """The most pairs of crossing links that a model may have. A link goes from one dart of a cell to

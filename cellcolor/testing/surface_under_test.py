@@ -98,7 +98,7 @@ class SurfaceUnderTest:
     def assert_not_beatable(self, plan: AnyPlan) -> Verdict:
         """Fail if the plan is not valid, or is proved to have more segments than needed.
 
-        A plan of which that is open passes.
+        A plan passes if it is not known whether it needs as many.
 
         Raises:
             AssertionError: says where it can be beaten, and where pictures of it and of a better

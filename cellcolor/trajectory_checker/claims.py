@@ -63,7 +63,7 @@ def judge_left_out(
         areas: (n,) reachable area of each vertex of the fine mesh, m².
         reached: (n,) which vertices are covered.
         right: (n,) which are rightly left out.
-        asked: (n,) of which that was asked; the others are closely covered.
+        asked: (n,) those for which that was tested; the others are closely covered.
         failing: (p,) at which stated places the segment's branches fail.
         spacing: the setup's, between passes, m.
     """

@@ -150,7 +150,7 @@ def _halved(triangles: Array, samples: Array, tree: cKDTree) -> Iterator[list[Ar
 
 
 def _neighborhoods(triangles: Array, centers: Array) -> list[Array]:
-    """What of triangles (m, 3, 3) is nearest to each of some points (k, 3)."""
+    """The part of triangles (m, 3, 3) nearest to each of some points (k, 3): Voronoi cells."""
     pieces = []
     for center in centers:
         piece = triangles
@@ -194,7 +194,7 @@ def _best_cut(
 
 
 def _below(triangles: Array, cut: _Cut) -> Array:
-    """What of triangles (m, 3, 3) lies on or below a plane, as triangles."""
+    """The part of triangles (m, 3, 3) on or below a plane, as triangles."""
     heights = triangles @ cut.normal - cut.offset
     under = heights <= 0
     counts = under.sum(axis=1)

@@ -27,7 +27,7 @@ _STEPS = 25
 _GOOD = 1e-12  # m and rad; nothing is gained from there on
 _LARGEST = 0.3  # rad; no step moves a joint farther
 SAME = 1e-6  # rad; two solutions nearer than this are one
-_FOLDED = 0.05  # smallest singular value from which on down two solutions are about to meet
+_FOLDED = 0.05  # smallest singular value; below it two solutions are about to meet
 _APART = 0.1  # rad, to both sides of there
 
 

@@ -93,7 +93,7 @@ def hits_itself(
         rows = at[pairs == number]
         rows = rows[~hit[rows]]
         if first.solid is not None or second.solid is not None:
-            assert poses is not None  # who has solids hands the poses down
+            assert poses is not None  # callers whose bodies have solids pass them
             rows = rows[gap_between(robot, (i, j), ends, poses, rows) <= _ROUNDING]
             hit[rows] = _overlap(robot, (i, j), ends, poses, rows)
             continue

@@ -51,7 +51,7 @@ def body_poses(body: Body, ends: Array, poses: Poses | None = None) -> tuple[Arr
     """
     start, end = ends
     if body.solid is not None:
-        assert poses is not None  # who has solids hands the poses down
+        assert poses is not None  # callers whose bodies have solids pass them
         return poses.body_rotation[:, body.joint], poses.body_origin[:, body.joint]
     if not body.length:
         return np.tile(np.eye(3), (len(start), 1, 1)), start

@@ -154,7 +154,7 @@ _APART = 6  # corners of two faces that share none
 
 
 def fold_angle(mesh: TriangleMesh) -> float:
-    """The angle from which on two faces count as folded, rad.
+    """The angle above which two faces count as folded, rad.
 
     It is larger than at any edge of this mesh, at least 150 and at most 175 degrees.
     """
@@ -175,7 +175,7 @@ def unfolded(
     Args:
         vertices: (n, 3).
         faces: (m, 3) of a manifold.
-        angle: between the normals of two faces, rad, from which on they are folded.
+        angle: between the normals of two faces, rad; above it they are folded.
         reach: the vertex's place stays that near to the surface.
     """
     patch = _Patch(vertices, faces, angle, reach)

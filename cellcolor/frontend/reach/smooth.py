@@ -33,7 +33,7 @@ class Measure:
 
     Attributes:
         policy: the bounds on steps.
-        near_singular: task determinant from which on down steps are always looked into, m^3.
+        near_singular: steps with a task determinant below this, m^3, are always looked into.
         lever: the way that counts like a turn of the tool by one rad, m.
         slides: (joints,) which joints are prismatic; none without it.
         reach: the way of a prismatic joint that counts like a turn by one rad, m.
@@ -96,7 +96,7 @@ class Motions:
 
 @dataclass(frozen=True)
 class _Steps:
-    """Parts of motions: of which edge, from where to where (0 to 1), joints and determinants."""
+    """Parts of motions along edges: which edge, from where to where (0 to 1), what is there."""
 
     row: Index
     low: Array

@@ -17,14 +17,14 @@ _Subject = TypeVar("_Subject")
 def shrink_instance(
     instance: Instance, wrong: Callable[[Instance], bool], seconds: float
 ) -> Instance:
-    """An instance of which nothing can be left out without losing what is wrong with it.
+    """A smallest instance with the same fault (delta debugging): nothing more can be left out.
 
     Cells, edges, colors of cells and joinable colors of edges are left out one at a time, as long
     as there is time.
 
     Args:
-        instance: something is wrong with it.
-        wrong: whether that is so.
+        instance: one with a fault.
+        wrong: whether an instance has the fault.
         seconds: after that, the smallest found so far is returned.
     """
     bare = replace(instance, meta=None, surface=None, known=None)

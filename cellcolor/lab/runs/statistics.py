@@ -75,7 +75,7 @@ def ratios(rows: Sequence[Row]) -> dict[str, list[float]]:
 
 
 def strongest(rows: Sequence[Row], *, rivals: bool) -> str | None:
-    """Who proves the most minima, and of these who has the lower PAR2; None if there is nobody.
+    """The contestant that proves most minima, then with the lower PAR2; None if there is none.
 
     Args:
         rivals: among the others than ``cp-sat``, its variants left out; else among ``cp-sat`` with

@@ -44,7 +44,7 @@ def summary_of_runs(rows: Sequence[Row]) -> Iterator[str]:
 
 
 def summary_of_timings(timings: Sequence[Timing]) -> Iterator[str]:
-    """Lines of Markdown: medians of what is no solver."""
+    """Lines of Markdown: medians of timings of everything but solvers."""
     groups: dict[tuple[str, str, int | None], list[Timing]] = {}
     for one in timings:
         if one.status == "done":

@@ -179,7 +179,7 @@ def _hard_cells_of(
 
 
 def _strangers(group: Sequence[int], touching: Sequence[set[int]], deadline: Deadline) -> list[int]:
-    """Many cells of which no two lie in one color region, the most if there is time to prove it."""
+    """Many cells no two of which lie in one color region; if time allows, a maximum packing."""
     from ortools.sat.python import cp_model
 
     model = cp_model.CpModel()
@@ -244,7 +244,7 @@ def _smallest(
     hint: Collection[int] = (),
     prices: Sequence[int] | None = None,
 ) -> _Found:
-    """The fewest regions that meet all demands, sets of which one region at least is needed.
+    """A minimum hitting set: the fewest regions with at least one of each demand.
 
     With prices of all regions they are the cheapest ones, and the bound is one of their sum.
     """

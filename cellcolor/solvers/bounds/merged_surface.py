@@ -266,7 +266,7 @@ class PolygonSurface:
 def spanning_tree(
     sides: Mapping[int, tuple[int, int]], nodes: Iterable[int]
 ) -> dict[int, tuple[int, int]]:
-    """The edge by which each node is first reached, and the node before; 0 and itself for a root.
+    """A spanning forest: the edge to each node from its parent, and that; 0 and itself for a root.
 
     Args:
         sides: the two nodes of each edge.

@@ -1,4 +1,4 @@
-"""Segments of which any two fit but not all can be drawn: lower bounds for any division.
+"""Segments that cannot all be drawn although any two can: lower bounds for any division.
 
 Two segments that do not meet cross evenly, and so do any two ways within them. How often two ways
 cross modulo 2 is known but for the sides on which they pass what is in their way. So a plan of

@@ -33,7 +33,7 @@ def divide_hubs(
     Args:
         hubs: no two of which share a live edge; the links of each are limited.
         whole: a color for each other cell. One with a single dart takes that of the hub's group.
-        seed: of what is tried where hubs have several loops.
+        seed: of the attempts where hubs have several loops.
     """
     instance = part.instance
     color_of = dict(whole)

@@ -102,7 +102,7 @@ def _of_range(
 
 
 def _undominated(found: Ways) -> Ways:
-    """Without ways of which another one connects all the same petals and has no fewer links."""
+    """Without dominated ways: another one connects the same petals with no fewer links."""
     kept: Ways = {}
     order = sorted(found, key=lambda groups: (-found[groups][0], -sum(map(len, groups))))
     for groups in order:

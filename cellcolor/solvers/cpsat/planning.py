@@ -32,7 +32,7 @@ or by a small one, hardly ever by both; without any, as small plans are made, by
 parts a full one takes longest, and seldom says more."""
 
 LITTLE = 2
-"""Segments above the bound up to which it is tried what segments avoid."""
+"""With a gap of up to so many segments, plans may also say which cells segments avoid."""
 
 ATTEMPTS = 3
 """Plans to route before the full model has to decide; with more effort only one of a large part."""

@@ -24,7 +24,7 @@ class Model:
         at_least_one: of these literals one or more is true: a clause.
         at_most_one: of these literals none or one is true.
         exactly_one: of these literals one is true.
-        costs: variables of which as few as possible are to be true.
+        costs: variables; as few of them as possible are to be true.
     """
 
     def __init__(self) -> None:

@@ -94,7 +94,7 @@ class SeamWriter:
         self.graph = dart_graph(instance, self._colors, strands, None)
 
     def write(self, painting: Painting) -> Seamed | None:
-        """The painting with seams; None if it cannot be drawn or was not found out."""
+        """The painting with seams; None if it cannot be drawn, or if that stayed open."""
         written = []
         for number, blocks in enumerate(painting):
             try:

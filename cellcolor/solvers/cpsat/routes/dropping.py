@@ -191,7 +191,7 @@ def _kept_nodes(
 def _each_cell_once(
     segments: Sequence[PlannedSegment], cells: int, chance: random.Random
 ) -> SegmentPlan:
-    """The segments with each cell given to one of those that have it, else to one that can."""
+    """Each cell given to one of the segments that have it, or else to one that could."""
     order = list(range(len(segments)))
     chance.shuffle(order)
     holder: dict[int, int] = {}

@@ -81,7 +81,7 @@ class PaintedNodes:
         self._join(painted)
 
     def _join(self, nodes: Iterable[int]) -> None:
-        """Put nodes that are in no segment into those that they touch, which become one."""
+        """Put nodes without a segment into the segments that they touch, which are merged."""
         segment, region = self.segment, self.region
         for node in nodes:
             own = region[node]

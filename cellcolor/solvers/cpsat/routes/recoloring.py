@@ -36,7 +36,7 @@ FAR = 3
 """With more segments than these above the fewest, the search returns to the best division."""
 
 MOST_DISSOLVED = 12
-"""Cells of a kernel up to which all of them are led away; of a larger one a single cell is."""
+"""Of a kernel with up to so many cells all are led away, of a larger one a single cell."""
 
 TO_ITS_COLOR, TO_ANY_COLOR, TO_THE_NEAREST = 0.15, 0.375, 0.45
 """What is done with a kernel, as cumulative shares of the moves: one cell of it is led to a segment
