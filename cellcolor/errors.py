@@ -46,6 +46,15 @@ def naming(file: str | PathLike[str] | None) -> Iterator[None]:
         raise error.in_file(str(file)) from error
 
 
+@contextmanager
+def system_errors(file: str | PathLike[str], usual: str) -> Iterator[None]:
+    """Name the file in errors of the operating system, with a usual text if it gives no reason."""
+    try:
+        yield
+    except OSError as error:
+        raise InputError(str(file), None, error.strerror or usual) from error
+
+
 class SolverMissing(CellcolorError):
     """A solver that is known by name cannot run here: what it needs is not installed.
 

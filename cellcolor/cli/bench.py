@@ -22,7 +22,7 @@ from cellcolor.cli.options import (
 )
 from cellcolor.cli.progress import progress_bar
 from cellcolor.cli.terminal import complain, say, say_lines
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, system_errors
 from cellcolor.files.writing import PNG, SVG, Output, write
 from cellcolor.solvers.registry import DEFAULT, REFERENCE
 
@@ -156,10 +156,8 @@ def plots(tables: tuple[Path, ...], output: Path) -> Exit:
     rows, _ = _read(tables)
     if not rows:
         raise InputError(str(tables[0]), None, "has no runs of solvers")
-    try:
+    with system_errors(output, "cannot be made"):
         output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(str(output), None, error.strerror or "cannot be made") from error
     for name, plot in plots_of(rows).items():
         for suffix, kind in (("png", PNG), ("svg", SVG)):
             file = output / f"{name}.{suffix}"

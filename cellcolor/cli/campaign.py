@@ -15,7 +15,7 @@ from cellcolor.cli.tables import console
 from cellcolor.cli.terminal import complain
 from cellcolor.data.instance import Instance
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.errors import InputError
+from cellcolor.errors import system_errors
 from cellcolor.files.temporary import remove_strays
 from cellcolor.files.writing import Output, is_folder_or_nothing, kind_of_format, write
 from cellcolor.lab.campaign.pool import Outcome, Summary, Tally, outcomes_of_campaign
@@ -53,10 +53,8 @@ def _keep(outcome: Outcome, seed: int, output: Path) -> None:
     for wrong in outcome.wrong:
         mesh = json.loads(wrong.document)["format"] == LabelledSurface.FORMAT
         name = f"campaign_{seed}_{outcome.number}{'.surface' if mesh else ''}.json"
-        try:
+        with system_errors(output, "cannot be made"):
             output.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise InputError(str(output), None, error.strerror or "cannot be made") from error
         kind = kind_of_format(LabelledSurface.FORMAT if mesh else Instance.FORMAT)
         write([Output(output / name, kind, [wrong.document.encode()])])
         complain(f"{output / name}: {wrong.message}")

@@ -18,7 +18,7 @@ from cellcolor.data.instance import Instance
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.door.extras import extras_for
 from cellcolor.door.subject import Subject, build_scene, open_subject, scene_or_file
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, system_errors
 
 if TYPE_CHECKING:
     from cellcolor.frontend import Scene
@@ -115,10 +115,8 @@ def input_file(given: str) -> Iterator[Path]:
         return
     with tempfile.TemporaryDirectory(prefix="cellcolor-") as folder:
         copy = Path(folder) / _NAME
-        try:
+        with system_errors(_NAME, "cannot be read"):
             copy.write_bytes(b"" if sys.stdin is None else sys.stdin.buffer.read())
-        except OSError as error:
-            raise InputError(_NAME, None, error.strerror or "cannot be read") from error
         try:
             yield copy
         except InputError as error:

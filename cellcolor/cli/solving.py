@@ -29,7 +29,7 @@ from cellcolor.data.solution import Division, SearchSpace, Solution
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.door.drawing import kind_of_picture, kind_of_plot
 from cellcolor.door.result import Result
-from cellcolor.errors import CellcolorError, InputError, TooLarge
+from cellcolor.errors import CellcolorError, InputError, TooLarge, system_errors
 from cellcolor.files.writing import (
     Output,
     check_output,
@@ -305,10 +305,8 @@ def _solved(result: Result, target: Path) -> Output:
 
 
 def _make_folder(target: Path) -> None:
-    try:
+    with system_errors(target, "cannot be written"):
         target.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(str(target), None, error.strerror or "cannot be written") from error
 
 
 @contextmanager
@@ -322,10 +320,8 @@ def _spool(target: Path | None) -> Iterator[IO[bytes] | None]:
         return
     _make_folder(target)
     folder = None if is_stream(target) else target.resolve().parent
-    try:
+    with system_errors(target, "cannot be written"):
         spool = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115
-    except OSError as error:
-        raise InputError(str(target), None, error.strerror or "cannot be written") from error
     with spool:
         yield spool
 

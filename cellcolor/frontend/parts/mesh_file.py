@@ -20,7 +20,7 @@ import trimesh
 
 from cellcolor.arrays import Array
 from cellcolor.deadline import NEVER, Deadline
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, system_errors
 from cellcolor.frontend.parts.mesh import mesh_surface
 from cellcolor.frontend.parts.part import Part
 from cellcolor.frontend.parts.surface import Faces, Surface
@@ -117,12 +117,9 @@ def _check_container(file: Path) -> None:
     Raises:
         InputError: an STL file is cut off or none, or a PLY file has its triangles in strips.
     """
-    try:
-        with file.open("rb") as stream:
-            head = stream.read(_HEADER)
-            size = stream.seek(0, io.SEEK_END)
-    except OSError as error:
-        raise InputError(str(file), None, error.strerror or "cannot be read") from error
+    with system_errors(file, "cannot be read"), file.open("rb") as stream:
+        head = stream.read(_HEADER)
+        size = stream.seek(0, io.SEEK_END)
     if file.suffix.lower() == ".ply":
         if re.search(rb"^element\s+tri_?strips?\s", head, re.MULTILINE):
             message = "has triangle strips, which are not read: save it with faces"
@@ -152,25 +149,25 @@ def read_obj(file: Path, deadline: Deadline) -> tuple[Array, Faces]:
             not a number; names the line.
     """
     points, corners = array("d"), array("q")
-    try:
-        with file.open(encoding="utf-8", errors="replace") as stream:
-            for number, line in deadline.watch(_lines(stream)):
-                kind, *words = line.split() or [""]
-                try:
-                    if kind == "v":
-                        points.extend(map(float, words[:3]))
-                        if len(points) % 3:
-                            raise ValueError("a vertex has three coordinates")
-                    elif kind == "f":
-                        face = [_index(word, len(points) // 3) for word in words]
-                        if len(face) < 3:
-                            raise ValueError("a face has three corners or more")
-                        for second, third in itertools.pairwise(face[1:]):
-                            corners.extend((face[0], second, third))
-                except (ValueError, OverflowError) as error:
-                    raise InputError(str(file), f"line {number}", str(error)) from error
-    except OSError as error:
-        raise InputError(str(file), None, error.strerror or "cannot be read") from error
+    with (
+        system_errors(file, "cannot be read"),
+        file.open(encoding="utf-8", errors="replace") as stream,
+    ):
+        for number, line in deadline.watch(_lines(stream)):
+            kind, *words = line.split() or [""]
+            try:
+                if kind == "v":
+                    points.extend(map(float, words[:3]))
+                    if len(points) % 3:
+                        raise ValueError("a vertex has three coordinates")
+                elif kind == "f":
+                    face = [_index(word, len(points) // 3) for word in words]
+                    if len(face) < 3:
+                        raise ValueError("a face has three corners or more")
+                    for second, third in itertools.pairwise(face[1:]):
+                        corners.extend((face[0], second, third))
+            except (ValueError, OverflowError) as error:
+                raise InputError(str(file), f"line {number}", str(error)) from error
     vertices = np.array(points, dtype=np.float64).reshape(-1, 3)
     return vertices, np.array(corners, dtype=np.int64).reshape(-1, 3)
 

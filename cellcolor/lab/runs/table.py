@@ -15,7 +15,7 @@ from typing import Any, Generic, TypeVar
 
 from pydantic import TypeAdapter
 
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, system_errors
 from cellcolor.files.documents import validate
 
 _R = TypeVar("_R")
@@ -27,11 +27,8 @@ def header_of(path: str | PathLike[str], kinds: Sequence[type[Any]]) -> type[Any
     Raises:
         InputError: the file cannot be read, or is a table of none of these kinds.
     """
-    try:
-        with Path(path).open("rb") as file:
-            first = file.readline()
-    except OSError as error:
-        raise InputError(str(path), None, error.strerror or "cannot be read") from error
+    with system_errors(path, "cannot be read"), Path(path).open("rb") as file:
+        first = file.readline()
     for kind in kinds:
         if first == _line(_columns(kind)).encode():
             return kind
@@ -50,9 +47,8 @@ def read_table(path: str | PathLike[str], kind: type[_R]) -> list[_R]:
         InputError: the file cannot be read, or is no such table.
     """
     try:
-        text = Path(path).read_bytes().decode()
-    except OSError as error:
-        raise InputError(str(path), None, error.strerror or "cannot be read") from error
+        with system_errors(path, "cannot be read"):
+            text = Path(path).read_bytes().decode()
     except UnicodeDecodeError as error:
         raise InputError(str(path), None, f"is not text: {error}") from error
     return _rows(text, str(path), kind)
@@ -75,10 +71,8 @@ class TableFile(Generic[_R]):
     """
 
     def __init__(self, path: Path, kind: type[_R]) -> None:
-        try:
+        with system_errors(path, "cannot be written"):
             self._handle = os.open(path, os.O_RDWR | os.O_CREAT | os.O_APPEND, 0o666)
-        except OSError as error:
-            raise InputError(str(path), None, error.strerror or "cannot be written") from error
         try:
             self.rows = self._begin(str(path), kind)
         except BaseException:
