@@ -12,14 +12,19 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion.small_triangles import JUMP, CornerStates, SmallTriangles
 from cellcolor.tool_paths.refused import Codes
 
+FOLDED = "folded"
+"""The reason where the normal leads behind the surface's own triangle, as on a sharp fold."""
 _NEAR = 12  # small triangles of which one is looked for that a point lies in
+_FACING = float(np.cos(np.radians(85.0)))  # of the normal to the triangle; the judge has 90 degrees
+_INSIDE = 1e-9  # m, and in shares of a triangle
 
 
 class ArmRefusals:
     """The tests of the cells in one branch, and places where a sample of a path has failed.
 
     Attributes:
-        names: of the codes: those of the scene's judge, and one for a branch that jumps.
+        names: of the codes: those of the scene's judge, one for a branch that jumps, and one for a
+            normal that leads behind the surface.
         doubtful: triangles of the surface with a sample that has failed.
     """
 
@@ -39,8 +44,9 @@ class ArmRefusals:
             around: so far from a sample that has failed everything is refused, m.
         """
         self._prepared, self._branch, self._deadline = prepared, branch, deadline
-        self.names = (*prepared.judge.reason_names, JUMP)
-        self.doubtful: set[int] = set()
+        self.names = (*prepared.judge.reason_names, JUMP, FOLDED)
+        self._folded = _folded(small, segment) if prepared.robot.task.direction else []
+        self.doubtful = set(self._folded)
         self._failed: list[tuple[Array, int]] = []
         self._around = around
         own = np.flatnonzero(small.segment == segment)
@@ -69,6 +75,7 @@ class ArmRefusals:
             verdicts = self._prepared.judge(found, self._deadline).reasons
             self._known.update(zip((keys[k] for k in asked), verdicts.tolist(), strict=True))
         codes = np.array([self._known[key] for key in keys], dtype=np.uint8)
+        codes[(codes == 0) & self._behind(points, normals)] = self.names.index(FOLDED)
         codes[(codes == 0) & self._beyond(points, normals)] = self.names.index("joint limits")
         if self._failed:
             failed = np.array([point for point, _ in self._failed])
@@ -81,7 +88,7 @@ class ArmRefusals:
         """The point (3,) itself if its own test fails, otherwise the failed sample nearest."""
         if not self._failed or self._known.get(bytes(np.append(point, normal))):
             return point
-        if self._beyond(point[None], normal[None])[0]:
+        if any(test(point[None], normal[None])[0] for test in (self._behind, self._beyond)):
             return point
         failed = np.array([place for place, _ in self._failed])
         return np.asarray(failed[np.linalg.norm(failed - point, axis=1).argmin()])
@@ -102,6 +109,17 @@ class ArmRefusals:
         tree = cKDTree(self._keys(self._small.points[corners].mean(axis=1), normals))
         self._inside = tree, TriangleMesh(self._small.points, corners), positions
 
+    def _behind(self, points: Array, normals: Array) -> Mask:
+        """At which points (k, 3) the tool would come from behind the triangle that it touches."""
+        mesh, behind = self._small.whole, np.zeros(len(points), dtype=bool)
+        for face in self._folded:
+            facing, corner = mesh.triangle_normals[face], mesh.points[mesh.corners[face, 0]]
+            near = (normals @ facing < _FACING) & (np.abs((points - corner) @ facing) < _INSIDE)
+            rows = np.flatnonzero(near)
+            shares = mesh.shares(np.full(len(rows), face), points[rows])
+            behind[rows[(shares > -_INSIDE).all(axis=1)]] = True
+        return behind
+
     def _beyond(self, points: Array, normals: Array) -> Mask:
         """Which points (k, 3) :meth:`keep_inside` refuses."""
         if self._inside is None:
@@ -121,3 +139,15 @@ class ArmRefusals:
     def _keys(self, points: Array, normals: Array) -> Array:
         """Places (k, 6) that are apart for the two sides of a thin part as well."""
         return np.column_stack([points, self._apart * normals])
+
+
+def _folded(small: SmallTriangles, segment: int) -> list[int]:
+    """The triangles with a part of a segment in which the normal may lead behind them, ascending.
+
+    A normal between those of the corners is nearer to the triangle's own than the farthest one is.
+    """
+    mesh = small.whole
+    normals = small.normals[mesh.corners]
+    behind = (np.einsum("mkj,mj->mk", normals, mesh.triangle_normals) < _FACING).any(axis=1)
+    own = np.unique(np.flatnonzero(small.segment == segment) // 6)
+    return [int(face) for face in own if behind[face]]

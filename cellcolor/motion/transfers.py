@@ -32,6 +32,7 @@ _BLOCKED = 10.0  # s; added to the time of a move for which no simple way is kno
 _DEEP = 60.0  # s; and by so much, times the share of it that is not free
 _LONGER = 10.0  # times the time of a straight move that is blocked; so few turns are preferred
 _ROOM = 0.999  # of the largest steps, for rounding
+_DIGITS = 9  # of joints in rad or m, by which moves are told apart
 
 
 @dataclass(frozen=True)
@@ -126,7 +127,7 @@ class Transfers:
             begins = [one.start + shift for one, shift in zip(visits, shifts, strict=True)]
             ends = [one.end + shift for one, shift in zip(visits, shifts, strict=True)]
             begins, ends = [*begins, self._at_home.ravel()], [self._at_home.ravel(), *ends]
-            self._hopeless |= {_key(ends[gap], begins[gap]) for gap in tried[-1].gaps}
+            self._hopeless |= {self._key(ends[gap], begins[gap]) for gap in tried[-1].gaps}
         best = min(tried, key=lambda one: len(one.gaps))
         transfers = list(best.transfers)
         for gap in best.gaps:
@@ -281,9 +282,14 @@ class Transfers:
         gap = None if between.gap is None else len(off) - 1 + between.gap
         return Transfer(joints, gap, between.blocked)
 
+    def _key(self, start: Array, end: Array) -> bytes:
+        """Of a move; of two that are full circles apart as a whole it is the same."""
+        circles = self._space.period * self._space.periods(start)
+        return np.round(np.concatenate([start - circles, end - circles]), _DIGITS).tobytes()
+
     def _blocked(self, start: Array, end: Array) -> float:
         """What share of the samples of a straight move is not free, computed once."""
-        key = _key(start, end)
+        key = self._key(start, end)
         if key not in self._shares:
             self._deadline.check()
             self._shares[key] = self._ways.share(start, end)
@@ -298,7 +304,7 @@ class Transfers:
 
     def _detour(self, start: Array, end: Array) -> float:
         """How much longer than a straight move the way will probably take, s; 0 if that is free."""
-        if _key(start, end) in self._hopeless:
+        if self._key(start, end) in self._hopeless:
             return _HOPELESS
         share = self._blocked(start, end)
         if share == 0.0:
@@ -311,10 +317,6 @@ class Transfers:
 
     def _seconds(self, start: Array, end: Array) -> float:
         return float((np.abs(end - start) / self._velocities).max())
-
-
-def _key(start: Array, end: Array) -> bytes:
-    return start.tobytes() + end.tobytes()
 
 
 def _directions(normal: Array) -> Iterator[Array]:

@@ -14,7 +14,7 @@ from cellcolor.frontend.arm.joint_space import JointSpace
 _PER_JOINT = 3  # turns of one joint that are tried, those next to the middle of its limits
 _ASIDE = 0.01  # s per rad; of two ways as quick as each other that nearer to the middle is taken
 _UNKNOWN = 1000.0  # s; added to the time of a move that there was no time to test
-_CHECKS = 60  # the most moves that are tested
+_CHECKS = 150  # the most moves that are tested, for each between two visits
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def chosen_turns(
     ]
     known: set[tuple[int, int, int]] = set()
     best = _quickest(moves, aside)
-    for _ in range(_CHECKS):
+    for _ in range(_CHECKS * len(moves)):
         asked = next(
             (
                 (layer, *pair)

@@ -167,6 +167,27 @@ def test_turns_are_chosen_so_that_straight_moves_are_free() -> None:
     assert int(near[0][0]) == int(near[1][0])
 
 
+@pytest.mark.parametrize("home", [np.zeros(4), None])
+def test_turns_of_many_strokes_are_chosen_so_that_straight_moves_are_free(
+    home: np.ndarray | None,
+) -> None:
+    """Each of six may be turned in 24 ways; no joint can pass pi, which would be quickest."""
+    visits = []
+    for number in range(6):
+        at = np.array([2.8, 2.7, 2.6, 0.1]) * (-1) ** number
+        visits.append(Visit(at, at, np.stack([at, at + 1e-3])))
+
+    def passes(start: np.ndarray, end: np.ndarray) -> bool:
+        low, high = np.minimum(start, end), np.maximum(start, end)
+        return any(((low < wall) & (wall < high)).any() for wall in (-np.pi, np.pi))
+
+    limits = turning([-2 * np.pi] * 4, [2 * np.pi] * 4)
+    found = chosen_turns(visits, home, limits, np.ones(4), lambda *ends: 100.0 * passes(*ends))
+    places = [visit.start + 2 * np.pi * own for visit, own in zip(visits, found, strict=True)]
+    assert not any(passes(*ends) for ends in pairwise(places))
+    assert home is None or not passes(home, places[0])
+
+
 def test_strokes_are_ordered_and_turned_round_so_that_transfers_are_short() -> None:
     """Three strokes in a row on a line of angles, handed over out of order and reversed."""
     spans = [(2.0, 2.9), (0.9, 0.1), (1.9, 1.0)]

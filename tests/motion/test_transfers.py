@@ -90,3 +90,6 @@ def test_the_search_is_long_only_where_no_turns_have_a_way(
     transfers, asked = planned_with(square, monkeypatch, 100)
     assert [one.gap is None for one in transfers] == [True, False, True]
     assert [rounds for _, rounds in asked] == [FEW_ROUNDS] * _ATTEMPTS + [MANY_ROUNDS]
+    # Turning both ends of a move by the same full circles does not make it another one.
+    ways = [np.diff(np.frombuffer(key).reshape(2, -1), axis=0)[0] for key, _ in asked[:_ATTEMPTS]]
+    assert len({way.round(4).tobytes() for way in ways}) == _ATTEMPTS
