@@ -45,7 +45,7 @@ KINDS = (
 PLACES = (None, "required", "left_alone")
 SHARE_OF_PLACES = 0.15  # of the vertices that are required, or left alone
 MOST_CELLS = 9  # every set of them is left out once
-REPEATED = 5
+REPEATED = 25
 CM2 = 1e4  # a weight of 1 counts as a square meter
 TINY = 1e-6  # of weights that are whole numbers
 
