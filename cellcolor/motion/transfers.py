@@ -95,7 +95,7 @@ class Transfers:
             self._at_home = self.home[None]
         self._ways = Ways(prepared, motion, velocities, self.home, seed, deadline)
         self._space = self._ways.space
-        # By the bytes of both ends: what share of a straight move is blocked; moves without a way.
+        # By both ends (`_key`): what share of a straight move is blocked; moves without a way.
         self._shares: dict[bytes, float] = {}
         self._hopeless: set[bytes] = set()
 
