@@ -10,7 +10,7 @@ import numpy as np
 import pinocchio as pin
 
 from cellcolor.arrays import Array
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.frontend.arm.assembly import Vector, fix_joints, mount, pinocchio_text
 from cellcolor.frontend.arm.body import Body, Shapes, place_shapes
 from cellcolor.frontend.arm.robot import FollowingFrame, Robot
@@ -283,7 +283,8 @@ def following_frames(
     found: list[FollowingFrame] = []
     for name in sorted(moving, key=lambda name: len(urdf.chain(below[name]))):
         own, link = moving[name], below[name]
-        check_follower(urdf.file, name, joints[name], own.kind)
+        with naming(urdf.file):
+            check_follower(name, joints[name], own.kind)
         frame = model.frames[model.getFrameId(name, pin.FrameType.FIXED_JOINT)]
         parent = _carrier(urdf, urdf.parent[link], number, int(frame.parentJoint))
         axis = joints[name].find("axis")

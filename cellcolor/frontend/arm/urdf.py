@@ -2,7 +2,8 @@
 
 Pinocchio answers most URDF faults with the same sentence, reads a missing limit as [0, 0] and a
 missing inertial as no mass, and drops collision shapes it does not know with a remark on standard
-error. So the XML is held to what the front end relies on here. Every fault names file and field.
+error. So the XML is held to what the front end relies on here. The first fault is raised as an
+:class:`InputError` that names file and field.
 """
 
 from __future__ import annotations
@@ -10,79 +11,59 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from cellcolor.errors import InputError
+from cellcolor.errors import InputError, naming
 from cellcolor.files.documents import read_text
 
 
-def named(file: Path, xml: ET.Element, tag: str) -> dict[str, ET.Element]:
-    """The elements with a tag by their names, each of which stands once.
-
-    Raises:
-        InputError: one has no name, or two have the same.
-    """
+def _named(xml: ET.Element, tag: str) -> dict[str, ET.Element]:
+    """The elements with a tag by their names, each of which stands once."""
     found: dict[str, ET.Element] = {}
     for element in xml.findall(tag):
         name = element.get("name")
         if not name or name in found:
             fault = "stands twice" if name else "has no name"
-            raise InputError(str(file), f"{tag}[{name or len(found)}]", fault)
+            raise InputError(None, f"{tag}[{name or len(found)}]", fault)
         found[name] = element
     return found
 
 
-def number(file: Path, field: str, element: ET.Element | None, attribute: str) -> float:
-    """A finite number that has to be there.
-
-    Raises:
-        InputError: it is missing, or no such number.
-    """
+def _number(field: str, element: ET.Element | None, attribute: str) -> float:
+    """A finite number that has to be there."""
     text = None if element is None else element.get(attribute)
     if text is None:
-        raise InputError(str(file), field, f"{attribute!r} is missing")
-    return finite(file, f"{field}.{attribute}", text)
+        raise InputError(None, field, f"{attribute!r} is missing")
+    return _finite(f"{field}.{attribute}", text)
 
 
-def finite(file: Path, field: str, text: str) -> float:
-    """A finite number.
-
-    Raises:
-        InputError: it is none.
-    """
+def _finite(field: str, text: str) -> float:
+    """A finite number."""
     try:
         value = float(text)
     except ValueError as error:
-        raise InputError(str(file), field, f"{text!r} is not a number") from error
+        raise InputError(None, field, f"{text!r} is not a number") from error
     if not math.isfinite(value):
-        raise InputError(str(file), field, f"{text!r} is not finite")
+        raise InputError(None, field, f"{text!r} is not finite")
     return value
 
 
-def triple(file: Path, field: str, text: str) -> list[float]:
-    """Three finite numbers.
-
-    Raises:
-        InputError: it is not.
-    """
-    values = [finite(file, field, part) for part in text.split()]
+def _triple(field: str, text: str) -> list[float]:
+    """Three finite numbers."""
+    values = [_finite(field, part) for part in text.split()]
     if len(values) != 3:
-        raise InputError(str(file), field, f"needs three numbers, has {len(values)}")
+        raise InputError(None, field, f"needs three numbers, has {len(values)}")
     return values
 
 
-def check_origin(file: Path, field: str, element: ET.Element) -> None:
-    """Hold an element's ``<origin>``, if there is one, to three numbers each.
-
-    Raises:
-        InputError: it has others.
-    """
+def _check_origin(field: str, element: ET.Element) -> None:
+    """Hold an element's ``<origin>``, if there is one, to three numbers each."""
     origin = element.find("origin")
     if origin is not None:
         for attribute in ("xyz", "rpy"):
-            triple(file, f"{field}.origin.{attribute}", origin.get(attribute, "0 0 0"))
+            _triple(f"{field}.origin.{attribute}", origin.get(attribute, "0 0 0"))
 
 
 _SIZES = {"cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
@@ -105,33 +86,33 @@ class LinkShape:
     file: str = ""
 
 
-def _shape(file: Path, field: str, collision: ET.Element) -> LinkShape:
-    check_origin(file, field, collision)
+def _shape(field: str, collision: ET.Element) -> LinkShape:
+    _check_origin(field, collision)
     geometry = collision.find("geometry")
     shapes = [] if geometry is None else list(geometry)
     if len(shapes) != 1 or shapes[0].tag not in _KINDS:
         found = ", ".join(f"<{shape.tag}>" for shape in shapes) or "nothing"
         message = f"must be one box, capsule, cylinder, mesh or sphere, is {found}"
-        raise InputError(str(file), field, message)
+        raise InputError(None, field, message)
     shape, kind = shapes[0], shapes[0].tag
     if kind == "mesh":
         named = shape.get("filename")
         if not named:
-            raise InputError(str(file), f"{field}.mesh", "'filename' is missing")
-        scale = triple(file, f"{field}.mesh.scale", shape.get("scale", "1 1 1"))
+            raise InputError(None, f"{field}.mesh", "'filename' is missing")
+        scale = _triple(f"{field}.mesh.scale", shape.get("scale", "1 1 1"))
         if 0 in scale:
-            raise InputError(str(file), f"{field}.mesh.scale", "must not be zero")
+            raise InputError(None, f"{field}.mesh.scale", "must not be zero")
         return LinkShape(kind, tuple(scale), named)
     if kind == "box":
-        size = triple(file, f"{field}.box.size", shape.get("size", ""))
+        size = _triple(f"{field}.box.size", shape.get("size", ""))
         if min(size) <= 0:
-            raise InputError(str(file), f"{field}.box.size", "must be positive")
+            raise InputError(None, f"{field}.box.size", "must be positive")
         return LinkShape(kind, tuple(size))
     sizes = []
     for attribute in _SIZES[kind]:
-        sizes.append(number(file, field, shape, attribute))
+        sizes.append(_number(field, shape, attribute))
         if sizes[-1] <= 0:
-            raise InputError(str(file), f"{field}.{attribute}", "must be positive")
+            raise InputError(None, f"{field}.{attribute}", "must be positive")
     return LinkShape(kind, tuple(sizes))
 
 
@@ -245,14 +226,15 @@ def parse_urdf(text: str, file: Path, folder: Path = Path()) -> Urdf:
     Raises:
         InputError: not XML, a xacro file, or what :func:`check_urdf` refuses.
     """
-    _refuse_xacro(text, file)
-    try:
-        xml = ET.fromstring(text)
-    except ET.ParseError as error:
-        raise InputError(str(file), None, f"not XML: {error}") from error
-    if xml.tag != "robot":
-        raise InputError(str(file), xml.tag, "the outermost element of a URDF is <robot>")
-    followers = _followers(file, xml)
+    with naming(file):
+        _refuse_xacro(text, file)
+        try:
+            xml = ET.fromstring(text)
+        except ET.ParseError as error:
+            raise InputError(None, None, f"not XML: {error}") from error
+        if xml.tag != "robot":
+            raise InputError(None, xml.tag, "the outermost element of a URDF is <robot>")
+        followers = _followers(xml)
     return check_urdf(file, folder, xml, tuple(followers), followers)
 
 
@@ -264,10 +246,10 @@ def _refuse_xacro(text: str, file: Path) -> None:
         out = file.name.removesuffix(".xacro").removesuffix(".urdf") + ".urdf"
         command = f"xacro {file.name} -o {out}"
         message = f"is a xacro file; expand it first: {command} (without ROS: pip install xacrodoc)"
-        raise InputError(str(file), "robot", message)
+        raise InputError(None, "robot", message)
 
 
-def _followers(file: Path, xml: ET.Element) -> dict[str, Follower]:
+def _followers(xml: ET.Element) -> dict[str, Follower]:
     """Fix the joints that follow another one, and name them."""
     found = {}
     for joint in xml.findall("joint"):
@@ -276,7 +258,7 @@ def _followers(file: Path, xml: ET.Element) -> dict[str, Follower]:
             name = joint.get("name", "")
             where = f"joint[{name}].mimic"
             factor, offset = (
-                finite(file, f"{where}.{attribute}", mimic.get(attribute, usual))
+                _finite(f"{where}.{attribute}", mimic.get(attribute, usual))
                 for attribute, usual in (("multiplier", "1"), ("offset", "0"))
             )
             kind = joint.get("type", "")
@@ -299,56 +281,71 @@ def check_urdf(
         InputError: not one tree, a joint that floats or has no usable limits, a collision shape of
             an unknown kind, numbers that are not finite.
     """
-    links = named(file, xml, "link")
-    joints = named(file, xml, "joint")
+    with naming(file):
+        links, joints = _named(xml, "link"), _named(xml, "joint")
+        parent, joint_above, kinds = _tree(links, joints)
+        roots = [link for link in links if link not in parent]
+        if len(roots) != 1:
+            raise InputError(None, "robot", f"needs one root link, has {len(roots)}: {roots}")
+        driven = {link for link, name in joint_above.items() if name in kinds}
+        shapes, shapeless = _shapes(links, driven)
+    tree = Urdf(
+        file, folder, xml, roots[0], parent, joint_above, kinds, shapes, shapeless, (), locked,
+        followers,
+    )  # fmt: skip
+    return replace(tree, weightless=tuple(_weightless(tree, links, joints, driven)))
+
+
+def _tree(
+    links: Mapping[str, ET.Element], joints: Mapping[str, ET.Element]
+) -> tuple[dict[str, str], dict[str, str], dict[str, str]]:
+    """The parent of each link, the joint between the two, and the kinds of joints that move."""
     parent: dict[str, str] = {}
     joint_above: dict[str, str] = {}
     kinds: dict[str, str] = {}
-    driven: set[str] = set()
     for name, joint in joints.items():
         ends = []
         for end in ("parent", "child"):
             element = joint.find(end)
             link = None if element is None else element.get("link")
             if link not in links:
-                raise InputError(str(file), f"joint[{name}].{end}", f"no link {link!r}")
+                raise InputError(None, f"joint[{name}].{end}", f"no link {link!r}")
             ends.append(str(link))
         above, below = ends
         if below in parent:
-            raise InputError(str(file), f"joint[{name}].child", f"{below!r} hangs on two joints")
+            raise InputError(None, f"joint[{name}].child", f"{below!r} hangs on two joints")
         parent[below], joint_above[below] = above, name
-        check_origin(file, f"joint[{name}]", joint)
+        _check_origin(f"joint[{name}]", joint)
         kind = joint.get("type", "")
         if kind in _MOVING:
             if kind != CONTINUOUS:
-                _limits(file, name, joint)
-            _axis(file, name, joint)
+                _limits(name, joint)
+            _axis(name, joint)
             kinds[name] = kind
-            driven.add(below)
         elif kind != "fixed":
             message = f"{kind!r}: only revolute, continuous, prismatic and fixed joints"
-            raise InputError(str(file), f"joint[{name}].type", message)
-    roots = [link for link in links if link not in parent]
-    if len(roots) != 1:
-        raise InputError(str(file), "robot", f"needs one root link, has {len(roots)}: {roots}")
+            raise InputError(None, f"joint[{name}].type", message)
+    return parent, joint_above, kinds
+
+
+def _shapes(
+    links: Mapping[str, ET.Element], driven: Collection[str]
+) -> tuple[dict[str, tuple[LinkShape, ...]], tuple[str, ...]]:
+    """The collision shapes of links, and the links without any that are things all the same."""
     shapes, shapeless = {}, []
     for name, element in links.items():
         own = tuple(
-            _shape(file, f"link[{name}].collision[{number}]", collision)
+            _shape(f"link[{name}].collision[{number}]", collision)
             for number, collision in enumerate(element.findall("collision"))
         )
         if own:
             shapes[name] = own
         elif name in driven or any(element.find(tag) is not None for tag in _THING):
             shapeless.append(name)
-    tree = Urdf(
-        file, folder, xml, roots[0], parent, joint_above, kinds, shapes, tuple(shapeless), (),
-        locked, followers,
-    )  # fmt: skip
-    return replace(tree, weightless=tuple(_weightless(tree, links, joints, driven)))
+    return shapes, tuple(shapeless)
 
 
-def check_follower(file: Path, name: str, joint: ET.Element, kind: str) -> None:
+def check_follower(name: str, joint: ET.Element, kind: str) -> None:
     """Hold a joint that moves with another one to what is asked of others; limits may be left out.
 
     Raises:
@@ -356,10 +353,10 @@ def check_follower(file: Path, name: str, joint: ET.Element, kind: str) -> None:
     """
     if kind not in _MOVING:
         message = f"{kind!r}: only revolute, continuous and prismatic joints can follow another one"
-        raise InputError(str(file), f"joint[{name}].type", message)
+        raise InputError(None, f"joint[{name}].type", message)
     if kind != CONTINUOUS and joint.find("limit") is not None:
-        _limits(file, name, joint)
-    _axis(file, name, joint)
+        _limits(name, joint)
+    _axis(name, joint)
 
 
 def _weightless(
@@ -367,54 +364,54 @@ def _weightless(
 ) -> Iterator[InputError]:
     """What keeps the force constraint from being tested; what nothing moves may weigh anything."""
     for name in tree.moving:
-        fault = _effort(tree.file, name, joints[name])
+        fault = _effort(name, joints[name])
         if fault is not None:
             yield fault
     for name, element in links.items():
         carried = any(link in driven for link in tree.chain(name))
         if carried and (name in tree.shapes or name in driven):
             try:
-                _inertial(tree.file, name, element)
+                _inertial(name, element)
             except InputError as error:
                 yield error
 
 
-def _limits(file: Path, name: str, joint: ET.Element) -> None:
+def _limits(name: str, joint: ET.Element) -> None:
     field = f"joint[{name}].limit"
     limit = joint.find("limit")
-    lower = number(file, field, limit, "lower")
-    upper = number(file, field, limit, "upper")
+    lower = _number(field, limit, "lower")
+    upper = _number(field, limit, "upper")
     if lower >= upper:
-        raise InputError(str(file), field, f"lower {lower} is not below upper {upper}")
+        raise InputError(None, field, f"lower {lower} is not below upper {upper}")
 
 
-def _effort(file: Path, name: str, joint: ET.Element) -> InputError | None:
+def _effort(name: str, joint: ET.Element) -> InputError | None:
     """What is wrong with a joint's effort; vendors write 0 where they do not say it."""
     field = f"joint[{name}].limit"
     try:
-        effort = number(file, field, joint.find("limit"), "effort")
+        effort = _number(field, joint.find("limit"), "effort")
     except InputError as error:
         return error
     if effort <= 0:
-        return InputError(str(file), f"{field}.effort", f"is {effort:g}, must be positive")
+        return InputError(None, f"{field}.effort", f"is {effort:g}, must be positive")
     return None
 
 
-def _axis(file: Path, name: str, joint: ET.Element) -> None:
+def _axis(name: str, joint: ET.Element) -> None:
     axis = joint.find("axis")
     field = f"joint[{name}].axis"
-    values = triple(file, field, "1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
+    values = _triple(field, "1 0 0" if axis is None else axis.get("xyz", "1 0 0"))
     if abs(math.hypot(*values) - 1) > 1e-6:
-        raise InputError(str(file), field, "must have length 1")
+        raise InputError(None, field, "must have length 1")
 
 
-def _inertial(file: Path, name: str, link: ET.Element) -> None:
+def _inertial(name: str, link: ET.Element) -> None:
     field = f"link[{name}].inertial"
     inertial = link.find("inertial")
     if inertial is None:
-        raise InputError(str(file), field, "is missing: the link would weigh nothing")
-    check_origin(file, field, inertial)
-    if number(file, f"{field}.mass", inertial.find("mass"), "value") <= 0:
-        raise InputError(str(file), f"{field}.mass", "must be positive")
+        raise InputError(None, field, "is missing: the link would weigh nothing")
+    _check_origin(field, inertial)
+    if _number(f"{field}.mass", inertial.find("mass"), "value") <= 0:
+        raise InputError(None, f"{field}.mass", "must be positive")
     for entry in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"):
-        number(file, f"{field}.inertia", inertial.find("inertia"), entry)
+        _number(f"{field}.inertia", inertial.find("inertia"), entry)
