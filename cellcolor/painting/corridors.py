@@ -30,7 +30,7 @@ def within(
     reach: float,
     deadline: Deadline = NEVER,
 ) -> dict[int, float]:
-    """The vertices within a distance of some, along the surface, and their distances in m.
+    """The vertices within a distance of some along the surface, and how far, m (Dijkstra).
 
     Args:
         starts: distances to begin with, and vertices.

@@ -66,7 +66,7 @@ class Search:
             return 1
 
     def _index_darts(self) -> None:
-        """Number the darts, and note which ones face unsolved cells at each depth."""
+        """Number the darts, and prepare what is looked up by their numbers."""
         number: dict[DartName, int] = {}
         depth_of: list[int] = []
         for depth, cell in enumerate(self._cells):
@@ -80,7 +80,9 @@ class Search:
         self._holder = [-1] * len(number)
         """The sub-cell of each dart in state 1 of the solved cells."""
         self._earlier = [[depth_of[t] < d for t in ts] for d, ts in enumerate(self._twins)]
+        """Of each cell's darts, whether the other side's cell is solved before it."""
         self._frontier: list[list[int]] = [[]]
+        """At each depth the darts of solved cells that face unsolved ones."""
         for depth in range(len(self._cells)):
             own = zip(self._numbers[depth], self._twins[depth], strict=True)
             kept = [d for d in self._frontier[-1] if d not in set(self._twins[depth])]
@@ -172,7 +174,7 @@ class Search:
         return segments.cost - cost + self._cover(depth, held)
 
     def _cover(self, depth: int, held: int) -> int:
-        """The fewest regions that include those held and touch every cell from a depth on."""
+        """The least price of regions, the held ones (bits) among them, that touch all cells left."""
         known = self._covers[depth].get(held)
         if known is None:
             needed = []
@@ -201,7 +203,7 @@ def _bits(of: int) -> Iterator[int]:
 
 
 def _hitting(sets: frozenset[int], price: Sequence[int], deadline: Deadline) -> int:
-    """The least price of bits that hit each of the given bit sets."""
+    """The least price of a hitting set, one bit or more of each bit set, by branch and bound."""
     best = sum(min(price[place] for place in _bits(one)) for one in sets)
     trail = [iter([(sets, 0)])]
     while trail:
@@ -219,7 +221,7 @@ def _hitting(sets: frozenset[int], price: Sequence[int], deadline: Deadline) -> 
 def _hits(
     sets: frozenset[int], price: Sequence[int], cost: int
 ) -> Iterator[tuple[frozenset[int], int]]:
-    """What each bit of the smallest set leaves to be hit, with the price of all bits by then."""
+    """For each bit of the smallest set, the sets that it does not hit, and the price so far."""
     sets = frozenset(s for s in sets if not any(t != s and t & s == t for t in sets))
     smallest = min(sets, key=lambda s: (s.bit_count(), s))
     for place in _bits(smallest):

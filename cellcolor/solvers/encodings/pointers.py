@@ -4,7 +4,8 @@ A segment is a connected set of sub-cells. Choose a spanning tree of each: the j
 are **counted**, others are not. Then there are as many segments as trees. Each dart whose join is
 counted has one pointer: **up**, across its edge to the parent of its sub-cell; **forward** or
 **backward** along its sub-cell, to the next of its darts in cyclic order; or none, at the **root**
-of the tree. Pointers without a cycle make a forest, and its roots are counted.
+of the tree. Pointers without a cycle make a spanning forest, and its roots are counted. Ranks that
+fall along them rule out cycles, as the order of cities does in Miller, Tucker and Zemlin's model.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ class Pointers(Trees):
         # Per dart: it is the root of its tree, and points nowhere.
         self.root = {dart: model.new_bool_var(f"root_{dart}") for dart in problem.darts}
         self.alone = [model.new_bool_var(f"alone_{cell}") for cell in range(len(problem.cells))]
-        # Per dart: falls along every pointer, strictly across edges.
+        # Per dart: falls along every pointer, strictly across edges (``_no_circles``).
         most = len(problem.colors)
         self.rank = {dart: model.new_int_var(0, most, f"rank_{dart}") for dart in problem.darts}
 
