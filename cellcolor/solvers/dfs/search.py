@@ -174,7 +174,7 @@ class Search:
         return segments.cost - cost + self._cover(depth, held)
 
     def _cover(self, depth: int, held: int) -> int:
-        """The least price of regions, the held ones (bits) among them, that touch all cells left."""
+        """The least price of regions, those held (bits) among them, that touch all cells left."""
         known = self._covers[depth].get(held)
         if known is None:
             needed = []
