@@ -68,13 +68,13 @@ def run_solvers(request: Request, output: Path | None) -> Exit:
     if not contestants:
         return Exit.BAD_INPUT
     plan = Experiment(
-        subjects,
-        contestants,
-        request.limits,
-        request.repetitions,
-        request.search_space,
-        request.megabytes,
-        command_line(),
+        subjects=subjects,
+        contestants=contestants,
+        limits=request.limits,
+        repetitions=request.repetitions,
+        search_space=request.search_space,
+        megabytes=request.megabytes,
+        command=command_line(),
     )
     table: AbstractContextManager[TableFile[Row] | None] = (
         nullcontext() if output is None else TableFile(output, Row)

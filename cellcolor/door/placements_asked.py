@@ -60,12 +60,12 @@ class PlacementRow:
     def minimum(self) -> PlacedMinimum:
         """The row as a value."""
         return PlacedMinimum(
-            (self.x, self.y, self.z, self.roll, self.pitch, self.yaw),
-            self.segments,
-            self.covered_share,
-            self.proved_for_surface,
-            self.vertices,
-            self.refused or "",
+            pose=(self.x, self.y, self.z, self.roll, self.pitch, self.yaw),
+            segments=self.segments,
+            covered_share=self.covered_share,
+            proved_for_surface=self.proved_for_surface,
+            vertices=self.vertices,
+            refused=self.refused or "",
         )
 
 

@@ -82,15 +82,15 @@ class UnfinishedPlan:
 
         decomposition, painted = self.subject.decomposition, self.painted
         return MotionReport(
-            self.built,
-            decomposition,
-            self.solution,
-            painted,
-            None,
-            self.measures,
-            None,
-            self.paths,
-            self.missing,
+            built=self.built,
+            decomposition=decomposition,
+            solution=self.solution,
+            painted=painted,
+            trajectory=None,
+            measures=self.measures,
+            verdict=None,
+            paths=self.paths,
+            missing=self.missing,
         )
 
     def page(self) -> bytes:
@@ -189,14 +189,14 @@ class PlannedScene(UnfinishedPlan):
         arm = self.built.robot
         axes = ArmAxes.of(arm.joint_names, arm.placement, arm.axis, bool(arm.slides.any()))
         motion = PlannedMotion(
-            painted.surface,
-            painted.segment_of,
-            fills,
-            self.paths,
-            trajectory,
-            axes,
-            export_step_s,
-            self.built.prepared.setup.task.normal_force_n,
+            surface=painted.surface,
+            segment_of=painted.segment_of,
+            fills=fills,
+            paths=self.paths,
+            trajectory=trajectory,
+            axes=axes,
+            step_s=export_step_s,
+            force_n=self.built.prepared.setup.task.normal_force_n,
         )
         return {
             **super()._files(),

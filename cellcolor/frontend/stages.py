@@ -156,14 +156,14 @@ def colored_stages(
         clock.deadline.check()
         cleaned = _cleaned(prepared, names, candidates, links, coloring, clock.deadline)
     return Stages(
-        prepared.surface,
-        candidates,
-        continuous,
-        links,
-        coloring,
-        cleaned,
-        names,
-        prepared.arm.named,
+        surface=prepared.surface,
+        candidates=candidates,
+        continuous=continuous,
+        links=links,
+        coloring=coloring,
+        cleaned=cleaned,
+        branches=names,
+        named=prepared.arm.named,
     )
 
 

@@ -224,13 +224,13 @@ def _painted(
         )
     refined = mesh.refined
     return Painted(
-        mesh.surface,
-        plan,
-        report.segments,
-        segment_of,
-        refined.stands_for,
-        refined.between,
-        merged,
+        surface=mesh.surface,
+        plan=plan,
+        segments=report.segments,
+        segment_of=segment_of,
+        stands_for=refined.stands_for,
+        between=refined.between,
+        merged=merged,
     )
 
 

@@ -76,16 +76,16 @@ def draw_arm(build: BuildResult, vertex: int, branch: int) -> Picture3D:
     )
     place = ", ".join(f"{value:.3f}" for value in target)
     return Picture3D(
-        f"{scene.name}: vertex {vertex}, {build.branches[branch]}",
-        tuple(layers),
-        ground,
-        (),
-        (
+        title=f"{scene.name}: vertex {vertex}, {build.branches[branch]}",
+        layers=tuple(layers),
+        lines=ground,
+        texts=(),
+        notes=(
             "Collision shapes of the URDF files.",
             f"Joints: {joints}",
             f"Vertex [m]: {place}",
         ),
-        _free_view(robot, poses, build.surface.vertex_normals[vertex]),
+        towards=_free_view(robot, poses, build.surface.vertex_normals[vertex]),
     )
 
 

@@ -103,15 +103,15 @@ def _side_by_side(pictures: Sequence[Picture3D], title: str, notes: tuple[str, .
             lines[line.name].append(replace(line, ends=line.ends + shift))
         texts.append(Text(f"step {number}", above + shift, towards))
     return Picture3D(
-        title,
-        tuple(map(_together, layers.values())),
-        tuple(
+        title=title,
+        layers=tuple(map(_together, layers.values())),
+        lines=tuple(
             replace(own[0], ends=np.concatenate([line.ends for line in own]))
             for own in lines.values()
         ),
-        tuple(texts),
-        notes,
-        towards,
+        texts=tuple(texts),
+        notes=notes,
+        towards=towards,
     )
 
 

@@ -66,12 +66,12 @@ def draw_surface(surface: LabelledSurface, view: SurfaceView) -> Picture3D:
     bordered = view.labels if view.borders is None else view.borders
     segments = _lines(vertices, faces, normals, bordered, set(view.cracks))
     return Picture3D(
-        view.title,
-        tuple(layers),
-        segments,
-        tuple(_numbers(surface, view, normals)),
-        view.notes,
-        _towards(normals),
+        title=view.title,
+        layers=tuple(layers),
+        lines=segments,
+        texts=tuple(_numbers(surface, view, normals)),
+        notes=view.notes,
+        towards=_towards(normals),
     )
 
 

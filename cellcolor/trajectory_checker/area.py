@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
-
 import numpy as np
 
 from cellcolor.arrays import Array, Index, Mask
@@ -67,11 +65,11 @@ def judge_area(
         touching: (c,) whether the tip is on the surface there; nothing else covers anything.
     """
     rows, branches = rows[touching], branches[touching]
-    located = Located(*(getattr(located, field.name)[touching] for field in fields(located)))
+    located = located.take(touching)
     kept = thinned(dense, rows, spacing)
     length = _length(dense, rows)
     rows, branches = rows[kept], branches[kept]
-    located = Located(*(getattr(located, field.name)[kept] for field in fields(located)))
+    located = located.take(kept)
     areas = reachable_areas(built, fine)
     total = float(areas.sum())
     reached = reach(fine, located, FAR * spacing)

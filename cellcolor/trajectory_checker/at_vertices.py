@@ -203,14 +203,14 @@ def touches(built: BuildResult, path: ContactPath, deadline: Deadline = NEVER) -
 
 def _part(found: AtVertices, rows: Mask) -> AtVertices:
     return AtVertices(
-        found.built,
-        found.vertex[rows],
-        found.color[rows],
-        found.off[rows],
-        found.tilt[rows],
-        found.turned[rows],
-        found.branch[rows],
-        found.apart[rows],
+        built=found.built,
+        vertex=found.vertex[rows],
+        color=found.color[rows],
+        off=found.off[rows],
+        tilt=found.tilt[rows],
+        turned=found.turned[rows],
+        branch=found.branch[rows],
+        apart=found.apart[rows],
     )
 
 

@@ -6,7 +6,7 @@ shared with what plans and paints, a mistake in them would be made and approved 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
@@ -40,6 +40,10 @@ class Located:
     points: Array
     normals: Array
     owner: Index
+
+    def take(self, which: Mask) -> Located:
+        """Some of them."""
+        return Located(*(getattr(self, field.name)[which] for field in fields(self)))
 
 
 @dataclass(frozen=True)

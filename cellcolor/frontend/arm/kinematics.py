@@ -49,14 +49,14 @@ class Poses:
         frames = self.axis.shape[1] + 1
         rotation, origin = self.body_rotation[rows], self.body_origin[rows]
         return Poses(
-            rotation[:, :frames],
-            origin[:, :frames],
-            self.axis[rows],
-            self.tip[rows],
-            self.tool_axis[rows],
-            self.slides,
-            rotation,
-            origin,
+            rotation=rotation[:, :frames],
+            origin=origin[:, :frames],
+            axis=self.axis[rows],
+            tip=self.tip[rows],
+            tool_axis=self.tool_axis[rows],
+            slides=self.slides,
+            body_rotation=rotation,
+            body_origin=origin,
         )
 
 

@@ -292,14 +292,14 @@ def following_frames(
         number[link] = model.njoints + len(found)
         found.append(
             FollowingFrame(
-                link,
-                parent,
-                np.array(frame.placement.homogeneous),
-                np.array([float(part) for part in along.split()]),
-                own.kind == PRISMATIC,
-                names.index(own.leader),
-                own.multiplier,
-                own.offset,
+                link=link,
+                parent=parent,
+                placement=np.array(frame.placement.homogeneous),
+                axis=np.array([float(part) for part in along.split()]),
+                slides=own.kind == PRISMATIC,
+                leader=names.index(own.leader),
+                multiplier=own.multiplier,
+                offset=own.offset,
             )
         )
     return tuple(found)

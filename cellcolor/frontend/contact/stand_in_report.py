@@ -93,14 +93,16 @@ def report_on(stand_in: StandIn) -> StandInReport:
             known = max(known, float(slack + mesh_slack))
         contains = _all_inside(stand_in.bodies, stand_in.vertices[stand_in.faces])
     return StandInReport(
-        stand_in.link,
-        stand_in.file.name,
-        stand_in.chosen,
-        len(stand_in.bodies),
-        error,
-        known,
-        contains,
-        bool(trimesh.Trimesh(stand_in.vertices, stand_in.faces, process=False).is_watertight),
+        link=stand_in.link,
+        file=stand_in.file.name,
+        chosen=stand_in.chosen,
+        shapes=len(stand_in.bodies),
+        error_m=error,
+        known_to_m=known,
+        contains=contains,
+        closed=bool(
+            trimesh.Trimesh(stand_in.vertices, stand_in.faces, process=False).is_watertight
+        ),
     )
 
 

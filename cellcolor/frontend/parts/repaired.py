@@ -170,14 +170,14 @@ def repair_mesh(
     except InputError as error:
         raise _refused(error, points, faces, edge_length_m) from error
     return RepairedPart(
-        points / meters_per_unit,
-        faces,
-        meters_per_unit,
-        tuple(changes),
-        borders(TriangleMesh(points, faces)),
-        before,
-        area_of(points, faces),
-        deviation,
+        vertices=points / meters_per_unit,
+        faces=faces,
+        meters_per_unit=meters_per_unit,
+        changes=tuple(changes),
+        holes=borders(TriangleMesh(points, faces)),
+        area_before_m2=before,
+        area_m2=area_of(points, faces),
+        deviation=deviation,
     )
 
 

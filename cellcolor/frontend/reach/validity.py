@@ -220,12 +220,12 @@ class Judge:
         around = body_gaps(robot, ends, [place.target]) - farther * margins.to_object_m
         others = body_gaps(robot, ends, place.obstacles) - farther * margins.to_obstacles_m
         return Clearance(
-            robot,
-            pair_levers(robot),
-            moved,
-            tracked_points(robot, ends, poses),
-            pair_gaps(robot, ends) - farther * margins.between_links_m,
-            np.minimum(around, others),
+            robot=robot,
+            levers=pair_levers(robot),
+            configurations=moved,
+            tracked=tracked_points(robot, ends, poses),
+            between=pair_gaps(robot, ends) - farther * margins.between_links_m,
+            around=np.minimum(around, others),
         )
 
     def bytes_kept(self, joints: int) -> int:

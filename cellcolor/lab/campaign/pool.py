@@ -179,14 +179,14 @@ def examine(seed: int, time_limit: float, number: int) -> Outcome:
         if message is not None:
             wrong.append(_smallest(case, case.surface, on_mesh, shrink_surface))
     return Outcome(
-        number,
-        case.kind,
-        len(case.instance.cells),
-        case.instance.most_live_darts,
-        finding,
-        mesh,
-        tuple(wrong),
-        time.monotonic() - started,
+        number=number,
+        kind=case.kind,
+        cells=len(case.instance.cells),
+        darts=case.instance.most_live_darts,
+        finding=finding,
+        mesh=mesh,
+        wrong=tuple(wrong),
+        seconds=time.monotonic() - started,
     )
 
 

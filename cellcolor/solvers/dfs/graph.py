@@ -180,10 +180,10 @@ def _graph_cell(
         same = i > 0 and strand_of(walk[i - 1])[0] == strand_of(name)[0]
         strand_before.append(0 if not same else 1 if strand_of(name)[0] > 0 else -1)
     return GraphCell(
-        cell.id,
-        cell.colors,
-        tuple(walk),
-        tuple(joinable[name] for name in walk),
-        tuple(place.get(twin(name), -1) for name in walk),
-        tuple(strand_before),
+        id=cell.id,
+        colors=cell.colors,
+        darts=tuple(walk),
+        joinable=tuple(joinable[name] for name in walk),
+        partner=tuple(place.get(twin(name), -1) for name in walk),
+        strand_before=tuple(strand_before),
     )

@@ -70,13 +70,13 @@ def make_variables(model: cp_model.CpModel, graph: DartGraph) -> Variables:
         if graph.darts[one].colors & graph.darts[other].colors
     ]
     return Variables(
-        joined,
-        [model.new_bool_var(f"up_{dart}") for dart in darts],
-        {pair: model.new_bool_var("forward_{}_{}".format(*pair)) for pair in pairs},
-        {pair: model.new_bool_var("backward_{}_{}".format(*pair)) for pair in pairs},
-        [model.new_bool_var(f"root_{dart}") for dart in darts],
-        [model.new_bool_var(f"alone_{cell}") for cell in range(len(graph.lists))],
-        [model.new_int_var(0, len(edges), f"rank_{dart}") for dart in darts],
+        joined=joined,
+        up=[model.new_bool_var(f"up_{dart}") for dart in darts],
+        forward={pair: model.new_bool_var("forward_{}_{}".format(*pair)) for pair in pairs},
+        backward={pair: model.new_bool_var("backward_{}_{}".format(*pair)) for pair in pairs},
+        root=[model.new_bool_var(f"root_{dart}") for dart in darts],
+        alone=[model.new_bool_var(f"alone_{cell}") for cell in range(len(graph.lists))],
+        rank=[model.new_int_var(0, len(edges), f"rank_{dart}") for dart in darts],
     )
 
 
