@@ -14,9 +14,14 @@ pytestmark = pytest.mark.second
 
 FOLDER = TOP / "examples"
 FILES = sorted(FOLDER.glob("*.py"))
+LONG = ("plan_a_motion", "move_the_part")
+RUNS = [
+    pytest.param(file, id=file.stem, marks=[pytest.mark.slow] * (file.stem in LONG))
+    for file in FILES
+]
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", RUNS)
 def test_it_runs(file: Path, tmp_path: Path) -> None:
     pytest_runs_it = file.name.startswith("test_")
     command = [sys.executable, *(["-m", "pytest", "-q", "-p", "no:cacheprovider"] * pytest_runs_it)]

@@ -34,6 +34,7 @@ def commands(found: list[Block]) -> list[list[str]]:
     return [shlex.split(line) for several in lines for line in several]
 
 
+@pytest.mark.slow
 def test_a_solver(tmp_path: Path) -> None:
     """In a package of its own; ``pip install .`` leaves its module and entry points on the path."""
     solver, project, *_ = found = blocks("add-a-solver")

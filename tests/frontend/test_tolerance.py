@@ -103,7 +103,7 @@ def test_colors_hold_wherever_the_part_may_stand(scene: Scene) -> None:
     assert (stages.candidates.reasons[~lost] == own.candidates.reasons[~lost]).all()
 
 
-@pytest.mark.second
+@pytest.mark.slow
 def test_finer_borders_are_those_of_what_holds() -> None:
     """The surface is bisected where colors that hold end, and each new vertex is asked as well."""
     scene = shipped("wok", 60).varied(tolerance=OFTEN)

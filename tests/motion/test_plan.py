@@ -208,6 +208,7 @@ def test_an_arm_of_continuous_joints_without_masses_and_velocities() -> None:
     assert re.search(r'"lower":\s*\[null', planned.page().decode())  # JSON knows no infinity
 
 
+@pytest.mark.slow
 def test_a_mesh_that_is_much_coarser_than_the_spacing_is_covered_as_far_as_can_be() -> None:
     """A dome of some 12 triangles: at every corner between two of them the tool's body hits it."""
     planned = cellcolor.plan(shipped("wok", 12), spacing_m=0.03)

@@ -78,6 +78,7 @@ def test_cracks_of_the_color_open_the_ring_and_do_not_part_it(ring: Planned) -> 
         assert np.abs((np.remainder(steps + np.pi, 2 * np.pi) - np.pi).sum()) < 1e-6
 
 
+@pytest.mark.slow
 def test_there_are_no_walls_where_the_limits_allow_the_path_as_it_is() -> None:
     ring = planned_scene(ring_scene(np.deg2rad(20 * 360)))
     assert ring.plan.walls == ()

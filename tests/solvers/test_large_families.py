@@ -141,7 +141,9 @@ def test_grown_colors_are_connected_and_scattered_ones_are_not() -> None:
     assert components(True) > 8
 
 
-@pytest.mark.parametrize(("cells", "colors"), [(150, 60), (300, 100), (500, 200)])
+@pytest.mark.parametrize(
+    ("cells", "colors"), [(150, 60), pytest.param(500, 200, marks=pytest.mark.slow)]
+)
 def test_parts_have_so_many_cells_and_colors(cells: int, colors: int) -> None:
     surface = part(1, cells, colors)
     instance = decompose(surface)

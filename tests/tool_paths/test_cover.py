@@ -34,7 +34,7 @@ def covered(painting: Painting, pattern: str, spacing: float, **options: object)
 
 @pytest.mark.parametrize("pattern", PATTERNS)
 @given(st.integers(0, 10**6), st.sampled_from(SHAPES))
-@examples(4)
+@examples(2)
 def test_paths_stay_on_their_segments(pattern: str, seed: int, shape: str) -> None:
     assert_on_segments(pattern, seed, shape, 0.25)
 
