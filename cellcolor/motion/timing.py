@@ -26,7 +26,8 @@ _MARGIN = 0.995  # of the accelerations; the sweeps take neighboring steps for a
 _ROUNDS = 60  # of sweeps; 5 to 15 are enough on sharp edges
 _MARGIN_OF_JERKS = 0.98  # other choices of samples say a little more
 _CYCLE = 0.008  # s, of a controller; jerks are measured over no less
-_AROUND = 9  # samples; slowing down for a jerk spreads over so many, or it would be a jerk itself
+_AROUND = 5.0  # times what an acceleration takes to build up; slowing down faster jerks itself
+_TICK = 0.002  # s, in which that is measured out
 _STRETCHES = 200  # of what jerks too much; most drives need fewer than 30
 _MORE = 1.001  # times longer than needed, for rounding
 
@@ -133,12 +134,15 @@ def within_jerks(times: Array, joints: Array, speeds: Speeds) -> Array:
     """The times (k,) of a motion from rest to rest, slower wherever it jerks too much, s."""
     if speeds.jerks is None or len(times) < 2:
         return times
+    width = 2 * int(_AROUND * (speeds.accelerations / speeds.jerks).max() / (2 * _TICK)) + 1
     for _ in range(_STRETCHES):
         excess = _excess(times, joints, speeds, _MARGIN_OF_JERKS * speeds.jerks)
         if excess.max() <= 1.0:
             return times
-        longer = np.where(excess > 1.0, excess * _MORE, 1.0)
-        longer = uniform_filter1d(maximum_filter1d(longer, _AROUND), _AROUND)
+        tick = np.rint((times - times[0]) / _TICK).astype(np.int64)
+        longest = np.ones(tick[-1] + 1)
+        np.maximum.at(longest, tick, np.where(excess > 1.0, excess * _MORE, 1.0))
+        longer = uniform_filter1d(maximum_filter1d(longest, width), width)[tick]
         steps = np.diff(times) * np.maximum(longer[1:], longer[:-1])
         times = times[0] + np.concatenate([[0.0], np.cumsum(steps)])
     most = float(_excess(times, joints, speeds, _MARGIN_OF_JERKS * speeds.jerks).max())

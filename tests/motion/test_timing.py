@@ -150,6 +150,15 @@ def test_a_cubic_has_its_jerk_and_no_limit_changes_no_time() -> None:
     assert within_jerks(times, times[:, None], speeds) is times
 
 
+def test_close_samples_do_not_slow_down_where_jerks_are_limited() -> None:
+    """A second's way, sampled every millisecond: a slowdown over a few samples would be a jerk."""
+    joints = np.linspace(0.0, 2.0, 1000)[:, None]
+    speeds = Speeds(np.array([3.0]), np.array([8.0]), np.array([250.0]))
+    # By a jerk of 250 rad/s³, 8 rad/s² take 32 ms to build up: an S-curve would take that longer.
+    free = timed(joints, speeds)
+    assert within_jerks(free, joints, speeds)[-1] < 1.5 * free[-1]
+
+
 def test_sharp_bends_cost_little_where_jerks_are_limited() -> None:
     """Only what is beside a bend gets slower."""
     joints = 0.001 * np.abs(np.arange(-2000.0, 2001.0))[:, None]
