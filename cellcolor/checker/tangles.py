@@ -104,7 +104,7 @@ class _Finder:
         return found
 
     def may_be_drawn(self, drawn: Sequence[_Drawn]) -> bool:
-        """Whether the equations have a solution."""
+        """Whether the equations modulo 2 have a solution (Gaussian elimination)."""
         numbers: dict[_Side, int] = {}
         reduced: dict[int, tuple[int, bool]] = {}
         for sides, odd in self._equations(drawn):

@@ -88,6 +88,13 @@ def one_of_each_part(vertices: Array, faces: Index) -> Array:
     return np.asarray(vertices[used[np.unique(part[used], return_index=True)[1]]])
 
 
+def longest_side_first(triangles: Array) -> Array:
+    """Corners (3, m, 3) of triangles (m, 3, 3), the longest side from the first to the second."""
+    sides = np.linalg.norm(np.roll(triangles, -1, axis=1) - triangles, axis=2)
+    order = (np.argmax(sides, axis=1)[:, None] + np.arange(3)) % 3
+    return np.take_along_axis(triangles, order[:, :, None], axis=1).swapaxes(0, 1)
+
+
 def convex_hull(points: Array) -> Polyhedron | None:
     """The convex hull of points (n, 3); None if they lie in a plane."""
     try:

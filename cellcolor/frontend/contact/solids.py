@@ -25,7 +25,7 @@ from cellcolor.arrays import Array, Mask, cuts
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import Poses
-from cellcolor.frontend.arm.polyhedron import one_of_each_part
+from cellcolor.frontend.arm.polyhedron import longest_side_first, one_of_each_part
 from cellcolor.frontend.arm.robot import Robot
 from cellcolor.frontend.contact.fcl_bodies import (
     Thing,
@@ -297,15 +297,11 @@ def sample_mesh(vertices: Array, faces: Faces, slack: float, most: int) -> tuple
         slack: wanted, m.
         most: about the most points besides the vertices; the slack grows to stay below.
     """
-    edges = TriangleMesh(vertices, faces).edges
-    corners = vertices[faces]
-    sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)  # ab, bc, ca
-    # Turned so that the longest side is the one from a to b.
-    order = (np.argmax(sides, axis=1)[:, None] + np.arange(3)) % 3
-    a, b, c = np.take_along_axis(corners, order[:, :, None], axis=1).swapaxes(0, 1)
+    mesh = TriangleMesh(vertices, faces)
+    edges, lengths = mesh.edges, mesh.lengths
+    a, b, c = longest_side_first(vertices[faces])
     double_area = np.linalg.norm(np.cross(b - a, c - a), axis=1)
-    height = double_area / sides.max(axis=1)
-    lengths = np.linalg.norm(vertices[edges[:, 0]] - vertices[edges[:, 1]], axis=1)
+    height = double_area / np.linalg.norm(b - a, axis=1)
     # Of n points at steps of s about length / s lie on edges and area / s^2 on faces.
     half = (lengths.sum() + 2 * height.sum()) / (2 * most)
     step = float(max(np.sqrt(2) * slack, half + np.sqrt(half**2 + double_area.sum() / (2 * most))))

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Mask, unit
 from cellcolor.frontend.arm.body import Body, StandIn
+from cellcolor.frontend.arm.polyhedron import longest_side_first
 from cellcolor.frontend.contact.collision import segment_distance
 from cellcolor.frontend.contact.solids import sample_mesh
 
@@ -120,9 +121,7 @@ def _all_inside(bodies: tuple[Body, ...], triangles: Array) -> bool:
         rest = rest[~inside.all(axis=2).any(axis=0)]
         if not len(rest) or len(bodies) == 1:
             return not len(rest)
-        sides = np.linalg.norm(np.roll(rest, -1, axis=1) - rest, axis=2)
-        order = (np.argmax(sides, axis=1)[:, None] + np.arange(3)) % 3
-        a, b, c = np.take_along_axis(rest, order[:, :, None], axis=1).swapaxes(0, 1)
+        a, b, c = longest_side_first(rest)
         middle = (a + b) / 2
         rest = np.concatenate([np.stack([a, middle, c], 1), np.stack([middle, b, c], 1)])
     return False
