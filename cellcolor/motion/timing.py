@@ -22,6 +22,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from cellcolor.arrays import Array, Index
 
 _LEAST = 0.001  # s, of a step; where neither tool nor joints move
+_BOW = 0.02  # rad or m; so far at most a motion speeds up beside a straight line
 _MARGIN = 0.995  # of the accelerations; the sweeps take neighboring steps for about equally long
 _ROUNDS = 60  # of sweeps; 5 to 15 are enough on sharp edges
 _MARGIN_OF_JERKS = 0.98  # other choices of samples say a little more
@@ -64,6 +65,8 @@ def timed(
     least = (moved / speeds.velocities).max(axis=1, initial=0.0)
     if points is not None:
         least = np.maximum(least, np.linalg.norm(np.diff(points, axis=0), axis=1) / tool_speed)
+    if len(joints) == 2:  # nothing says how a way without samples speeds up but that it is straight
+        least = np.maximum(least, (moved / np.sqrt(2 * _BOW * speeds.accelerations)).max(axis=1))
     least = np.maximum(least, _LEAST)
     cap = np.ones(len(least))
     for _ in range(_ROUNDS):

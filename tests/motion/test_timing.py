@@ -10,7 +10,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
+from cellcolor.data.trajectory import Trajectory
 from cellcolor.motion.timing import Speeds, _swept, least_jerks, timed, within_jerks
+from cellcolor.trajectory_checker.fault_list import FaultList
+from cellcolor.trajectory_checker.joint_motion import JointLimits, judge_joints
 from examples import examples
 
 CYCLE = 0.008  # s
@@ -111,6 +114,19 @@ def test_no_way_within_the_limits_is_faster(seed: int, steps: int, joints: int) 
         bounds=[(0.0, most_of) for most_of in upper],
     )
     assert found == pytest.approx(best.x, rel=1e-6, abs=1e-9)
+
+
+def test_a_long_way_without_samples_has_no_fault_of_its_own() -> None:
+    """Such as a move that is not planned; the judge lets an arm bow a little off a line."""
+    joints = np.array([[0.0, 0.0], [4.0, -1.0]])
+    times = timed(joints, Speeds(np.array([3.0, 3.0]), np.array([8.0, 8.0])))
+    points, away = np.zeros((2, 3)), np.zeros(2, dtype=bool)
+    names, normals = ("one", "other"), np.tile([0.0, 0.0, 1.0], (2, 1))
+    drive = Trajectory("way", names, times, joints, points, normals, away, np.full(2, -1))
+    limits = JointLimits(None, None, np.full(2, 3.0), np.full(2, 8.0), None, np.inf, away)
+    faults = FaultList(drive, timed=True)
+    judge_joints(drive, points, limits, True, faults)
+    assert not faults.counts
 
 
 @examples(12)
