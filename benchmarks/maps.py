@@ -57,11 +57,14 @@ def mapped(scene: Scene, yaw: bool, cluster: bool) -> Placements:
 
 
 def driven(scene: Scene, row: PlacedMinimum) -> str:
-    """What the motion at a placement does."""
+    """What the motion at a placement does; from another home if the part stands in the setup's."""
+    there = scene.moved(position_m=row.pose[:3], rpy_rad=row.pose[3:])
     try:
-        planned = cellcolor.plan(scene.moved(position_m=row.pose[:3], rpy_rad=row.pose[3:]))
+        planned = cellcolor.plan(there)
     except InputError as error:
-        return f"refused: {error}"
+        if "home_rad" not in str(error):
+            return f"refused: {error}"
+        planned = cellcolor.plan(there, home_rad="free")
     valid = "valid" if planned.verdict.valid else f"{len(planned.verdict.faults)} faults"
     return f"{planned.trajectory.lift_offs}, {valid}"
 
