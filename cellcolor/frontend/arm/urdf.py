@@ -3,7 +3,7 @@
 Pinocchio answers most URDF faults with the same sentence, reads a missing limit as [0, 0] and a
 missing inertial as no mass, and drops collision shapes it does not know with a remark on standard
 error. So the XML is held to what the front end relies on here. The first fault is raised as an
-:class:`InputError` that names file and field.
+:class:`~cellcolor.errors.InputError` that names file and field.
 """
 
 from __future__ import annotations
