@@ -118,12 +118,14 @@ def test_no_way_within_the_limits_is_faster(seed: int, steps: int, joints: int) 
 
 def test_a_long_way_without_samples_has_no_fault_of_its_own() -> None:
     """Such as a move that is not planned; the judge lets an arm bow a little off a line."""
-    joints = np.array([[0.0, 0.0], [4.0, -1.0]])
-    times = timed(joints, Speeds(np.array([3.0, 3.0]), np.array([8.0, 8.0])))
-    points, away = np.zeros((2, 3)), np.zeros(2, dtype=bool)
-    names, normals = ("one", "other"), np.tile([0.0, 0.0, 1.0], (2, 1))
-    drive = Trajectory("way", names, times, joints, points, normals, away, np.full(2, -1))
-    limits = JointLimits(None, None, np.full(2, 3.0), np.full(2, 8.0), None, np.inf, away)
+    ends = np.array([[0.0, 0.0], [4.0, -1.0]])
+    lasts = timed(ends, Speeds(np.array([3.0, 3.0]), np.array([8.0, 8.0])))[-1]
+    # It rests before the way and after it.
+    joints, times = ends[[0, 0, 1, 1]], np.array([0.0, 1.0, 1.0 + lasts, 2.0 + lasts])
+    points, away = np.zeros((4, 3)), np.zeros(4, dtype=bool)
+    names, normals = ("one", "other"), np.tile([0.0, 0.0, 1.0], (4, 1))
+    drive = Trajectory("way", names, times, joints, points, normals, away, np.full(4, -1))
+    limits = JointLimits(None, None, np.full(2, 3.0), np.full(2, 8.0), None, np.inf, away[:2])
     faults = FaultList(drive, timed=True)
     judge_joints(drive, points, limits, True, faults)
     assert not faults.counts
