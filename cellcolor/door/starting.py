@@ -26,15 +26,21 @@ from cellcolor.files.paths import path_of
 from cellcolor.files.writing import FileKind, Output, check_output, is_folder_or_nothing, write
 
 if TYPE_CHECKING:
+    import xml.etree.ElementTree as ET
+
+    from cellcolor.arrays import Array
     from cellcolor.frontend.arm.robot import Robot
+    from cellcolor.frontend.arm.urdf import Urdf
     from cellcolor.frontend.parts.inspection import Inspection
     from cellcolor.frontend.prepared import PreparedScene
     from cellcolor.frontend.setup import Setup
 
 _FLANGES = ("tool0", "flange", "ee_link", "wrist_3_link", "tool_flange")
-_FAMILIES = ("ur", "eaik")
+_FAMILIES = ("ur", "eaik", "offset-wrist")  # the second says most about an arm that fits none
 _NEEDED = ("pinocchio", "fcl", "trimesh", "scipy", "ompl")
 _JOINTS, _ACCELERATION = 6, 5.0  # rad/s^2, which most arms of a meter can
+_ALONG = 1e-3  # rad; an axis so near to another one is along it
+_AHEAD = 1e-3  # m; so far along the axis the flange is at least from what shows its sense
 _JERK = 1000.0  # rad/s^3, an example
 _MOST_ASKED = 300  # vertices of the part, wherever it is tried
 _FARTHER, _HIGHER = (0.45, 0.6, 0.75), (0.02, 0.2, 0.4)
@@ -171,6 +177,7 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
         "arm": urdf.name,
         "arm_urdf": json.dumps(_relative(urdf, folder)),
         "flange": json.dumps(flange),
+        "mount": _mount(arm, flange),
         "tool": json.dumps("tool.urdf" if tool is None else _relative(tool, folder)),
         "tip": json.dumps(tip),
         "standing": json.dumps(standing),
@@ -183,7 +190,7 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
         "joints": "",
         "home": "",
     }
-    fault: InputError | None = None
+    faults: list[InputError] = []
     for family in _FAMILIES:
         found = FoundArm(urdf, tool, keys | {"family": json.dumps(family)})
         try:
@@ -192,12 +199,53 @@ def arm_of(urdf: Path, tool: Path | None, tip: str, folder: Path) -> FoundArm:
             # Before a place is sought: with such a pair tested, the arm could stand nowhere.
             pairs = always_touching(prepared.near_itself)
         except InputError as error:
-            fault = error
+            faults.append(error)
             continue
         touching = json.dumps([list(pair) for pair in pairs])
         return replace(found, keys=found.keys | {"touching": touching}, reach=reach, touching=pairs)
-    assert fault is not None
-    raise fault if fault.file else fault.in_file(str(urdf))
+    raise faults[1] if faults[1].file else faults[1].in_file(str(urdf))
+
+
+def _mount(arm: Urdf, flange: str) -> str:
+    """The setup's line that turns the tool's z axis onto the last joint's, if it is not there.
+
+    Some vendors' flanges have their x axis along that of the joint.
+    """
+    from cellcolor.frontend.parts.placement import rpy_from_rotation
+
+    x, y, z = _last_axis(arm, flange)
+    along = np.hypot(x, y) < _ALONG
+    if along and z > 0:
+        return ""
+    # Turned about the axis across both.
+    cross = np.array([[0, 0, x], [0, 0, y], [-x, -y, 0]])
+    onto = np.diag([1, -1, -1]) if along else np.eye(3) + cross + cross @ cross / (1 + z)
+    angles = [round(angle, 9) + 0.0 for angle in rpy_from_rotation(onto)]
+    return f"mount_rpy_rad = {angles}   # turns the tool's z axis onto the last joint's\n"
+
+
+def _last_axis(arm: Urdf, flange: str) -> Array:
+    """The last axis (3,) before the flange, in its frame; outward with all joints at zero."""
+    from cellcolor.frontend.parts.placement import rotation_from_rpy
+
+    joints = {joint.get("name"): joint for joint in arm.xml.findall("joint")}
+    turn, out, link = np.eye(3), np.zeros(3), flange  # of the flange, seen from a link before it
+    axis: Array | None = None
+    while link in arm.parent:
+        joint = joints[arm.joint_above[link]]
+        if axis is None and arm.joint_above[link] in arm.kinds:
+            axis = _numbers(joint.find("axis"), "xyz", "1 0 0") @ turn
+            axis /= np.linalg.norm(axis)
+        if axis is not None and abs(ahead := axis @ (out @ turn)) > _AHEAD:
+            return np.asarray(axis * np.sign(ahead))
+        xyz, rpy = (_numbers(joint.find("origin"), key, "0 0 0") for key in ("xyz", "rpy"))
+        rotation = rotation_from_rpy(*rpy)
+        turn, out, link = rotation @ turn, xyz + rotation @ out, arm.parent[link]
+    return np.array([0.0, 0.0, 1.0]) if axis is None else axis
+
+
+def _numbers(element: ET.Element | None, key: str, usual: str) -> Array:
+    return np.array((usual if element is None else element.get(key, usual)).split(), dtype=float)
 
 
 def _relative(file: Path, folder: Path) -> str:
@@ -255,13 +303,7 @@ def best_place(
     try:
         vertices = scene.object.surface(scene.folder, deadline).vertices
     except InputError as error:
-        named = error if error.file else error.in_file(str(mesh))
-        if part_keys["repair"] != "true" or error.field == "max_edge_m":
-            raise named from error
-        # A scene repairs less than the command does.
-        command = f"cellcolor repair {mesh} -o {mesh.stem}-repaired.obj"
-        message = f"{error.message}; repair it first: {command}"
-        raise InputError(named.file, error.field, message) from error
+        raise error if error.file else error.in_file(str(mesh)) from error
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     best: tuple[PreparedScene, float] | None = None

@@ -29,7 +29,7 @@ SETUP = (
 arm_urdf = $arm_urdf
 kinematics = $family                # the family of the arm, which has its inverse kinematics
 flange_link = $flange               # where the tool's root link is fixed
-tool_urdf = $tool
+${mount}tool_urdf = $tool
 tip_link = $tip                     # where the tool touches; its z axis goes into the part
 locked_joint_6_rad = 0.0            # the tool may turn about its axis: the last joint stands still
 may_touch_ground = $standing
@@ -67,6 +67,7 @@ uncover_below_share = 0.005
 [motion]
 tool_radius_m = 0.015               # of the tool's footprint
 spacing_m = 0.01                    # between neighboring passes
+# overlap_m = 0.01                  # of neighboring segments, so that no seam is left
 speed_m_per_s = 0.05                # of the tool on the part
 approach_speed_m_per_s = 0.02       # of the tool within 10 mm of a touch
 $velocities

@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+import json
+import tomllib
 from pathlib import Path
 
+import dh_arms
 import numpy as np
 import pytest
 import trimesh
 from commands import run
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 from shipped import ROBOTS
 
 import cellcolor
+from cellcolor.door.starting import _mount, arm_of
 from cellcolor.errors import InputError
+from cellcolor.frontend.arm.urdf import parse_urdf
 from cellcolor.frontend.prepared import prepare
 from cellcolor.frontend.scene import Scene
 from cellcolor.motion.home import home_of
@@ -70,6 +78,31 @@ def test_links_that_overlap_in_every_posture_are_found_before_a_place_is_sought(
     assert made.reachable_share > 0.5
     assert ("link_4", "link_6") in Scene.read(made.scene).setup.robot.may_touch
     assert any("link_4 and link_6 overlap" in note for note in made.notes)
+
+
+@settings(deadline=None, max_examples=50)
+@given(
+    st.tuples(*[st.floats(-3.2, 3.2)] * 3),
+    st.sampled_from(["0 0 0", "0.1 0 0", "-0.1 0.02 0"]),
+)
+def test_the_tool_is_turned_onto_the_last_axis(rpy: tuple[float, float, float], xyz: str) -> None:
+    """Outward, whichever way the flange's own axes point."""
+    text = (ROBOTS / "kr6.urdf").read_text()
+    usual = '<origin xyz="0 0 0" rpy="0 1.570796326794897 0"/>'
+    assert usual in text
+    turned = " ".join(map(repr, rpy))
+    text = text.replace(usual, f'<origin xyz="{xyz}" rpy="{turned}"/>')
+    line = _mount(parse_urdf(text, Path("arm.urdf")), "tool0")
+    mount = tomllib.loads(line).get("mount_rpy_rad", [0.0, 0.0, 0.0])
+    tool = (Rotation.from_euler("xyz", rpy) * Rotation.from_euler("xyz", mount)).apply([0, 0, 1])
+    outward = -1.0 if xyz.startswith("-") else 1.0
+    assert np.allclose(tool, [outward, 0, 0], atol=2e-3)
+
+
+def test_an_arm_with_an_offset_wrist_is_known(tmp_path: Path) -> None:
+    file = tmp_path / "arm.urdf"
+    file.write_text(dh_arms.urdf("hc10"))
+    assert json.loads(arm_of(file, None, "tip", tmp_path).keys["family"]) == "offset-wrist"
 
 
 def test_ready_to_plan(plate: Path, tmp_path: Path, capsys: Capture) -> None:

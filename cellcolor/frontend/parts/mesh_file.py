@@ -71,7 +71,14 @@ def load_mesh(
         return mesh_surface(vertices, faces, meters_per_unit, max_edge_m, mend, deadline)
     except InputError as error:
         # Of halving edges the scene is to blame, which alone can say that it was asked for.
-        raise error if error.field == "max_edge_m" else error.in_file(str(file)) from error
+        if error.field == "max_edge_m":
+            raise
+        message = error.message
+        if error.field and error.field.startswith(("faces[", "vertices[")):
+            # A scene repairs less than the command does.
+            command = f"cellcolor repair {file} -o {file.stem}-repaired.obj"
+            message += f"; repair it first: {command}" if mend else ""
+        raise InputError(error.file or str(file), error.field, message) from error
 
 
 def read_mesh(file: Path, deadline: Deadline = NEVER) -> tuple[Array, Faces]:
