@@ -251,6 +251,7 @@ def ranges(command: Command) -> Command:
 _MOTION = {
     "tool_radius_m": "Of the tool's footprint, m.",
     "spacing_m": "Between neighboring passes, m.",
+    "overlap_m": "Of neighboring segments, m; none without.",
     "speed_m_per_s": "Of the tool on the surface, m/s; slower where joints limit it.",
     "approach_speed_m_per_s": "Of the tool within 10 mm of contact, m/s; as in contact without.",
     "joint_velocities_rad_per_s": "Lower limits than the URDF's, rad/s (m/s for sliding joints).",

@@ -241,7 +241,8 @@ class Motion(Table):
     """How the tool covers a segment, and how the arm moves; only planning a motion asks for it.
 
     ``tool_radius_m`` is that of the tool's footprint, ``spacing_m`` the distance between
-    neighboring passes. Within 10 mm of a contact the tool comes and goes at
+    neighboring passes. Where two segments meet, the passes of both go beyond their border, so that
+    they overlap by ``overlap_m``. Within 10 mm of a contact the tool comes and goes at
     ``approach_speed_m_per_s`` at most, without it at ``speed_m_per_s``. It retracts by
     ``retract_m`` along the normal; between segments the arm keeps ``clearance_m`` from everything.
     A URDF has velocities, which ``joint_velocities_rad_per_s`` may lower, but no accelerations.
@@ -253,6 +254,7 @@ class Motion(Table):
 
     tool_radius_m: Positive = 0.015
     spacing_m: Positive = 0.01
+    overlap_m: NotNegative = 0.0
     speed_m_per_s: Positive = 0.05
     joint_velocities_rad_per_s: tuple[Positive, ...] | None = None
     joint_accelerations_rad_per_s2: tuple[Positive, ...]

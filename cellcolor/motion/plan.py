@@ -28,6 +28,7 @@ from cellcolor.motion.ways import Transfer
 from cellcolor.painting.paint import Painted
 from cellcolor.tool_paths.cover import Covered, check_spacing, cover
 from cellcolor.tool_paths.measures import PathMeasures, in_all
+from cellcolor.tool_paths.overlap import Overlap
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN
 
 OnPaths = Callable[[ToolPaths, tuple[PathMeasures, ...]], None]
@@ -101,7 +102,12 @@ def plan_motion(
         own_branch = np.array([branch_of[color] for color in color_of], dtype=np.int64)
         states = corner_states(prepared, small, own_branch, deadline)
 
-    def lay(segment: int, walls: Collection[tuple[int, int]], refusals: ArmRefusals) -> Covered:
+    def lay(
+        segment: int,
+        walls: Collection[tuple[int, int]],
+        refusals: ArmRefusals,
+        overlap: Overlap | None,
+    ) -> Covered:
         return cover(
             surface,
             np.where(segment_of == segment, segment, -1),
@@ -112,10 +118,14 @@ def plan_motion(
             tool_radius_m=motion.tool_radius_m,
             walls=walls,
             refusals=refusals,
+            overlap=overlap,
             deadline=deadline,
         )
 
-    ground = Ground(prepared, surface, small, states, lay, motion.spacing_m, deadline)
+    ground = Ground(
+        prepared, surface, segment_of, color_of, small, states, lay,
+        motion.spacing_m, motion.overlap_m, deadline,
+    )  # fmt: skip
     with clock.timed("tool paths"):
         covered = [
             strokes_of(ground, segment, color_of[segment], int(own_branch[segment]))

@@ -35,17 +35,19 @@ class ArmRefusals:
         small: SmallTriangles,
         states: CornerStates,
         segment: int,
+        touched: Mask,
         around: float,
         deadline: Deadline,
     ) -> None:
         """What is known of the corners of the segment's small triangles is taken over.
 
         Args:
+            touched: (n,) the vertices of the surface that paths may come near to.
             around: so far from a sample that has failed everything is refused, m.
         """
         self._prepared, self._branch, self._deadline = prepared, branch, deadline
         self.names = (*prepared.judge.reason_names, JUMP, FOLDED)
-        self._folded = _folded(small, segment) if prepared.robot.task.direction else []
+        self._folded = _folded(small, touched) if prepared.robot.task.direction else []
         self.doubtful = set(self._folded)
         self._failed: list[tuple[Array, int]] = []
         self._around = around
@@ -141,13 +143,13 @@ class ArmRefusals:
         return np.column_stack([points, self._apart * normals])
 
 
-def _folded(small: SmallTriangles, segment: int) -> list[int]:
-    """The triangles with a part of a segment in which the normal may lead behind them, ascending.
+def _folded(small: SmallTriangles, touched: Mask) -> list[int]:
+    """The triangles beside some vertices (n,) where the normal may lead behind them, ascending.
 
     A normal between those of the corners is nearer to the triangle's own than the farthest one is.
     """
     mesh = small.whole
     normals = small.normals[mesh.corners]
     behind = (np.einsum("mkj,mj->mk", normals, mesh.triangle_normals) < _FACING).any(axis=1)
-    own = np.unique(np.flatnonzero(small.segment == segment) // 6)
-    return [int(face) for face in own if behind[face]]
+    behind &= touched[mesh.corners].any(axis=1)
+    return [int(face) for face in np.flatnonzero(behind)]

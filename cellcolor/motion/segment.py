@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from cellcolor.arrays import Index, Mask
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.deadline import Deadline
 from cellcolor.frontend.arm.joint_space import JointSpace
@@ -19,6 +20,7 @@ from cellcolor.motion.small_triangles import CornerStates, SmallTriangles
 from cellcolor.motion.strokes import Parting, Stroke, cut_where_full, trimmed
 from cellcolor.motion.windings import Walls, parts_of, walls_of
 from cellcolor.tool_paths.cover import Covered
+from cellcolor.tool_paths.overlap import Overlap
 
 _SHORT = 2.0  # spacings; no place of such a stroke is as large as a footprint
 _SPARED = 0.005  # of the strokes' length, at most, of what is left out because it is short
@@ -27,8 +29,10 @@ _ROUNDS = 3  # of paths laid out so that no joint leaves its limits
 _FEW = 0.01  # of the samples, that may be beyond the limits to be left out
 _AROUND = 0.2  # spacings; so far from a sample that fails no path is laid
 
-Lay = Callable[[int, Collection[tuple[int, int]], ArmRefusals], Covered]
-"""The tool paths of a segment, given walls (mesh edges) and where the arm cannot touch it."""
+Walled = Collection[tuple[int, int]]
+Lay = Callable[[int, Walled, ArmRefusals, Overlap | None], Covered]
+"""The tool paths of a segment, given walls (mesh edges), where the arm cannot touch it, and how far
+they may go beyond its border."""
 
 
 @dataclass(frozen=True)
@@ -38,19 +42,25 @@ class Ground:
     Attributes:
         prepared: the scene.
         surface: the painted surface.
+        segment_of: (n,) the segment of each of its vertices, -1 without a color.
+        colors: of each segment.
         small: its small triangles.
         states: what the arm does at their corners.
         lay: see :data:`Lay`.
         spacing: desired between passes, m; shorter pieces of a path are left out where it is cut.
+        overlap: of neighboring segments, m.
         deadline: when to give up.
     """
 
     prepared: PreparedScene
     surface: LabelledSurface
+    segment_of: Index
+    colors: Sequence[int]
     small: SmallTriangles
     states: CornerStates
     lay: Lay
     spacing: float
+    overlap: float
     deadline: Deadline
 
 
@@ -72,6 +82,7 @@ class SegmentStrokes:
 def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> SegmentStrokes:
     """Lay out a segment's paths so that the arm can follow them, and follow them.
 
+    They go beyond the segment's border if neighbors are to overlap and one stroke is enough then.
     Walls are put up only where a joint would exceed its limits without them.
 
     Args:
@@ -83,24 +94,25 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
     Raises:
         OutOfTime: the deadline came first.
     """
-    prepared, small = ground.prepared, ground.small
-    around = _AROUND * ground.spacing
-    refusals = ArmRefusals(prepared, branch, small, ground.states, segment, around, ground.deadline)
-
-    def courses_with(walls: Collection[tuple[int, int]]) -> Courses:
-        return laid_out(
-            prepared,
-            ground.surface,
-            small.normals[: len(ground.surface.vertices)],
-            branch,
-            lambda: ground.lay(segment, walls, refusals),
-            refusals,
-            ground.deadline,
+    prepared, small, space = ground.prepared, ground.small, joint_space(ground.prepared)
+    own = ground.segment_of == segment
+    if ground.overlap:
+        overlap = Overlap.of(
+            ground.surface, ground.segment_of, ground.colors, segment, ground.overlap
         )
+        touched = overlap.widened(ground.surface, own)
+        refusals = _refusals(ground, segment, branch, touched)
+        courses = _courses(ground, segment, branch, (), refusals, overlap)
+        strokes = _on(ground, courses, branch)
+        if len(strokes) == 1 and space.fits(strokes[0].joints):
+            return SegmentStrokes(courses, strokes, None)
+    refusals = _refusals(ground, segment, branch, own)
+
+    def courses_with(walls: Walled) -> Courses:
+        return _courses(ground, segment, branch, walls, refusals, None)
 
     courses = courses_with(())
     strokes = _on(ground, courses, branch)
-    space = joint_space(prepared)
     if all(space.fits(stroke.joints) for stroke in strokes):
         return SegmentStrokes(courses, strokes, None)
     cracks = [crack for crack in ground.surface.cracks if color in crack.colors]
@@ -130,6 +142,31 @@ def strokes_of(ground: Ground, segment: int, color: int, branch: int) -> Segment
         for part in cut_where_full(stroke, space, prepared.robot.joint_names)
     ]
     return SegmentStrokes(courses, _worth_a_lift_off(cut, ground.spacing), walls)
+
+
+def _refusals(ground: Ground, segment: int, branch: int, touched: Mask) -> ArmRefusals:
+    around = _AROUND * ground.spacing
+    prepared, small, states = ground.prepared, ground.small, ground.states
+    return ArmRefusals(prepared, branch, small, states, segment, touched, around, ground.deadline)
+
+
+def _courses(
+    ground: Ground,
+    segment: int,
+    branch: int,
+    walls: Walled,
+    refusals: ArmRefusals,
+    overlap: Overlap | None,
+) -> Courses:
+    return laid_out(
+        ground.prepared,
+        ground.surface,
+        ground.small.normals[: len(ground.surface.vertices)],
+        branch,
+        lambda: ground.lay(segment, walls, refusals, overlap),
+        refusals,
+        ground.deadline,
+    )
 
 
 def _refuse_what_is_beyond(

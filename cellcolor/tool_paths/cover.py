@@ -17,6 +17,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
 from cellcolor.tool_paths.interface import Laid, Pattern
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
+from cellcolor.tool_paths.overlap import Overlap, clipped, owned
 from cellcolor.tool_paths.refused import Refusals, RefusedPlace, without_refused
 from cellcolor.tool_paths.region import Region, regions_of
 from cellcolor.tool_paths.registry import DEFAULT_PATTERN, find_pattern
@@ -76,6 +77,7 @@ def cover(
     tool_radius_m: float,
     walls: Collection[tuple[int, int]] = (),
     refusals: Refusals | None = None,
+    overlap: Overlap | None = None,
     deadline: Deadline = NEVER,
     progress: Callable[[str], None] | None = None,
 ) -> Covered:
@@ -91,6 +93,7 @@ def cover(
         tool_radius_m: of the tool's footprint, m.
         walls: mesh edges that no path may cross, like cracks of whatever segment is there.
         refusals: where the tool must not touch the segments.
+        overlap: how far paths may go beyond the border of the only segment.
         deadline: when to give up.
         progress: told in a few words what is being done.
 
@@ -101,34 +104,26 @@ def cover(
     """
     lay = find_pattern(pattern)
     _check_lengths(surface, spacing_m, tool_radius_m)
-    paths, measures, uncovered, along_border = [], [], [], []
-    regions = regions_of(surface, segment_of, colors, normals, walls)
-    for number, region in enumerate(regions):
+    paths, measures, along_border = [], [], []
+    parts, uncovered = _parts(
+        surface, segment_of, colors, normals, walls, refusals, overlap, spacing_m
+    )
+    for number, (region, part) in enumerate(parts):
         deadline.check()
         if progress is not None:
-            progress(f"covering part {number + 1} of {len(regions)}")
-        parts, refused = [region.mesh], list[RefusedPlace]()
-        if refusals is not None:
-            parts, refused = without_refused(
-                region.mesh, refusals, _REFUSED * spacing_m, _LEAST_AREA * spacing_m**2
-            )
-        uncovered += [
-            Uncovered(region.segment, place.area_m2, _point(place.place), place.why)
-            for place in refused
-        ]
-        for part in parts:
-            area = float(part.areas.sum())
-            if area < _LEAST_AREA * spacing_m**2:
-                place = _point(part.points[part.corners[0]].mean(axis=0))
-                cause = "a part smaller than a quarter of the spacing squared"
-                uncovered.append(Uncovered(region.segment, area, place, cause))
-                continue
-            line, own, left = _better(lay, part, region.segment, spacing_m, deadline)
-            path, beside = _path(region, line)
-            paths.append(path)
-            along_border.append(beside)
-            measures.append(own)
-            uncovered += left
+            progress(f"covering part {number + 1} of {len(parts)}")
+        area = float(part.areas.sum())
+        if area < _LEAST_AREA * spacing_m**2:
+            place = _point(part.points[part.corners[0]].mean(axis=0))
+            cause = "a part smaller than a quarter of the spacing squared"
+            uncovered.append(Uncovered(region.segment, area, place, cause))
+            continue
+        line, own, left = _better(lay, part, region.segment, spacing_m, deadline)
+        path, beside = _path(region, line)
+        paths.append(path)
+        along_border.append(beside)
+        measures.append(own)
+        uncovered += left
     uncovered.sort(key=lambda place: (-place.area_m2, place.place))
     return Covered(
         ToolPaths(surface.name, pattern, spacing_m, tool_radius_m, tuple(paths), surface.sha256),
@@ -137,6 +132,44 @@ def cover(
         tuple(uncovered),
         tuple(along_border),
     )
+
+
+def _parts(
+    surface: LabelledSurface,
+    segment_of: Index,
+    colors: Sequence[int],
+    normals: Array,
+    walls: Collection[tuple[int, int]],
+    refusals: Refusals | None,
+    overlap: Overlap | None,
+    spacing: float,
+) -> tuple[list[tuple[Region, Triangles]], list[Uncovered]]:
+    """The meshes that paths are laid on, each with its region, and what of segments is refused."""
+
+    def allowed(mesh: Triangles) -> tuple[list[Triangles], list[RefusedPlace]]:
+        if refusals is None:
+            return [mesh], []
+        return without_refused(mesh, refusals, _REFUSED * spacing, _LEAST_AREA * spacing**2)
+
+    parts, uncovered = [], []
+    for region in regions_of(surface, segment_of, colors, normals, walls):
+        own, refused = allowed(region.mesh)
+        parts += [(region, part) for part in own]
+        uncovered += [
+            Uncovered(region.segment, place.area_m2, _point(place.place), place.why)
+            for place in refused
+        ]
+    if overlap is not None:
+        inside = segment_of >= 0
+        widened = np.where(overlap.widened(surface, inside), segment_of.max(), -1)
+        parts = [
+            (region, part)
+            for region in regions_of(surface, widened, colors, normals, walls)
+            for mesh in clipped(region.mesh, surface, inside, overlap.beyond, _REFUSED * spacing)
+            for part in allowed(mesh)[0]
+            if owned(part, surface, inside).any()
+        ]
+    return parts, uncovered
 
 
 def _better(

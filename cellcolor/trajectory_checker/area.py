@@ -21,11 +21,13 @@ from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fault_list import FaultList, stretches
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, Located
 from cellcolor.trajectory_checker.repeated import Repeated, passes, repeated_stretches
+from cellcolor.trajectory_checker.strips import Strips
 from cellcolor.trajectory_checker.tolerances import Limits
 
 FAR, NEAR = 1.5, 0.75  # spacings; from a pass to what counts as covered, as closely covered
 _VISIT = 0.5  # spacings; a pass this close to a point is a visit of it
 _ALONG = 0.25  # spacings; a pass this close to an earlier one runs along it
+_BESIDE = 1.25  # spacings; by so much more than the overlap both sides visit the same places
 _APART = 2.0  # spacings of path between two places that belong to two passes
 _THINNED = 0.1  # spacings of path between two places of contact that are measured with
 
@@ -52,6 +54,7 @@ def judge_area(
     touching: Mask,
     fine: FineMesh,
     spacing: float,
+    overlap: float,
     limits: Limits,
     tells: bool,
     faults: FaultList,
@@ -61,6 +64,7 @@ def judge_area(
 
     Args:
         rows: (c,) those of ``dense`` in contact, with their places and branches.
+        overlap: of neighboring segments, m; places in it are not visited too often.
         tells: whether the trajectory can say what it leaves out.
         touching: (c,) whether the tip is on the surface there; nothing else covers anything.
     """
@@ -93,9 +97,16 @@ def judge_area(
     )
     near = reached.distance <= FAR * spacing
     uncovered = missed & ~right & ~near
-    visits = passes(dense, rows, located, fine, _VISIT * spacing)
+    segment = trajectory.segment[dense.sample[rows]]
+    number = np.unique(segment, return_inverse=True)[1]
+    by_segment = passes(dense, rows, number, located, fine, _VISIT * spacing)
+    visits, strip = by_segment.sum(axis=1), np.full(len(rows), -1)
+    if overlap:
+        strips = Strips.of(fine, by_segment, overlap + _BESIDE * spacing)
+        visits = strips.counted(fine, by_segment)
+        strip = np.where(strips.near(located.points, number), number, -1)
     visited = (visits > 0) & (areas > 0)
-    twice = repeated_stretches(dense, rows, located, _ALONG * spacing, _APART * spacing)
+    twice = repeated_stretches(dense, rows, located, strip, _ALONG * spacing, _APART * spacing)
     stated = np.zeros(len(rows), dtype=bool)
     for stretch in trajectory.repeated:
         sample = dense.sample[rows]
@@ -122,9 +133,7 @@ def judge_area(
         length_m=length,
         length_times_spacing_per_area=length * spacing / total if total else 0.0,
     )
-    failing = failing_places(
-        built.prepared, trajectory, trajectory.segment[dense.sample[rows]], branches, fine, deadline
-    )
+    failing = failing_places(built.prepared, trajectory, segment, branches, fine, deadline)
     judge_left_out(trajectory, fine, areas, near, right, missed, failing, spacing, faults)
     _note_uncovered(fine, areas, uncovered, missed & ~right, total, spacing, limits, faults)
     if covered.mean_visits > limits.most_mean_visits:

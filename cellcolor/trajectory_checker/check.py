@@ -101,7 +101,7 @@ def check_trajectory(
         deadline.check()
         covered = judge_area(
             built, trajectory, dense, rows, located, branches, touching, fine,
-            motion.spacing_m, limits or Limits(), tells, faults, deadline,
+            motion.spacing_m, motion.overlap_m, limits or Limits(), tells, faults, deadline,
         )  # fmt: skip
         notes += _given_up(built)
     return _verdict(trajectory, dense, timed, minimum_lift_offs, faults, covered, notes)

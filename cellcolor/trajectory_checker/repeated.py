@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_array, csr_array
 from scipy.spatial import cKDTree
 
 from cellcolor.arrays import Array, Index
@@ -38,37 +39,44 @@ class Repeated:
     length: float
 
 
-def passes(dense: Dense, rows: Index, located: Located, fine: FineMesh, within: float) -> Index:
-    """How often (n,) the tool comes within a distance (m) of the vertices of the fine mesh.
+def passes(
+    dense: Dense, rows: Index, segment: Index, located: Located, fine: FineMesh, within: float
+) -> csr_array:
+    """How often each segment's tool comes within a distance (m) of the vertices of the fine mesh.
 
     Coming back after less than that distance is the same pass. What faces another way, as the back
     of a sheet does, is not come by.
+
+    Args:
+        segment: (c,) of each row, from 0 on.
+
+    Returns:
+        (n, segments), without entries where a segment does not come.
     """
     ways = _ways(dense, rows)
     tree = cKDTree(fine.vertices)
-    vertices, places = [], []
+    vertices, places = [np.zeros(0, dtype=np.int64)], [np.zeros(0, dtype=np.int64)]
     for vertex, place in _near(tree, located.points, within):
         facing = np.einsum("ij,ij->i", fine.normals[vertex], located.normals[place]) > 0
         vertices.append(vertex[facing])
         places.append(place[facing])
-    result = np.zeros(len(fine.vertices), dtype=np.int64)
-    if not vertices:
-        return result
     vertex, place = np.concatenate(vertices), np.concatenate(places)
     order = np.lexsort((place, vertex))
     vertex, place = vertex[order], place[order]
     begins = np.ones(len(vertex), dtype=bool)
     begins[1:] = (vertex[1:] != vertex[:-1]) | (ways[place[1:]] - ways[place[:-1]] > within)
-    np.add.at(result, vertex[begins], 1)
-    return result
+    size = len(fine.vertices), int(segment.max(initial=0)) + 1
+    once = np.ones(int(begins.sum()), dtype=np.int64)
+    return coo_array((once, (vertex[begins], segment[place[begins]])), shape=size).tocsr()
 
 
 def repeated_stretches(
-    dense: Dense, rows: Index, located: Located, within: float, apart: float
+    dense: Dense, rows: Index, located: Located, strip: Index, within: float, apart: float
 ) -> list[Repeated]:
     """The stretches that run along an earlier pass, either way.
 
     Args:
+        strip: (c,) the segment of a row that may run along passes of others, -1 of all other rows.
         within: how near the earlier pass is, m.
         apart: so far, in m along the path, two places have to be to belong to two passes.
     """
@@ -85,7 +93,8 @@ def repeated_stretches(
             & (np.einsum("ij,ij->i", normals[one], normals[other]) > 0)
         )
         along = np.abs(np.einsum("ij,ij->i", tangents[one], tangents[other])) >= _ALONG
-        kept = close & along
+        overlap = (strip[one] >= 0) & (strip[other] >= 0) & (strip[one] != strip[other])
+        kept = close & along & ~overlap
         np.maximum.at(earlier, other[kept], one[kept])
     return _joined(earlier, ways, apart / 2)
 

@@ -41,7 +41,7 @@ def refusals(normals: np.ndarray, direction: bool) -> ArmRefusals:
         arm=SimpleNamespace(follow=lambda points, *_: np.zeros((len(points), 1))),
         robot=SimpleNamespace(task=SimpleNamespace(direction=direction)),
     )
-    return ArmRefusals(prepared, 0, small, states, 0, 0.001, NEVER)
+    return ArmRefusals(prepared, 0, small, states, 0, np.ones(4, dtype=bool), 0.001, NEVER)
 
 
 def leaning(degrees: list[float]) -> np.ndarray:

@@ -177,6 +177,31 @@ def test_the_same_scene_and_seed_give_the_same_trajectory(motion: Planned) -> No
     assert again.paths == motion.plan.paths
 
 
+def test_segments_overlap_where_both_colors_are_valid() -> None:
+    """One segment is covered 30 mm beyond the border, or both together are that far.
+
+    The outermost pass is half a spacing inside of that. The corner with the largest share of a
+    triangle tells to which segment a place belongs.
+    """
+    scene = shipped("half_pipe", 500)
+    keys = {"spacing_m": 0.01, "overlap_m": 0.03}
+    motion = planned_scene(scene.with_setup(with_keys(scene.setup, **keys)))
+    drive, mesh = motion.plan.trajectory, motion.painted.surface.mesh
+    corners = mesh.points[mesh.corners]
+    shares = np.random.default_rng(0).dirichlet([1.0, 1.0, 1.0], 60)
+    points = np.einsum("kc,mcd->mkd", shares, corners).reshape(-1, 3)
+    vertex = mesh.corners[:, shares.argmax(axis=1)].ravel()
+    segment_of = motion.painted.segment_of[vertex]
+    farthest = []
+    for segment in range(2):
+        samples = drive.points[drive.contact & (drive.segment == segment)]
+        beyond = cKDTree(points[segment_of == segment]).query(samples)[0]
+        farthest.append(beyond.max())
+    assert 0.018 < sum(farthest) < 0.035
+    verdict = check_trajectory(motion.built, drive, minimum_lift_offs=motion.lift_offs)
+    assert verdict.valid
+
+
 def test_a_setup_without_a_motion_and_one_that_does_not_fit_are_refused() -> None:
     scene = shipped("square", 100)
     for change, where in (

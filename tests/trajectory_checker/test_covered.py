@@ -17,6 +17,7 @@ from cellcolor.trajectory_checker.covered import patches, reach
 from cellcolor.trajectory_checker.dense import Dense
 from cellcolor.trajectory_checker.fine_mesh import FineMesh, refined
 from cellcolor.trajectory_checker.repeated import passes, repeated_stretches
+from cellcolor.trajectory_checker.strips import Strips
 from examples import examples
 
 
@@ -100,8 +101,8 @@ def test_the_back_of_a_sheet_is_far_from_its_front() -> None:
     assert np.all(np.isfinite(found.distance[below & (way < 0.0145)]))
     # Two edges are taken for one straight way, across the rim as well.
     assert np.all(np.isinf(found.distance[below & (way > 0.017)]))
-    visits = passes(dense_along(points), np.arange(len(points)), mesh.locate(points, up(points)),
-                    mesh, 0.005)  # fmt: skip
+    located, rows = mesh.locate(points, up(points)), np.arange(len(points))
+    visits = passes(dense_along(points), rows, 0 * rows, located, mesh, 0.005).sum(axis=1)
     assert not visits[below & (x < 0.097)].any()
 
 
@@ -109,7 +110,8 @@ def visits_on_flat(points: Array, strokes: Array | None = None) -> tuple[Array, 
     mesh = fine(FLAT)
     rows = np.arange(len(points))
     located = mesh.locate(points, up(points))
-    return mesh.vertices, passes(dense_along(points, strokes), rows, located, mesh, 0.005)
+    visits = passes(dense_along(points, strokes), rows, 0 * rows, located, mesh, 0.005)
+    return mesh.vertices, visits.sum(axis=1)
 
 
 def test_passes_are_counted() -> None:
@@ -149,8 +151,9 @@ def test_repeated_stretches(begin: float, length: float, off: float) -> None:
     stroke = np.repeat([0, 1], [len(first), len(second)])
     mesh = fine(FLAT)
     located = mesh.locate(points, up(points))
-    found = repeated_stretches(dense_along(points, stroke), np.arange(len(points)), located,
-                               0.0025, 0.02)  # fmt: skip
+    rows = np.arange(len(points))
+    none = np.full(len(points), -1)
+    found = repeated_stretches(dense_along(points, stroke), rows, located, none, 0.0025, 0.02)
     if off > 0.0025:
         assert found == []
         return
@@ -165,9 +168,47 @@ def test_crossing_an_earlier_pass_is_no_repetition() -> None:
     points = along((0.0, 0.03), (0.1, 0.03), (0.1, 0.05), (0.05, 0.05), (0.05, 0.0))
     mesh = fine(FLAT)
     located = mesh.locate(points, up(points))
-    assert not repeated_stretches(
-        dense_along(points), np.arange(len(points)), located, 0.0025, 0.02
+    rows, none = np.arange(len(points)), np.full(len(points), -1)
+    assert not repeated_stretches(dense_along(points), rows, located, none, 0.0025, 0.02)
+
+
+@examples(20)
+@given(border=st.floats(0.03, 0.06), overlap=st.floats(0.004, 0.03), twice=st.booleans())
+def test_segments_may_overlap_in_a_strip_beside_what_is_theirs_alone(
+    border: float, overlap: float, twice: bool
+) -> None:
+    """Lines 10 mm apart on both sides of a border, or by the second segment everywhere."""
+    mesh, spacing = fine(FLAT), 0.01
+    left = np.arange(border + overlap / 2, 0.0, -spacing)
+    right = np.arange(0.0013 if twice else border - overlap / 2, 0.1, spacing)
+    lines = [along((x, 0.0), (x, 0.06)) for x in (*left, *right)]
+    points, segment = np.concatenate(lines), np.repeat([0, 1], [len(left), len(right)])
+    stroke = np.repeat(np.arange(len(lines)), [len(line) for line in lines])
+    segment, rows, located = (
+        segment[stroke],
+        np.arange(len(points)),
+        mesh.locate(points, up(points)),
     )
+    dense = dense_along(points, stroke)
+    visits = passes(dense, rows, segment, located, mesh, spacing / 2)
+    strips = Strips.of(mesh, visits, overlap + 1.25 * spacing)
+    counted, x = strips.counted(mesh, visits), mesh.vertices[:, 0]
+    within = np.abs(mesh.vertices[:, 1] - 0.03) < 0.02
+
+    def by(places: np.ndarray) -> np.ndarray:
+        return (np.abs(x[:, None] - places) <= spacing / 2).sum(axis=1)
+
+    shared = (by(left) > 0) & (by(right) > 0)
+    single, double = np.maximum(by(left), by(right)), by(left) + by(right)
+    # Where both come everywhere, the first has nothing alone, so all of it counts twice.
+    wanted = np.where(shared & twice, double, single)
+    sure = within & (np.abs(np.abs(x[:, None] - [*left, *right]) - spacing / 2) > 1e-3).all(axis=1)
+    assert np.array_equal(counted[sure], wanted[sure])
+    strip = np.where(strips.near(located.points, segment), segment, -1)
+    assert (strip[segment == 0] == (-1 if twice else 0)).all()
+    if not twice:
+        found = repeated_stretches(dense, rows, located, strip, 0.0025, 0.02)
+        assert found == []
 
 
 def test_what_stays_in_one_place_is_refused() -> None:
@@ -176,7 +217,8 @@ def test_what_stays_in_one_place_is_refused() -> None:
     points = np.column_stack([random.uniform(0.05, 0.051, (10_000, 2)), np.zeros(10_000)])
     located, rows = fine(FLAT).locate(points, up(points)), np.arange(len(points))
     with pytest.raises(TooLarge, match="too often to be measured"):
-        repeated_stretches(dense_along(points), rows, located, 0.0025, 0.02)
+        none = np.full(len(points), -1)
+        repeated_stretches(dense_along(points), rows, located, none, 0.0025, 0.02)
 
 
 def test_patches_are_the_parts_and_their_areas() -> None:
