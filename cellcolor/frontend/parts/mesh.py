@@ -11,7 +11,7 @@ import trimesh
 from numpy.typing import NDArray
 from pydantic import PlainValidator, model_serializer
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
 from cellcolor.data.wording import in_meters
 from cellcolor.deadline import NEVER, Deadline
@@ -81,10 +81,13 @@ def mesh_surface(
         corners = vertices[faces]
         if np.einsum("ij,ij->", corners[:, 0], np.cross(corners[:, 1], corners[:, 2])) < 0:
             raise InputError(None, "faces", "closed mesh inside out: its volume is negative")
+    divided: tuple[TriangleMesh, Index] | None = None
     if max_edge_m is not None:
         size = in_meters((np.ptp(vertices, axis=0) * meters_per_unit).tolist(), " x ")
         try:
-            mesh = refine(mesh, max_edge_m / meters_per_unit, deadline)
+            whole = TriangleMesh(mesh.points * meters_per_unit, mesh.corners)
+            mesh, lies_in = refine(mesh, max_edge_m / meters_per_unit, deadline)
+            divided = whole, lies_in
         except InputError as error:
             message = f"the part is {size}: {error.message}"
             raise InputError(error.file, error.field, message) from error
@@ -95,7 +98,8 @@ def mesh_surface(
         vertex = np.argmin(size)
         raise InputError(None, f"vertices[{vertex}]", "has no normal: its faces cancel out")
     normals /= size
-    return Surface(mesh.points * meters_per_unit, mesh.corners, normals, faceted=True)
+    points = mesh.points * meters_per_unit
+    return Surface(points, mesh.corners, normals, faceted=True, divided=divided)
 
 
 def check_corners(vertices: Array, faces: Faces) -> None:

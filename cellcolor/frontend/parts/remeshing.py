@@ -95,7 +95,7 @@ def remeshed(
         raise ModuleNotFoundError("No module named 'gpytoolbox'", name="gpytoolbox")
     if mesh.lengths[mesh.triangles_at == 1].max(initial=0.0) > _LONGEST * length:
         try:
-            mesh = refine(mesh, _LONGEST * length, deadline)
+            mesh, _ = refine(mesh, _LONGEST * length, deadline)
         except InputError as error:
             raise InputError(None, "edge_length_m", error.message) from error
     vertices, faces = mesh.points, mesh.corners

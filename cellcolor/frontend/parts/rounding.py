@@ -19,6 +19,7 @@ from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.parts.surface import SHARP, Surface
 from cellcolor.frontend.sizes import check_rounding
 from cellcolor.memory import at_once
+from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 _ROWS = 1000  # vertices that are rounded together
 _AROUND = 640  # bytes that a face takes for each vertex that it is around
@@ -42,9 +43,9 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
     if not radius:
         return surface
     around = _Around.of(surface)
-    asked = np.flatnonzero((around.rims() < radius) & around.is_bent(radius))
-    size = float(surface.mesh.areas.mean())
-    check_rounding(len(asked), min(np.pi * radius**2 / size, len(surface.faces)))
+    asked = np.flatnonzero((_rims(surface) < radius) & around.is_bent(radius))
+    size = float(around.mesh.areas.mean())
+    check_rounding(len(asked), min(np.pi * radius**2 / size, len(around.mesh.corners)))
     normals = shared(surface.normals.shape, np.float64)
     normals[:] = surface.normals
 
@@ -60,7 +61,7 @@ def rounded(surface: Surface, radius: float, deadline: Deadline = NEVER) -> Surf
                 normals[rows] = found
 
     share_out(work, -(-len(asked) // _ROWS))
-    return replace(surface, normals=np.array(normals))
+    return replace(surface, normals=np.array(normals), divided=None)
 
 
 def longest_beside_sharp(surface: Surface) -> float:
@@ -77,40 +78,50 @@ def longest_beside_sharp(surface: Surface) -> float:
     return float(mesh.lengths[beside].max(initial=0.0))
 
 
+def _rims(surface: Surface) -> Array:
+    """How near to each vertex (n,) the far side of one of its faces is."""
+    points, faces = surface.vertices, surface.faces
+    rims = np.full(len(points), np.inf)
+    for corner in range(3):
+        a, b, c = (faces[:, (corner + k) % 3] for k in range(3))
+        np.minimum.at(rims, a, _distance(points[a], points[b], points[c]))
+    return rims
+
+
 @dataclass(frozen=True)
 class _Around:
-    """A surface, and what is beside its faces.
+    """The vertices of a surface on its mesh before edges were halved, and what is beside its faces.
+
+    Halving an edge divides a face into triangles of one plane, so what counts are the whole faces.
 
     Attributes:
-        unit: (m, 3) unit normals of the faces.
+        points: (n, 3) the vertices, m.
+        own: (p, 2) each vertex with each face of the mesh that it lies in, in order.
+        mesh: the whole faces.
         beside: (m, 3) the face across each side ab, bc, ca; -1 at the border.
     """
 
-    surface: Surface
-    unit: Array
+    points: Array
+    own: Index
+    mesh: TriangleMesh
     beside: Index
 
     @classmethod
     def of(cls, surface: Surface) -> _Around:
-        _, sides = surface.mesh.pairs
-        beside = np.full(surface.faces.size, -1, dtype=np.int64)
+        mesh, lies_in = surface.divided or (surface.mesh, np.arange(len(surface.faces)))
+        count = len(mesh.corners)
+        own = np.unique(surface.faces * count + lies_in[:, None])
+        _, sides = mesh.pairs
+        beside = np.full(3 * count, -1, dtype=np.int64)
         beside[sides[:, 0]], beside[sides[:, 1]] = sides[:, 1] // 3, sides[:, 0] // 3
-        return cls(surface, surface.mesh.triangle_normals, beside.reshape(-1, 3))
-
-    def rims(self) -> Array:
-        """How near to each vertex (n,) the far side of one of its faces is."""
-        points, faces = self.surface.vertices, self.surface.faces
-        rims = np.full(len(points), np.inf)
-        for corner in range(3):
-            a, b, c = (faces[:, (corner + k) % 3] for k in range(3))
-            np.minimum.at(rims, a, _distance(points[a], points[b], points[c]))
-        return rims
+        pairs = np.column_stack(np.divmod(own, count))
+        return cls(surface.vertices, pairs, mesh, beside.reshape(-1, 3))
 
     def is_bent(self, radius: float) -> Mask:
         """Which vertices (n,) may have another plane than their own faces' within a radius."""
-        mesh = self.surface.mesh
+        mesh, unit = self.mesh, self.mesh.triangle_normals
         edges, sides = mesh.pairs
-        chord = self.unit[sides[:, 0] // 3] - self.unit[sides[:, 1] // 3]
+        chord = unit[sides[:, 0] // 3] - unit[sides[:, 1] // 3]
         ends = mesh.points[mesh.edges[edges[np.linalg.norm(chord, axis=1) > _BENT]]]
         # Points on the edges, none of them farther than half the radius from the next.
         steps = np.ceil(np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1) / radius * 2).astype(int)
@@ -118,8 +129,8 @@ class _Around:
         at = (step / steps[edge])[:, None]
         points = (1 - at) * ends[edge, 0] + at * ends[edge, 1]
         if not len(points):
-            return np.zeros(len(self.surface.vertices), dtype=bool)
-        return np.asarray(cKDTree(points).query(self.surface.vertices)[0] < 1.25 * radius)
+            return np.zeros(len(self.points), dtype=bool)
+        return np.asarray(cKDTree(points).query(self.points)[0] < 1.25 * radius)
 
     def means(self, rows: Index, radius: float) -> Array | None:
         """Unit normals (k, 3) at some vertices, rounded over a radius; None: they are too many."""
@@ -127,12 +138,11 @@ class _Around:
         if reached is None:
             return None
         which, face, ball = reached
-        points, corners = self.surface.vertices, self.surface.faces[face]
-        weights = _weights(
-            points[corners] - points[rows[which]][:, None], self.unit[face], ball, radius
-        )
+        corners = self.mesh.points[self.mesh.corners[face]] - self.points[rows[which]][:, None]
+        normals = self.mesh.triangle_normals[face]
+        weights = _weights(corners, normals, ball, radius)
         sums = np.zeros((len(rows), 3))
-        np.add.at(sums, which, weights[:, None] * self.unit[face])
+        np.add.at(sums, which, weights[:, None] * normals)
         return unit(sums)
 
     def _reached(self, rows: Index, radius: float) -> tuple[Index, Index, Array] | None:
@@ -142,44 +152,45 @@ class _Around:
             Numbers (p,) of rows, a face of each, and the radius of the smallest ball in which they
             are connected; 0 of a vertex's own faces. None if that is too much.
         """
-        faces, points, count = self.surface.faces, self.surface.vertices, len(self.surface.faces)
-        place = np.full(len(points), -1, dtype=np.int64)
-        place[rows] = np.arange(len(rows))
-        face, corner = np.nonzero(place[faces] >= 0)
-        known = np.sort(place[faces[face, corner]] * count + face)
-        ball = np.zeros(len(known))
-        new, its_ball = known, ball
-        while len(new):
-            which, face = np.divmod(new, count)
+        faces, points, count = self.mesh.corners, self.mesh.points, len(self.mesh.corners)
+        begin, end = (np.searchsorted(self.own[:, 0], rows, side) for side in ("left", "right"))
+        which, number = numbered(end - begin)
+        face = self.own[begin[which] + number, 1]
+        known = which * count + face
+        ball = its_ball = np.zeros(len(known))
+        while len(which):
+            at_points, corners = self.points[rows[which]], faces[face]
+            sides = [points[corners[:, side]] for side in (0, 1, 2, 0)]
             pairs = []
             for side in range(3):
                 across = self.beside[face, side]
-                a, b = faces[face, side], faces[face, (side + 1) % 3]
-                least = np.maximum(its_ball, _distance(points[rows[which]], points[a], points[b]))
+                least = np.maximum(its_ball, _distance(at_points, *sides[side : side + 2]))
                 going = (across >= 0) & (least < radius)
-                pairs.append((which[going] * count + across[going], least[going]))
-            new, its_ball = _least(*map(np.concatenate, zip(*pairs, strict=True)))
+                pairs.append((which[going], across[going], least[going]))
+            which, face, its_ball = map(np.concatenate, zip(*pairs, strict=True))
+            new, first, its_ball = _least(which * count + face, its_ball)
+            which, face = which[first], face[first]
             at = np.minimum(np.searchsorted(known, new), len(known) - 1)
             there = known[at] == new
             better = ~there | (its_ball < ball[at] - _SAME * radius)
             ball[at[there & better]] = its_ball[there & better]
-            unknown = ~there
-            known = np.concatenate([known, new[unknown]])
-            order = np.argsort(known, kind="stable")
-            known, ball = known[order], np.concatenate([ball, its_ball[unknown]])[order]
-            new, its_ball = new[better], its_ball[better]
+            at = np.searchsorted(known, new[~there])
+            known, ball = np.insert(known, at, new[~there]), np.insert(ball, at, its_ball[~there])
+            which, face, its_ball = which[better], face[better], its_ball[better]
             if len(known) > at_once(_AROUND) and len(rows) > 1:
                 return None
         which, face = np.divmod(known, count)
         return which, face, ball
 
 
-def _least(keys: Index, values: Array) -> tuple[Index, Array]:
-    """Each key once, in order, with its least value."""
-    order = np.lexsort((values, keys))
-    keys, values = keys[order], values[order]
-    first = np.diff(keys, prepend=-1) > 0
-    return keys[first], values[first]
+def _least(keys: Index, values: Array) -> tuple[Index, Index, Array]:
+    """Each key once, in order, with a place where it stands, and its least value."""
+    if not len(keys):
+        return keys, keys, values
+    order = np.argsort(keys)
+    begins = np.flatnonzero(np.diff(keys[order], prepend=-1) > 0)
+    first = order[begins]
+    return keys[first], first, np.minimum.reduceat(values[order], begins)
 
 
 def _distance(points: Array, a: Array, b: Array) -> Array:
@@ -199,14 +210,40 @@ def _weights(corners: Array, unit: Array, ball: Array, radius: float) -> Array:
     """
     height = np.einsum("ij,ij->i", corners[:, 0], unit)
     flat = corners - height[:, None, None] * unit[:, None]
+    farthest, nearest = _extent(flat, unit)
 
     def within(reach: Array) -> tuple[Array, Array]:
-        return _disc(flat, unit, np.sqrt(np.maximum(reach**2 - height**2, 0.0)))
+        """Area and second moment of what is nearer; most triangles are near or far as a whole."""
+        size = np.sqrt(np.maximum(reach**2 - height**2, 0.0))
+        found = np.where(farthest <= size, _moments(flat, unit), 0.0)
+        cut = np.flatnonzero((farthest > size) & (nearest < size))
+        found[:, cut] = _disc(flat[cut], unit[cut], size[cut])
+        return found[0], found[1]
 
     area, second = within(np.full(len(ball), radius))
     whole = area - (height**2 * area + second) / radius**2
     area, second = within(ball)
     return np.asarray(whole - (ball**2 * area - height**2 * area - second) / radius**2)
+
+
+def _extent(corners: Array, unit: Array) -> tuple[Array, Array]:
+    """How far the farthest and the nearest point of triangles (p, 3, 3) are from the origin."""
+    origin = np.zeros((len(corners), 3))
+    nearest, inside = np.full(len(corners), np.inf), np.ones(len(corners), dtype=bool)
+    for side in range(3):
+        a, b = corners[:, side], corners[:, (side + 1) % 3]
+        nearest = np.minimum(nearest, _distance(origin, a, b))
+        inside &= _cross(a, b, unit) > 0
+    return np.linalg.norm(corners, axis=2).max(axis=1), np.where(inside, 0.0, nearest)
+
+
+def _moments(corners: Array, unit: Array) -> Array:
+    """Area of triangles, and the integral of the squared distance from the origin, (2, p)."""
+    a, b, c = corners.swapaxes(0, 1)
+    area = _cross(b - a, c - a, unit) / 2
+    squares = np.einsum("pij,pij->p", corners, corners)
+    total = corners.sum(axis=1)
+    return np.stack([area, area / 12 * (squares + np.einsum("ij,ij->i", total, total))])
 
 
 def _disc(corners: Array, unit: Array, size: Array) -> tuple[Array, Array]:
@@ -224,7 +261,8 @@ def _disc(corners: Array, unit: Array, size: Array) -> tuple[Array, Array]:
         under = half**2 - (np.einsum("ij,ij->i", a, a) - size**2) / square
         root = np.sqrt(np.maximum(under, 0.0))
         enter, leave = np.clip(-half - root, 0.0, 1.0), np.clip(-half + root, 0.0, 1.0)
-        p, q = a + enter[:, None] * way, a + leave[:, None] * way
+        # Where a side ends inside, no rounding may make an angle out of its end.
+        p, q = a + enter[:, None] * way, np.where(leave[:, None] < 1, a + leave[:, None] * way, b)
         for u, v in ((a, p), (q, b)):
             angle = np.arctan2(_cross(u, v, unit), np.einsum("ij,ij->i", u, v))
             area += size**2 * angle / 2

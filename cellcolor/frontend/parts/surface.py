@@ -30,12 +30,15 @@ class Surface:
         faces: (m, 3) vertices of each triangle.
         normals: (n, 3) at the vertices.
         faceted: whether the normals are means of face normals; else a smooth shape's own.
+        divided: the mesh before its edges were halved, m, and in which of its triangles each face
+            lies (m,); None if none were.
     """
 
     vertices: Array
     faces: Faces
     normals: Array
     faceted: bool = False
+    divided: tuple[TriangleMesh, Index] | None = None
 
     def placed(self, placement: Placement) -> Surface:
         """The same surface in the world."""
@@ -90,23 +93,30 @@ def along_edges(surface: Surface, edges: Index, way: Array) -> tuple[Array, Arra
     return points, -normals
 
 
-def refine(mesh: TriangleMesh, longest: float, deadline: Deadline = NEVER) -> TriangleMesh:
+def refine(
+    mesh: TriangleMesh, longest: float, deadline: Deadline = NEVER
+) -> tuple[TriangleMesh, Index]:
     """Halve edges until none is longer than ``longest``, in the unit of the mesh.
 
     The surface stays the same and the mesh conforming, since an edge is halved for both its
     faces. The given points come first.
 
+    Returns:
+        The finer mesh, and in which triangle of the given one each of its triangles lies.
+
     Raises:
         InputError: there would be too many vertices; that is checked in advance.
     """
     check_refinement(len(mesh.points), mesh.lengths, float(mesh.areas.sum()), longest)
+    lies_in = np.arange(len(mesh.corners))
     while True:
         deadline.check()
         marked = mesh.lengths > longest
         if not marked.any():
-            return mesh
+            return mesh, lies_in
         check_vertices(len(mesh.points) + int(marked.sum()), "max_edge_m")
-        mesh, _ = halved(mesh, marked)
+        mesh, of = halved(mesh, marked)
+        lies_in = lies_in[of]
 
 
 def bisected(surface: Surface, marked: Mask, field: str) -> Surface:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -57,6 +58,22 @@ def test_the_mean_around_a_vertex(seed: int, radius: float) -> None:
     assert np.linalg.norm(made.normals, axis=1) == pytest.approx(1.0)
 
 
+def test_a_triangle_inside_a_disc_counts_whole_whatever_rounding_leaves_of_its_corner() -> None:
+    """Triangles with a corner in the origin, all but for the last digit."""
+    rng = np.random.default_rng(0)
+    length, tilt, wide = rng.uniform([0.1, -1.5, 0.1], [1.0, 1.5, 1.0], (5000, 3)).T
+    far = length[:, None] * np.column_stack([0 * tilt, -np.cos(tilt), np.sin(tilt)])
+    side = far / 2 + wide[:, None] * [1.0, 0.0, 0.0]
+    corners = np.stack([side, far, 0 * far], axis=1)
+    normals = np.cross(far - side, -side)
+    areas = np.linalg.norm(normals, axis=1) / 2
+    normals = normals / (2 * areas[:, None]) + 3e-15 * rng.normal(size=far.shape)
+    height = np.einsum("ij,ij->i", side, normals) + 1e-17 * rng.normal(size=len(side))
+    flat = corners - height[:, None, None] * normals[:, None]
+    area, _ = rounding._disc(flat, normals, np.full(len(flat), 20.0))
+    assert area == pytest.approx(areas, abs=1e-9)
+
+
 @settings(max_examples=8, deadline=None)
 @given(st.integers(0, 10_000), st.floats(0.2, 0.9))
 def test_triangles_have_no_part_in_it(seed: int, radius: float) -> None:
@@ -72,6 +89,22 @@ def test_triangles_have_no_part_in_it(seed: int, radius: float) -> None:
 
 def surface_of_arrays(surface: Surface) -> Surface:
     return mesh_surface(surface.vertices, surface.faces)
+
+
+@settings(max_examples=8, deadline=None)
+@given(st.integers(0, 10_000), st.floats(0.1, 0.4), st.floats(0.15, 0.5))
+def test_halving_edges_changes_nothing(seed: int, radius: float, longest: float) -> None:
+    """The whole faces are looked at in place of their triangles: the same means."""
+    rng = np.random.default_rng(seed)
+    hull = trimesh.convex.convex_hull(rng.normal(size=(20, 3)))
+    box = trimesh.creation.box((1.0, 1.5, 0.02))  # both sides of a thin wall
+    mesh = (hull, box)[seed % 2]
+    fine = mesh_surface(
+        np.array(mesh.vertices), np.array(mesh.faces, dtype=np.int64), max_edge_m=longest
+    )
+    assert fine.divided is not None
+    by_triangles = rounded(replace(fine, divided=None), radius)
+    assert rounded(fine, radius).normals == pytest.approx(by_triangles.normals, abs=1e-9)
 
 
 def test_beside_an_edge_of_ninety_degrees() -> None:
