@@ -15,6 +15,7 @@ from cellcolor.arrays import Array, Index, Mask
 from cellcolor.memory import chunks
 from cellcolor.mesh.triangle_mesh import grouped
 
+_OUTSIDE = 1e-9  # of its size; so far before a plane a point is not behind it
 _PAIR = 256  # bytes that a point and a face take
 
 
@@ -49,6 +50,14 @@ class Polyhedron:
         """(parts, 3) a vertex of each of its parts that do not hang together, m."""
         return one_of_each_part(self.vertices, self.faces)
 
+    @cached_property
+    def _planes(self) -> Array:
+        """(s, 4) unit normals and offsets of planes that it is behind; none if it lies in one."""
+        try:
+            return np.unique(ConvexHull(self.vertices).equations, axis=0)
+        except (QhullError, ValueError):
+            return np.empty((0, 4))
+
     def contains(self, points: Array) -> Mask:
         """Whether points (k, 3) are inside, (k,), by how often the faces go round them.
 
@@ -59,6 +68,13 @@ class Polyhedron:
         """
         low, high = self.vertices.min(axis=0), self.vertices.max(axis=0)
         near = np.flatnonzero(((points >= low) & (points <= high)).all(axis=1))
+        # From outside the convex hull, all faces are in one half of what is seen.
+        normals, offsets = self._planes[:, :3], self._planes[:, 3]
+        slack = _OUTSIDE * float((high - low).max(initial=0.0))
+        for some in chunks(len(near), 16 * len(offsets) + 16):
+            ahead = np.einsum("ij,kj->ik", points[near[some]], normals) + offsets
+            near[some] = np.where((ahead <= slack).all(axis=1), near[some], -1)
+        near = near[near >= 0]
         corners = self.vertices[self.faces]
         turns = np.zeros(len(near))
         for some, part in product(

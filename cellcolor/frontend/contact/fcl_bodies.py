@@ -15,6 +15,7 @@ from cellcolor.frontend.arm.polyhedron import Polyhedron
 
 _AHEAD = 64  # places that are looked at together
 _SURE = 0.99  # of a distance, for rounding
+_WHETHER = fcl.CollisionRequest()  # nothing else is asked for
 _MODELS: WeakKeyDictionary[Polyhedron, fcl.BVHModel] = WeakKeyDictionary()
 
 
@@ -96,17 +97,19 @@ def bodies_touch(first: Body, at: Placed, second: Body, second_at: Placed) -> Ma
     shapes = [body_shape(body, skin if body.solid is None else 0.0) for body in (first, second)]
     a, b = (fcl.CollisionObject(shape, fcl.Transform()) for shape in shapes)
     hit = np.zeros(len(at[1]), dtype=bool)
+    # Seen from the first body, so that only the second one has to be placed.
+    back = at[0].transpose(0, 2, 1)
+    turns, off = back @ second_at[0], back @ (second_at[1] - at[1])[:, :, None]
 
     def place(row: int) -> None:
-        a.setTransform(fcl.Transform(at[0][row], at[1][row]))
-        b.setTransform(fcl.Transform(second_at[0][row], second_at[1][row]))
+        b.setTransform(fcl.Transform(turns[row], off[row, :, 0]))
 
     if curved or not skin:
         for row in range(len(hit)):
             place(row)
             hit[row] = _touch(a, b, 0.0)
     else:
-        moved, row = _Moved(second, at, second_at), 0
+        moved, row = _Moved(second, turns, off[:, :, 0]), 0
         while row < len(hit):
             place(row)
             spare = _distance(a, b) - skin
@@ -128,14 +131,13 @@ class _Moved:
     away cannot touch.
     """
 
-    def __init__(self, second: Body, at: Placed, second_at: Placed) -> None:
+    def __init__(self, second: Body, turns: Array, origins: Array) -> None:
+        """The places (n, 3, 3) and (n, 3) of the second one are seen from the first."""
         assert second.solid is not None
         middle = second.solid.vertices.mean(axis=0)
         self._radius = float(np.linalg.norm(second.solid.vertices - middle, axis=1).max())
-        back = at[0].transpose(0, 2, 1)
-        self._turns = back @ second_at[0]
-        off = second_at[0] @ middle + second_at[1] - at[1]
-        self._middles = (back @ off[:, :, None])[:, :, 0]
+        self._turns = turns
+        self._middles = turns @ middle + origins
 
     def first_as_far(self, row: int, spare: float) -> int:
         """The next place after a row where the second solid may have come so much nearer, m.
@@ -159,12 +161,12 @@ class _Moved:
 def _touch(a: fcl.CollisionObject, b: fcl.CollisionObject, skin: float) -> bool:
     if skin:
         return _distance(a, b) < skin
-    return bool(fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()))
+    return bool(fcl.collide(a, b, _WHETHER, fcl.CollisionResult()))
 
 
 def _distance(a: fcl.CollisionObject, b: fcl.CollisionObject) -> float:
     """How far two shapes are from each other, m; 0 if they touch."""
-    if fcl.collide(a, b, fcl.CollisionRequest(), fcl.CollisionResult()):
+    if _touch(a, b, 0.0):
         return 0.0
     return float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult()))
 
