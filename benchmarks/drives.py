@@ -2,7 +2,8 @@
 
 Cases are numbers from 0 on: first the shipped scenes, then scenes that are drawn at random with a
 fixed seed, of shipped arms and of the URDFs in a folder (those of ros-industrial, expanded from
-xacro, for example). A line of JSON is printed for each, and a table by cause at the end.
+xacro, for example), and of the parts below and the OBJ meshes in a folder. A line of JSON is
+printed for each, and a table by cause at the end.
 docs/measured/motions.md has what came out.
 """
 
@@ -33,8 +34,8 @@ SHIPPED = [
 SEED, DRAWN = 24, 90
 
 
-def parts() -> dict[str, trimesh.Trimesh]:
-    """Parts of about 0.2 m, sharp, thin, closed and open ones."""
+def parts(folder: Path | None) -> dict[str, trimesh.Trimesh]:
+    """Parts of about 0.2 m, sharp, thin, closed and open ones, and those of a folder."""
     hull = np.random.default_rng(SEED).normal(size=(14, 3))
     wedge = np.array([[x, y, z * (1.5 - x)] for x in (0, 1) for y in (0, 1) for z in (0, 1)])
     found = {
@@ -54,17 +55,20 @@ def parts() -> dict[str, trimesh.Trimesh]:
     shipped = ("bracket", "blend", "saddle", "perforated_sheet")
     for name in shipped:
         found[name] = trimesh.load_mesh(ROOT / "instances" / "parts" / f"{name}.obj")
+    for file in sorted(folder.glob("*.obj")) if folder else []:
+        found[file.stem] = trimesh.load_mesh(file)
     for mesh in found.values():
         mesh.apply_translation(-mesh.bounds.mean(axis=0))
         mesh.apply_scale(0.2 / mesh.extents.max())
     return found
 
 
-def drawn(number: int, arms: list[Path], folder: Path) -> tuple[Path, str]:
+def drawn(
+    number: int, arms: list[Path], every: dict[str, trimesh.Trimesh], seed: int, folder: Path
+) -> tuple[Path, str]:
     """A scene that is drawn, and what it is of: an arm, a part, and where that stands."""
-    rng = np.random.default_rng([SEED, number])
+    rng = np.random.default_rng([seed, number])
     arm = arms[number % len(arms)]
-    every = parts()
     name = str(rng.choice(sorted(every)))
     part = folder / f"{name.replace(' ', '_')}.obj"
     every[name].export(part)
@@ -84,6 +88,7 @@ def drawn(number: int, arms: list[Path], folder: Path) -> tuple[Path, str]:
     scene.write_text(
         f'name = "{arm.stem} {name} {number}"\nsetup = "{began.name}/setup.toml"\n'
         f'[object]\nkind = "mesh"\nfile = "{part.name}"\nmeters_per_unit = {scale:.3f}\n'
+        "repair = true\n"
         f"max_edge_m = {0.02 * scale:.4f}\n[placement]\n"
         f"position_m = {[round(float(v), 3) for v in place]}\n"
         f"rpy_rad = {[round(float(v), 3) for v in (*tilt, rng.uniform(-3.1, 3.1))]}\n"
@@ -95,7 +100,9 @@ def drawn(number: int, arms: list[Path], folder: Path) -> tuple[Path, str]:
 REACH = {
     "irb2400": 1.5, "irb4400l_30_243": 2.2, "m10ia": 1.3, "lrmate200id": 0.75, "gp7": 0.9,
     "gp12": 1.35, "kr10r1100sixx": 1.0, "kr5_arc": 1.3, "kr16_2": 1.5, "kr6": 0.9,
-    "ur5e": 0.85, "irb120": 0.6, "tx2_60": 0.65,
+    "ur5e": 0.85, "irb120": 0.6, "tx2_60": 0.65, "cr7ia": 0.7, "gp25": 1.7, "gp8": 0.72,
+    "hc10": 1.2, "kr3r540": 0.54, "kr6r900sixx": 0.9, "lrmate200ic": 0.7, "m20ia": 1.8,
+    "mh12": 1.44,
 }  # fmt: skip
 """Metres, of the arms that scenes were drawn for; 0.9 for others."""
 
@@ -148,11 +155,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("case", type=int, nargs="*", help="numbers; all without")
     parser.add_argument("--arms", type=Path, help="folder of URDFs besides the shipped arms")
+    parser.add_argument("--parts", type=Path, help="folder of OBJ meshes besides the parts here")
+    parser.add_argument("--seed", type=int, default=SEED)
     parser.add_argument("--folder", type=Path, help="where scenes are kept; temporary without")
     parser.add_argument("--time-limit", type=float, default=120.0, metavar="S")
     asked = parser.parse_args()
     arms = [ROOT / "models" / "robots" / f"{name}.urdf" for name in SHIPPED_ARMS]
     arms += sorted(asked.arms.glob("*.urdf")) if asked.arms else []
+    every = parts(asked.parts)
     causes: Counter[tuple[str, str | None]] = Counter()
     with tempfile.TemporaryDirectory() as temporary:
         folder = asked.folder or Path(temporary)
@@ -162,8 +172,9 @@ def main() -> None:
             if number < len(SHIPPED):
                 scene = name = SHIPPED[number]
             else:
-                scene, name = drawn(number - len(SHIPPED), arms, folder)
-            found = {"case": number, "of": name} | outcome(scene, asked.time_limit)
+                scene, name = drawn(number - len(SHIPPED), arms, every, asked.seed, folder)
+            found: dict[str, Any] = {"case": number, "of": name}
+            found |= outcome(scene, asked.time_limit)
             causes[found["ends"], found["cause"]] += 1
             print(json.dumps(found), flush=True)
     for (ends, cause), times in causes.most_common():
