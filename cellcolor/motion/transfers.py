@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index
+from cellcolor.arrays import Array, Index, Mask
 from cellcolor.deadline import Deadline
+from cellcolor.frontend.arm.body import Body
 from cellcolor.frontend.arm.kinematics import forward
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.setup import Motion
@@ -32,6 +33,8 @@ _BLOCKED = 10.0  # s; added to the time of a move for which no simple way is kno
 _DEEP = 60.0  # s; and by so much, times the share of it that is not free
 _LONGER = 10.0  # times the time of a straight move that is blocked; so few turns are preferred
 _ROOM = 0.999  # of the largest steps, for rounding
+_LEAVING = 0.0025  # m; for so long the tip of a tool that leaves may be near; the judge has 3 mm
+_TIP = Body("tool tip", 0, np.zeros(3), np.zeros(3), 0.0011, False)  # as near; the judge has 1 mm
 _DIGITS = 9  # of joints in rad or m, by which moves are told apart
 
 
@@ -250,8 +253,20 @@ class Transfers:
         found = found[: count if solved.all() else int(np.argmin(solved))]
         way = joints + self._space.unwrap(np.concatenate([joints[None], found]) - joints)
         steady = self._space.largest(np.diff(way, axis=0)) <= _FASTER
-        fine = np.append(steady & self._leaving.clear(way[1:]), False)
+        fine = steady & self._leaving.clear(way[1:]) & ~self._drags(points[: len(found)])
+        fine = np.append(fine, False)
         return self._cut(way[: int(np.argmin(fine)) + 1])
+
+    def _drags(self, tips: Array) -> Mask:
+        """Whether the tip (k, 3) is at the object again, or still, after it has left the contact.
+
+        A tilted retreat may lead along a hollow.
+        """
+        left = np.flatnonzero(DISTANCE * _ROOM * np.arange(1, len(tips) + 1) > _LEAVING)
+        drags = np.zeros(len(tips), dtype=bool)
+        ends = np.stack([tips[left], tips[left]])
+        drags[left] = self._prepared.workplace.target.touched_by(_TIP, ends)
+        return drags
 
     def _cut(self, way: Array) -> Array:
         """A retreat up to its last place with the whole clearance, or else with the most of it."""
