@@ -89,7 +89,7 @@ def _documents(rows: Iterable[Any]) -> Iterable[dict[str, Any]]:
 @click.option(
     "--weights",
     metavar="FILE.json",
-    help="A JSON file with one number for each vertex; the vertex's area is multiplied by it.",
+    help='A JSON file, {"weights": […]} with a number for each vertex, by which its area counts.',
 )
 @REQUIRED
 @LEFT_ALONE

@@ -67,8 +67,8 @@ def place(
         roll, pitch, yaw: the same of its angles (extrinsic x, y, z), rad.
         cover: the share of the whole surface that has to be covered, 0 to 1; None for as much as
             where the part stands, and for any share if ``uncovered_price`` is given.
-        points: placements that are tried all over the ranges; about three quarters as many are
-            tried around the best of them.
+        points: placements that are tried all over the ranges; about three quarters as many, 15 at
+            least, are tried around the best of them.
         best: how many are proved on the scene's own mesh and listed.
         vertices: about how many the coarse mesh has on which placements are tried.
         base: move the arm's base instead of the part, upright; its ranges are those of the base in
@@ -113,6 +113,7 @@ def place(
             check_ranges,
             coarse_scene,
             distance,
+            is_inside,
             middles,
             pose_of,
             spread,
@@ -133,9 +134,10 @@ def place(
     complete = True
 
     def best_of(found: Sequence[PlacedMinimum], count: int, enough: float) -> list[PlacedMinimum]:
-        """The best ones, none of them next to a better one."""
+        """The best ones in the ranges, none of them next to a better one."""
         chosen: list[PlacedMinimum] = []
-        for row in sorted(found, key=lambda row: row.rank(enough, objective)):
+        allowed = [row for row in found if is_inside(ranges, row.pose)]  # the start may not be
+        for row in sorted(allowed, key=lambda row: row.rank(enough, objective)):
             apart = all(distance(ranges, row.pose, other.pose) >= _NEXT for other in chosen)
             if row.segments is not None and apart and len(chosen) < count:
                 chosen.append(row)

@@ -86,6 +86,11 @@ def around(ranges: Ranges, best: Pose, share: float, count: int, seed: int) -> l
     return _scaled(near, best, _sobol(len(ranges), count, seed))
 
 
+def is_inside(ranges: Ranges, pose: Pose) -> bool:
+    """Whether a placement is in all ranges."""
+    return all(low <= pose[VARIABLES.index(name)] <= high for name, (low, high) in ranges.items())
+
+
 def distance(ranges: Ranges, first: Pose, second: Pose) -> float:
     """How far two placements are apart: the largest difference, as a share of its range."""
     return max(
