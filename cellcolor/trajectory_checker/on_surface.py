@@ -18,6 +18,7 @@ from cellcolor.trajectory_checker.joint_steps import joint_steps
 from cellcolor.trajectory_checker.tolerances import BRANCH, LEAVING, OFF_SURFACE, TILT
 from cellcolor.trajectory_checker.tool_turn import nearest_turns
 
+_SAME = 1e-6  # rad, m; solutions so near to each other are one
 _PARTS = 16  # a step that seems to cross a crack is tested in so many parts: it may pass its end
 
 
@@ -118,7 +119,9 @@ def branches_of(
 ) -> Index:
     """The branch (c,) of each configuration, -1 if it is near no solution of a known branch.
 
-    Joints are compared modulo full circles. A last joint that only turns the tool is ignored.
+    Joints are compared modulo full circles. A last joint that only turns the tool is ignored. Where
+    branches of an arm without names have one configuration in common, as off the vertices at which
+    they are told apart, the stroke stays in one of them as long as it can.
 
     Args:
         dense: the trajectory with all configurations that are judged.
@@ -126,6 +129,7 @@ def branches_of(
         across: (c, 3) the tool's x axis, which matters if the setup gives the tool's turn.
     """
     found, compared = np.full(len(rows), -1), prepared.robot.task.joints
+    several: dict[int, set[int]] = {}  # of rows with more than one branch
     for part in chunks(len(rows), 64 * compared * prepared.arm.slots):
         own = rows[part]
         solutions, before = _solutions(
@@ -138,9 +142,27 @@ def branches_of(
         ).max(axis=2)
         off = np.where(np.isnan(off), np.inf, off)
         nearest = np.argmin(off, axis=1)
-        known = off[np.arange(len(own)), nearest] <= BRANCH
+        least = off[np.arange(len(own)), nearest]
+        known = least <= BRANCH
         found[part][known] = (before + nearest)[known]
-    return found
+        same = known[:, None] & (off <= least[:, None] + _SAME)
+        for row in np.flatnonzero(same.sum(axis=1) > 1).tolist():
+            several[part.start + row] = set((before[row] + np.flatnonzero(same[row])).tolist())
+    return _steady(found, several, dense.stroke[rows]) if several else found
+
+
+def _steady(found: Index, several: dict[int, set[int]], stroke: Index) -> Index:
+    """The branch of each row of strokes, with as few changes as rows in several branches allow."""
+    chosen, begin, common = found.copy(), 0, set[int]()
+    for row in range(len(found) + 1):
+        own = several.get(row, set(found[row : row + 1].tolist()))
+        if row > begin and row < len(found) and stroke[row] == stroke[begin] and common & own:
+            common &= own
+            continue
+        if row > begin:
+            chosen[begin:row] = found[begin] if found[begin] in common else min(common)
+        begin, common = row, set(own)
+    return chosen
 
 
 def _solutions(
