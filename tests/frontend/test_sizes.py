@@ -92,11 +92,11 @@ def test_what_is_refused_would_have_been_too_much(seed: int, longest: float) -> 
     """The estimate is no more than what halving gives, so nothing that fits is refused."""
     corners = np.random.default_rng(seed).uniform(0, 1, (4, 3))
     faces = np.array([[0, 1, 2], [1, 0, 3]])
-    vertices = refine(TriangleMesh(corners, faces), longest).points
+    vertices = refine(TriangleMesh(corners, faces), longest)[0].points
     most = sizes.MOST_VERTICES
     try:
         sizes.MOST_VERTICES = len(vertices)
-        assert len(refine(TriangleMesh(corners, faces), longest).points) == len(vertices)
+        assert len(refine(TriangleMesh(corners, faces), longest)[0].points) == len(vertices)
         sizes.MOST_VERTICES = len(vertices) - 1
         if len(vertices) > 4:
             with pytest.raises(InputError, match="vertices"):
@@ -116,6 +116,6 @@ def test_a_mesh_too_coarse_for_what_stands_there(scene: Varied) -> None:
     plate = BoxObstacle(size_m=(0.002, 0.03, 0.2), position_m=(0.45, 0.1, 0.3))
     (warning,) = build_surface(coarse.with_obstacle(plate)).report.warnings
     assert "obstacle[0] is 0.03 m wide" in warning
-    finer = refine(TriangleMesh(square, faces), 0.04)
+    finer, _ = refine(TriangleMesh(square, faces), 0.04)
     fine = coarse.with_object((finer.points, finer.corners))
     assert build_surface(fine).report.warnings == ()

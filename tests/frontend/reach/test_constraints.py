@@ -100,8 +100,11 @@ def test_mesh_obstacle_is_like_the_primitive(scene: Varied, tmp_path: Path) -> N
 
 @pytest.mark.parametrize("longest", [0.9, 0.31, 0.1])
 def test_refinement(longest: float) -> None:
-    mesh = refine(TriangleMesh(BOX, np.array(OUTWARD)), longest)
-    vertices, faces = mesh.points, mesh.corners
+    coarse = TriangleMesh(BOX, np.array(OUTWARD))
+    fine, lies_in = refine(coarse, longest)
+    vertices, faces = fine.points, fine.corners
+    assert np.allclose(np.bincount(lies_in, fine.areas), coarse.areas)
+    assert np.allclose(fine.triangle_normals, coarse.triangle_normals[lies_in])
     mesh = trimesh.Trimesh(vertices, faces, process=False)
     assert mesh.edges_unique_length.max() <= longest
     assert mesh.is_watertight and mesh.is_winding_consistent
@@ -111,7 +114,7 @@ def test_refinement(longest: float) -> None:
 
 def test_one_long_edge_is_halved_for_both_faces() -> None:
     kite = np.array([[0, 0, 0], [1, -0.3, 0], [2, 0, 0], [1, 0.3, 0]], dtype=float)
-    mesh = refine(TriangleMesh(kite, np.array([[0, 1, 2], [0, 2, 3]])), 1.5)
+    mesh, _ = refine(TriangleMesh(kite, np.array([[0, 1, 2], [0, 2, 3]])), 1.5)
     vertices, faces = mesh.points, mesh.corners
     assert len(vertices) == 5 and len(faces) == 4
     assert vertices[4].tolist() == [1, 0, 0]

@@ -39,7 +39,7 @@ def without_slivers(scene: Scene) -> Scene:
 def box(edge_mm: float, slivers: bool) -> Scene:
     """A box whose normals turn by 45 degrees on the first edge beside each of its edges."""
     faces = np.array([[int(corner) for corner in side.split()] for side in SIDES]) - 1
-    mesh = refine(TriangleMesh(np.array(CORNERS), faces), edge_mm / 1000)
+    mesh, _ = refine(TriangleMesh(np.array(CORNERS), faces), edge_mm / 1000)
     ground, turn = {"height_m": -0.1}, {"rpy_rad": (0.1, 0.2, 0.4)}
     return part(
         (mesh.points, mesh.corners), slivers, [0.45, 0.05, 0.15], ground=ground, placement=turn
