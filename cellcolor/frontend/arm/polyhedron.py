@@ -16,6 +16,7 @@ from cellcolor.memory import chunks
 from cellcolor.mesh.triangle_mesh import grouped
 
 _OUTSIDE = 1e-9  # of its size; so far before a plane a point is not behind it
+_BEHIND = 24  # bytes that a point and a plane take
 _PAIR = 256  # bytes that a point and a face take
 
 
@@ -54,7 +55,7 @@ class Polyhedron:
     def _planes(self) -> Array:
         """(s, 4) unit normals and offsets of planes that it is behind; none if it lies in one."""
         try:
-            return np.unique(ConvexHull(self.vertices).equations, axis=0)
+            return np.asarray(ConvexHull(self.vertices).equations)
         except (QhullError, ValueError):
             return np.empty((0, 4))
 
@@ -71,7 +72,7 @@ class Polyhedron:
         # From outside the convex hull, all faces are in one half of what is seen.
         normals, offsets = self._planes[:, :3], self._planes[:, 3]
         slack = _OUTSIDE * float((high - low).max(initial=0.0))
-        for some in chunks(len(near), 16 * len(offsets) + 16):
+        for some in chunks(len(near), _BEHIND * len(offsets) + 1):
             ahead = np.einsum("ij,kj->ik", points[near[some]], normals) + offsets
             near[some] = np.where((ahead <= slack).all(axis=1), near[some], -1)
         near = near[near >= 0]

@@ -166,7 +166,7 @@ def _touch(a: fcl.CollisionObject, b: fcl.CollisionObject, skin: float) -> bool:
 
 def _distance(a: fcl.CollisionObject, b: fcl.CollisionObject) -> float:
     """How far two shapes are from each other, m; 0 if they touch."""
-    if _touch(a, b, 0.0):
+    if fcl.collide(a, b, _WHETHER, fcl.CollisionResult()):
         return 0.0
     return float(fcl.distance(a, b, fcl.DistanceRequest(), fcl.DistanceResult()))
 
