@@ -1,8 +1,8 @@
 """Draw tool paths before and now: ``python docs/figures/straight_lines.py BEFORE NOW``.
 
 Both are folders in which ``cellcolor plan square`` and ``cellcolor plan wok`` have written
-``square/paths.json`` and ``wok/paths.json``, seen from above. The picture of docs/measured/motions.md
-has BEFORE from commit aa0319a.
+``square/paths.json`` and ``wok/paths.json``, seen from above. The picture of
+docs/measured/motions.md has BEFORE from commit aa0319a.
 """
 
 from __future__ import annotations
