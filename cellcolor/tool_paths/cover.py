@@ -159,7 +159,7 @@ def _parts(
             Uncovered(region.segment, place.area_m2, _point(place.place), place.why)
             for place in refused
         ]
-    if overlap is not None:
+    if overlap is not None:  # what is refused beyond the border is not the segment's
         inside = segment_of >= 0
         widened = np.where(overlap.widened(surface, inside), segment_of.max(), -1)
         parts = [

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import dijkstra
 
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.tool_paths.region import parts_of
+from cellcolor.tool_paths.region import kept_parts
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
 _SNAPPED = 0.01  # of the finest side: a vertex so near to the new border counts as on it
@@ -111,10 +111,7 @@ def clipped(
     mesh, _ = split_at(mesh, split, shares)
     left = np.concatenate([left, np.zeros(len(mesh.points) - count)])
     kept = np.asarray((left[mesh.corners] >= 0).all(axis=1))
-    inner, other = mesh.pairs
-    other = other // 3
-    joined = kept[other].all(axis=1)
-    return [part for _, part in parts_of(mesh, kept, mesh.edges[inner[joined]], other[joined])]
+    return [part for _, part in kept_parts(mesh, kept)]
 
 
 def owned(mesh: Triangles, surface: LabelledSurface, own: Mask) -> Mask:

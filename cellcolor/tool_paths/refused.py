@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from cellcolor.arrays import Array, Mask
 from cellcolor.mesh.dividing import with_longest_sides
 from cellcolor.mesh.triangle_mesh import grouped
-from cellcolor.tool_paths.region import parts_of
+from cellcolor.tool_paths.region import kept_parts
 from cellcolor.tool_paths.triangles import Triangles, split_at
 
 Codes = NDArray[np.uint8]
@@ -89,10 +89,7 @@ def without_refused(
     kept: Mask = ~np.any(bad, axis=1)
     if kept.all():
         return [mesh], []
-    inner, other = mesh.pairs
-    other = other // 3
-    joined = kept[other].all(axis=1)
-    parts = parts_of(mesh, kept, mesh.edges[inner[joined]], other[joined])
+    parts = kept_parts(mesh, kept)
     why = np.where(kept, 0, codes[mesh.corners].max(axis=1))
     around = np.zeros(len(codes), dtype=np.uint8)
     np.maximum.at(around, mesh.corners.ravel(), np.repeat(why, 3))

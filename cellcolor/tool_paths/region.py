@@ -109,6 +109,14 @@ def parts_of(
     return found
 
 
+def kept_parts(mesh: Triangles, kept: Mask) -> list[tuple[Index, Triangles]]:
+    """The connected parts of the kept triangles (m,), each with the numbers of its triangles."""
+    inner, other = mesh.pairs
+    other = other // 3
+    joined = kept[other].all(axis=1)
+    return parts_of(mesh, kept, mesh.edges[inner[joined]], other[joined])
+
+
 def _closed_edges(
     surface: LabelledSurface, color_of: Index, walls: Collection[tuple[int, int]]
 ) -> Mask:

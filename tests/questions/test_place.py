@@ -110,13 +110,12 @@ def test_the_best_come_first_and_cover_enough(found: Placements) -> None:
         assert tuple(others) == found.here.pose[2:]
 
 
-@pytest.mark.slow
 def test_what_is_listed_is_in_the_ranges_although_the_scene_is_not() -> None:
     """The part stands at x = 0.465 m."""
     found = place(x=(0.3, 0.36), y=None, cover=0.5)
     assert found.best
     assert found.here.value("x") == pytest.approx(0.465)
-    # The second of all tried is the scene's own placement on the coarse mesh.
+    # The first one tried is the scene's own placement, on the coarse mesh.
     assert all(0.3 <= row.value("x") <= 0.36 for row in (*found.best, *found.tried[1:]))
 
 
@@ -126,6 +125,7 @@ def test_nothing_is_listed_where_the_arm_does_not_reach(capsys: pytest.CaptureFi
     assert "no placement that was tried covers" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_two_processes_find_the_same(found: Placements) -> None:
     other = place(jobs=2)
     assert list(other) == list(found)

@@ -210,40 +210,14 @@ def _weights(corners: Array, unit: Array, ball: Array, radius: float) -> Array:
     """
     height = np.einsum("ij,ij->i", corners[:, 0], unit)
     flat = corners - height[:, None, None] * unit[:, None]
-    farthest, nearest = _extent(flat, unit)
 
     def within(reach: Array) -> tuple[Array, Array]:
-        """Area and second moment of what is nearer; most triangles are near or far as a whole."""
-        size = np.sqrt(np.maximum(reach**2 - height**2, 0.0))
-        found = np.where(farthest <= size, _moments(flat, unit), 0.0)
-        cut = np.flatnonzero((farthest > size) & (nearest < size))
-        found[:, cut] = _disc(flat[cut], unit[cut], size[cut])
-        return found[0], found[1]
+        return _disc(flat, unit, np.sqrt(np.maximum(reach**2 - height**2, 0.0)))
 
     area, second = within(np.full(len(ball), radius))
     whole = area - (height**2 * area + second) / radius**2
     area, second = within(ball)
     return np.asarray(whole - (ball**2 * area - height**2 * area - second) / radius**2)
-
-
-def _extent(corners: Array, unit: Array) -> tuple[Array, Array]:
-    """How far the farthest and the nearest point of triangles (p, 3, 3) are from the origin."""
-    origin = np.zeros((len(corners), 3))
-    nearest, inside = np.full(len(corners), np.inf), np.ones(len(corners), dtype=bool)
-    for side in range(3):
-        a, b = corners[:, side], corners[:, (side + 1) % 3]
-        nearest = np.minimum(nearest, _distance(origin, a, b))
-        inside &= _cross(a, b, unit) > 0
-    return np.linalg.norm(corners, axis=2).max(axis=1), np.where(inside, 0.0, nearest)
-
-
-def _moments(corners: Array, unit: Array) -> Array:
-    """Area of triangles, and the integral of the squared distance from the origin, (2, p)."""
-    a, b, c = corners.swapaxes(0, 1)
-    area = _cross(b - a, c - a, unit) / 2
-    squares = np.einsum("pij,pij->p", corners, corners)
-    total = corners.sum(axis=1)
-    return np.stack([area, area / 12 * (squares + np.einsum("ij,ij->i", total, total))])
 
 
 def _disc(corners: Array, unit: Array, size: Array) -> tuple[Array, Array]:
