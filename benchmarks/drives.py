@@ -169,12 +169,16 @@ def main() -> None:
         folder.mkdir(exist_ok=True)
         for number in asked.case or range(len(SHIPPED) + DRAWN):
             scene: Path | str
-            if number < len(SHIPPED):
-                scene = name = SHIPPED[number]
+            try:
+                if number < len(SHIPPED):
+                    scene = name = SHIPPED[number]
+                else:
+                    scene, name = drawn(number - len(SHIPPED), arms, every, asked.seed, folder)
+            except InputError as error:  # an arm that ``new`` refuses
+                ended = {"of": "an arm", "ends": "refused", "cause": None, "text": str(error)}
             else:
-                scene, name = drawn(number - len(SHIPPED), arms, every, asked.seed, folder)
-            found: dict[str, Any] = {"case": number, "of": name}
-            found |= outcome(scene, asked.time_limit)
+                ended = {"of": name, **outcome(scene, asked.time_limit)}
+            found: dict[str, Any] = {"case": number, **ended}
             causes[found["ends"], found["cause"]] += 1
             print(json.dumps(found), flush=True)
     for (ends, cause), times in causes.most_common():

@@ -41,3 +41,10 @@ def angles_between(first: Array, second: Array) -> Array:
     """Angles (k,) between unit vectors (k, 3), rad; one of the two may be a single vector (3,)."""
     chord = np.linalg.norm(first - second, axis=1)
     return np.asarray(2 * np.arcsin(np.minimum(chord / 2, 1.0)))
+
+
+def to_nearest(places: Array, fixed: Array) -> Array:
+    """How far places (k,) on a line are from the nearest of others, ascending and at least one."""
+    after = np.searchsorted(fixed, places)
+    low, high = np.maximum(after - 1, 0), np.minimum(after, len(fixed) - 1)
+    return np.minimum(np.abs(fixed[low] - places), np.abs(fixed[high] - places))

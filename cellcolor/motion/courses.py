@@ -25,6 +25,7 @@ from cellcolor.motion.following import (
 from cellcolor.motion.refusing import ArmRefusals
 from cellcolor.motion.samples import Samples, even_places, sampled, with_normals_of
 from cellcolor.motion.small_triangles import JUMP
+from cellcolor.motion.steady import steady
 from cellcolor.tool_paths.cover import Covered
 
 _ROUNDS = 3  # of paths laid out; what still fails on the last ones is cut out of them
@@ -114,9 +115,10 @@ def _course(
     between them fails a test. A step that still does on the last round is torn.
     """
 
-    def at(places: Array) -> Samples:
-        return with_normals_of(sampled(path, places), surface.mesh, normals)
-
+    at = steady(
+        lambda places: with_normals_of(sampled(path, places), surface.mesh, normals),
+        float(places[-1]),
+    )
     samples = at(places)
     followed = follow(prepared, samples, branch, deadline)
     for halvings in range(_HALVINGS + 1):

@@ -13,12 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, angles_between
+from cellcolor.arrays import Array, Index, angles_between, to_nearest
 from cellcolor.data.tool_paths import ToolPath
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 DISTANCE = 0.001  # m, at most from one sample to the next
 TURN = float(np.deg2rad(1.0))  # rad, the same for the normal
+_NEAR = 0.04  # of both; so near to a corner that is asked for no other sample is needed
 _ROOM = 0.95  # of both, for rounding and for normals that are not a path's own
 
 
@@ -72,7 +73,12 @@ def even_places(path: ToolPath, corners: Index | None = None) -> Array:
     """
     passed = np.concatenate([[0.0], np.cumsum(_shares(path))])
     even = np.linspace(0.0, passed[-1], max(int(np.ceil(passed[-1])), 1) + 1)
-    return even if corners is None else np.union1d(even, passed[corners])
+    if corners is None or not len(corners):
+        return even
+    at = np.unique(passed[corners])
+    needed = to_nearest(even, at) > _NEAR
+    needed[[0, -1]] = True
+    return np.union1d(even[needed], at)
 
 
 def sampled(path: ToolPath, places: Array | None = None) -> Samples:

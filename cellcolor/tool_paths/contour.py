@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from cellcolor.arrays import Array, Index
@@ -24,7 +26,13 @@ _NARROWEST, _WIDEST = 0.85, 1.05  # between which spacings are made to fit, in w
 _CORE = 0.7  # where a core reaches so far, in spacings, inside the last loop, there is one more
 
 
-def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
+Join = Callable[[Triangles, list[Index], float], list[int]]
+"""Makes one path of loops: a mesh, the loops as rows of its edges, the spacing, m."""
+
+
+def lay_contours(
+    mesh: Triangles, spacing: float, deadline: Deadline, join: Join = join_loops
+) -> Laid:
     """Loops at half a spacing from the border, one and a half, and so on, joined.
 
     On a closed mesh the distance is from a vertex, and the first loop goes round it.
@@ -33,6 +41,7 @@ def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
         mesh: a connected part of a segment.
         spacing: between neighboring loops, m.
         deadline: when to give up.
+        join: makes one path of the loops.
     """
     mesh = mesh.refined(FINEST * spacing)
     deadline.check()
@@ -44,7 +53,7 @@ def lay_contours(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
     distances = evened(mesh, distances, EVENED * spacing)
     # No line ends at the border.
     distances = np.where(mesh.border, np.minimum(distances, _MOVED * spacing), distances)
-    return lay_loops(mesh, distances, spacing, deadline)
+    return lay_loops(mesh, distances, spacing, deadline, join)
 
 
 def _straight_border(mesh: Triangles, spacing: float) -> tuple[Index, Array]:
@@ -76,7 +85,13 @@ def _straight_border(mesh: Triangles, spacing: float) -> tuple[Index, Array]:
     return np.concatenate(vertices), np.clip(np.concatenate(offsets), -most, most)
 
 
-def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadline) -> Laid:
+def lay_loops(
+    mesh: Triangles,
+    distances: Array,
+    spacing: float,
+    deadline: Deadline,
+    join: Join = join_loops,
+) -> Laid:
     """Join the loops at half a spacing, one and a half, and so on of a field of distances.
 
     Args:
@@ -84,6 +99,7 @@ def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadl
         distances: (n,) at the border less than ``_NARROWEST`` / 2 spacings, m.
         spacing: between neighboring loops, m.
         deadline: when to give up.
+        join: makes one path of the loops.
     """
     deadline.check()
     spacing = _fitting(float(distances.max()), spacing)
@@ -98,7 +114,7 @@ def lay_loops(mesh: Triangles, distances: Array, spacing: float, deadline: Deadl
     cores = slice_along(sliced.mesh, heights, np.array([_CORE * spacing]))
     rows += [line.vertices for line in level_lines(cores) if len(line.vertices) > 2]
     deadline.check()
-    return Laid(cores.mesh, join_loops(cores.mesh, rows, spacing))
+    return Laid(cores.mesh, join(cores.mesh, rows, spacing))
 
 
 def _fitting(farthest: float, spacing: float) -> float:

@@ -38,10 +38,10 @@ class Ways:
         return way
 
 
-def ways_from(graph: csr_matrix, sources: Index) -> Ways:
-    """Dijkstra's algorithm from all sources at once."""
+def ways_from(graph: csr_matrix, sources: Index, longest: float = np.inf) -> Ways:
+    """Dijkstra's algorithm from all sources at once; there are no ways longer than the longest."""
     lengths, before, source = dijkstra(
-        graph, indices=sources, min_only=True, return_predecessors=True
+        graph, indices=sources, min_only=True, return_predecessors=True, limit=longest
     )
     return Ways(lengths, before.astype(np.int64), source.astype(np.int64))
 

@@ -35,7 +35,7 @@ class _Bridge:
 
 
 @dataclass
-class _Door:
+class Door:
     """Two bridges between two loops, or twice the same."""
 
     loops: tuple[int, int]
@@ -48,7 +48,7 @@ class _Door:
         return self.bridges[0].second, self.bridges[1].second
 
 
-class _Loop:
+class Loop:
     """A closed row of vertices, with the distance along it to each."""
 
     def __init__(self, mesh: Triangles, row: Index) -> None:
@@ -65,10 +65,20 @@ class _Loop:
             return forward, a, b
         return self.length - forward, b, a
 
+    def moved(self, place: int, length: float) -> int:
+        """The place that is so far ahead of one, m; behind it if that is negative."""
+        there = (float(self.along[place]) + length) % self.length
+        return int(np.searchsorted(self.along, there)) % len(self.row)
+
     def inside(self, place: int, arc: tuple[int, int]) -> bool:
         """Whether a place is on the way from one place forward to another."""
         count = len(self.row)
         return (place - arc[0]) % count <= (arc[1] - arc[0]) % count
+
+
+Part = tuple[int, int, int, bool, Door | None]
+"""A loop by its number, the places where its walk begins and ends, whether it is walked forward,
+and the door that it was entered by."""
 
 
 def join_loops(mesh: Triangles, rows: list[Index], gap: float) -> list[int]:
@@ -79,14 +89,28 @@ def join_loops(mesh: Triangles, rows: list[Index], gap: float) -> list[int]:
         rows: the loops.
         gap: wanted distance between the two bridges of a door, m.
     """
-    loops = [_Loop(mesh, row) for row in rows]
+    loops, doors = doors_between(mesh, rows, gap)
+    at = by_loop(doors)
+    # Begin where no door leaves a piece out.
+    start = loops[0].arc(*at[0][0].places(0))[2] if at.get(0) else 0
+    return walked(loops, at, [(0, start, start, True, None)])
+
+
+def doors_between(mesh: Triangles, rows: list[Index], gap: float) -> tuple[list[Loop], list[Door]]:
+    """The loops, and the doors that join them along a shortest spanning tree."""
+    loops = [Loop(mesh, row) for row in rows]
     ways, loop_of = _nearest_loops(mesh, rows, gap)
-    doors = _widened(loops, _doors(mesh, loops, ways, loop_of), gap)
-    at: dict[int, list[_Door]] = {}
-    for door, _ in doors:
+    doors = _doors(mesh, loops, ways, loop_of)
+    return loops, [door for door, _ in _widened(loops, doors, gap)]
+
+
+def by_loop(doors: list[Door]) -> dict[int, list[Door]]:
+    """The doors at each loop that has any."""
+    at: dict[int, list[Door]] = {}
+    for door in doors:
         for loop in door.loops:
             at.setdefault(loop, []).append(door)
-    return _walk_round(loops, at)
+    return at
 
 
 def _nearest_loops(mesh: Triangles, rows: list[Index], gap: float) -> tuple[Ways, Index]:
@@ -99,8 +123,8 @@ def _nearest_loops(mesh: Triangles, rows: list[Index], gap: float) -> tuple[Ways
 
 
 def _doors(
-    mesh: Triangles, loops: list[_Loop], ways: Ways, loop_of: Index
-) -> list[tuple[_Door, list[_Bridge]]]:
+    mesh: Triangles, loops: list[Loop], ways: Ways, loop_of: Index
+) -> list[tuple[Door, list[_Bridge]]]:
     """A door of one bridge for each branch of a shortest spanning tree, and other bridges."""
     a, b = mesh.edges.T
     apart = loop_of[a] != loop_of[b]
@@ -127,18 +151,15 @@ def _doors(
             start, end = ways.back_from(int(a[number])), ways.back_from(int(b[number]))
             way = [*start[::-1], *end]
             bridges.append(_Bridge(loops[first].place[way[0]], loops[second].place[way[-1]], way))
-        found.append((_Door((first, second), (bridges[0], bridges[0])), bridges))
+        found.append((Door((first, second), (bridges[0], bridges[0])), bridges))
     return found
 
 
 def _widened(
-    loops: list[_Loop], doors: list[tuple[_Door, list[_Bridge]]], gap: float
-) -> list[tuple[_Door, list[_Bridge]]]:
+    loops: list[Loop], doors: list[tuple[Door, list[_Bridge]]], gap: float
+) -> list[tuple[Door, list[_Bridge]]]:
     """Give doors a second bridge where there is room; what they leave out holds no other door."""
-    at: dict[int, list[_Door]] = {}
-    for door, _ in doors:
-        for loop in door.loops:
-            at.setdefault(loop, []).append(door)
+    at = by_loop([door for door, _ in doors])
     for door, bridges in doors:
         own = [loops[number] for number in door.loops]
         wanted = min(gap, own[0].length / 4, own[1].length / 4)
@@ -167,7 +188,7 @@ def _pairs_apart(along: Array, length: float) -> Array:
 
 
 def _free(
-    loop: _Loop, arc: tuple[float, int, int], doors: list[_Door], but: _Door, number: int
+    loop: Loop, arc: tuple[float, int, int], doors: list[Door], but: Door, number: int
 ) -> bool:
     """Whether a piece of a loop may be left out: no other door needs a place of it."""
     _, start, end = arc
@@ -184,15 +205,12 @@ def _free(
     return True
 
 
-def _walk_round(loops: list[_Loop], at: dict[int, list[_Door]]) -> list[int]:
-    """The path round the tree of loops, from loop 0 on."""
+def walked(
+    loops: list[Loop], at: dict[int, list[Door]], parts: list[Part | list[int]]
+) -> list[int]:
+    """The path along parts of loops and rows of vertices, with all loops behind doors."""
     path: list[int] = []
-    # What is still to be walked, last first: loops with where to begin and to end, or rows.
-    to_do: list[list[int] | tuple[int, int, int, bool, _Door | None]] = [(0, 0, 0, True, None)]
-    if at.get(0):
-        # Begin where no door leaves a piece out.
-        end = loops[0].arc(*at[0][0].places(0))[2]
-        to_do = [(0, end, end, True, None)]
+    to_do = parts[::-1]  # what is still to be walked, last first
     while to_do:
         item = to_do.pop()
         if isinstance(item, list):
@@ -203,19 +221,19 @@ def _walk_round(loops: list[_Loop], at: dict[int, list[_Door]]) -> list[int]:
 
 
 def _stages(
-    loops: list[_Loop],
-    at: dict[int, list[_Door]],
+    loops: list[Loop],
+    at: dict[int, list[Door]],
     number: int,
     start: int,
     stop: int,
     forward: bool,
-    came: _Door | None,
-) -> list[list[int] | tuple[int, int, int, bool, _Door | None]]:
+    came: Door | None,
+) -> list[Part | list[int]]:
     """A loop from one place to another, with everything attached to it."""
     loop = loops[number]
     count = len(loop.row)
     step = 1 if forward else -1
-    leaving: dict[int, list[tuple[int, _Door, bool]]] = {}
+    leaving: dict[int, list[tuple[int, Door, bool]]] = {}
     for door in at.get(number, []):
         if door is came:
             continue
@@ -223,7 +241,7 @@ def _stages(
         if not forward:
             begin, end = end, begin
         leaving.setdefault(begin, []).append((end, door, begin == door.places(number)[0]))
-    stages: list[list[int] | tuple[int, int, int, bool, _Door | None]] = []
+    stages: list[Part | list[int]] = []
     row: list[int] = []
     place = start
     # A whole loop comes back to where it began; a part of one ends at its last place.
@@ -255,9 +273,7 @@ def _stages(
     return stages
 
 
-def _turn_of(
-    loop: _Loop, number: int, entry: int, exit_: int, door: _Door
-) -> tuple[int, int, int, bool, _Door | None]:
+def _turn_of(loop: Loop, number: int, entry: int, exit_: int, door: Door) -> Part:
     """How to walk a loop the long way from where it is entered to where it is left."""
     _, begin, _ = loop.arc(entry, exit_)
     # Forward leads through what the door leaves out if that begins at the entry.

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index, Mask, to_nearest
 from cellcolor.deadline import Deadline
 from cellcolor.tool_paths.interface import Laid
 from cellcolor.tool_paths.triangles import Triangles
@@ -27,7 +27,7 @@ _OFF = 0.25  # spacings; a traced point may be so far from where it was to lie
 _ROUNDS = 4
 _MOST_CROSSED = 100  # triangles, between two points
 _OUTSIDE = 1e-9  # of a triangle; points this far outside of it count as inside
-_SAME = 1e-9  # m; points nearer to each other are one
+_SAME = 1e-9  # m; points nearer to each other are one. Of a unit normal, what counts as nothing
 
 Row = list[float]
 
@@ -81,7 +81,7 @@ def rounded(laid: Laid, spacing: float, deadline: Deadline) -> Line:
     held = _held(line, along, spacing)
     tracer = _Tracer(line.mesh)
     for _ in range(_ROUNDS):
-        apart = np.minimum(_to_nearest(along[held], grid) / (_REACH * bell), 1.0)
+        apart = np.minimum(to_nearest(grid, along[held]) / (_REACH * bell), 1.0)
         aims = walked + apart[:, None] * (smooth - walked)
         traced, failed = {}, np.zeros_like(held)
         for first, last in _stretches(held):
@@ -112,12 +112,6 @@ def _held(line: Line, along: Array, spacing: float) -> Mask:
         there = np.clip(np.searchsorted(along, along + side), 0, len(along) - 1)
         held |= (line.normals * line.normals[there]).sum(axis=1) < _FLAT
     return held
-
-
-def _to_nearest(fixed: Array, places: Array) -> Array:
-    """How far each place is from the nearest of some others, which are ascending."""
-    after = np.clip(np.searchsorted(fixed, places), 1, len(fixed) - 1)
-    return np.minimum(np.abs(fixed[after - 1] - places), np.abs(fixed[after] - places))
 
 
 def _stretches(held: Mask) -> list[tuple[int, int]]:
@@ -228,9 +222,12 @@ class _Tracer:
             return len(aims) - 1
         if missed.max() > off:
             return int((missed > off).argmax())
+        sizes = np.linalg.norm(normals, axis=1, keepdims=True)
+        if sizes.min() < _SAME:  # normals of a fold may cancel out
+            return min(int(np.searchsorted(reached, sizes.argmin())), len(aims) - 1)
+        normals /= sizes
         vertices = np.full(len(points), -1, dtype=np.int64)
         points[-1], vertices[[0, -1]] = mesh.points[ends[1]], ends
-        normals /= np.linalg.norm(normals, axis=1, keepdims=True)
         moved = np.linalg.norm(np.diff(points, axis=0), axis=1) > _SAME
         moved[-1] = True
         kept = np.append(True, moved)

@@ -1,0 +1,179 @@
+"""The pattern ``spiral``: the lines of ``contour``, each led over into the next one inside."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index
+from cellcolor.deadline import Deadline
+from cellcolor.tool_paths.contour import lay_contours
+from cellcolor.tool_paths.distances import off_border, ways_from
+from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.joined_loops import (
+    Door,
+    Loop,
+    Part,
+    by_loop,
+    doors_between,
+    join_loops,
+    walked,
+)
+from cellcolor.tool_paths.triangles import Triangles
+
+_OVER = 5.0  # spacings; on that length a way leads over into the next loop,
+_SHARE = 0.25  # but on no more of the shorter one
+_LONGEST = 30.0  # spacings, of ways to the next loop; of a way aslant, times what it should be
+_STRAY = 20.0  # times longer counts what is a whole spacing off such a way
+_BEGINNINGS = 24  # places of the innermost loop from which a spiral is tried
+
+
+def lay_spiral(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
+    """Loops as in ``contour``, the longest chain of them joined into a spiral.
+
+    Args:
+        mesh: a connected part of a segment.
+        spacing: between neighboring loops, m.
+        deadline: when to give up.
+    """
+    return lay_contours(mesh, spacing, deadline, wind)
+
+
+def wind(mesh: Triangles, rows: list[Index], gap: float) -> list[int]:
+    """One path along all loops: a spiral along a longest chain inward, and doors to all others.
+
+    The first loop and the last one are walked all round. Of each loop between a stretch is left
+    out, and these stretches lie side by side: there the path leads aslant from each loop to the
+    next, so that these ways are as far apart as the loops. Where doors are everywhere in the way of
+    such stretches, all loops are joined by doors.
+
+    Args:
+        mesh: on which the loops are rows of edges; connected.
+        rows: the loops.
+        gap: wanted distance between the two bridges of a door, m.
+    """
+    loops, doors = doors_between(mesh, rows, gap)
+    chain = _inward(loops, doors)
+    links = {frozenset(pair) for pair in pairwise(chain)}
+    at = by_loop([door for door in doors if frozenset(door.loops) not in links])
+    last = loops[chain[-1]]
+    for share in np.arange(_BEGINNINGS) / _BEGINNINGS:
+        parts = _spiral(mesh, loops, chain, at, last.moved(0, share * last.length), gap)
+        if parts is not None:
+            return walked(loops, at, parts)
+    return join_loops(mesh, rows, gap)
+
+
+def _inward(loops: list[Loop], doors: list[Door]) -> list[int]:
+    """A way along the tree of loops from the longest one to one with the most doors between."""
+    before = {int(np.argmax([loop.length for loop in loops])): -1}
+    order = list(before)
+    at = by_loop(doors)
+    for number in order:
+        for door in at.get(number, []):
+            other = sum(door.loops) - number
+            if other not in before:
+                before[other] = number
+                order.append(other)
+    way = [order[-1]]
+    while before[way[-1]] >= 0:
+        way.append(before[way[-1]])
+    return way[::-1]
+
+
+def _spiral(
+    mesh: Triangles,
+    loops: list[Loop],
+    chain: list[int],
+    at: dict[int, list[Door]],
+    innermost: int,
+    gap: float,
+) -> list[Part | list[int]] | None:
+    """The parts of a spiral past a place of the innermost loop; None if a door is in the way."""
+    left = _left(mesh, [loops[number] for number in chain], innermost, gap)
+    if left is None:
+        return None
+    parts: list[Part | list[int]] = []
+    enter = left[0][0]
+    for position, (number, (leave, forward)) in enumerate(zip(chain, left, strict=True)):
+        loop, inside = loops[number], position + 1 < len(chain)
+        if not inside:
+            leave = enter
+        left_out = (leave, enter) if forward else (enter, leave)
+        if not _clear(loop, left_out, at.get(number, []), number):
+            return None
+        parts.append((number, enter, leave, forward, None))
+        if inside:
+            inner, (beside, onward) = loops[chain[position + 1]], left[position + 1]
+            along = min(_OVER * gap, _SHARE * min(loop.length, inner.length))
+            enter = inner.moved(beside, along if onward else -along)
+            way = _over(mesh, loop, leave, along if forward else -along, inner.row[enter])
+            if way is None:
+                return None
+            parts.append(way)
+    return parts
+
+
+def _left(
+    mesh: Triangles, loops: list[Loop], innermost: int, gap: float
+) -> list[tuple[int, bool]] | None:
+    """Where loops, each inside the one before, are left, side by side, and if walked forward.
+
+    From the last one outward: no long loop is far from a short one inside it, while a short one may
+    be far from a place of the long one.
+    """
+    graph = mesh.graph(off_border(mesh, gap / 2))
+    places = [innermost]
+    for inner, outer in pairwise(reversed(loops)):
+        ways = ways_from(graph, np.array([inner.row[places[-1]]]), _LONGEST * gap)
+        places.append(int(ways.lengths[outer.row].argmin()))
+        if not np.isfinite(ways.lengths[outer.row[places[-1]]]):
+            return None
+    places.reverse()
+    forward = [True]
+    for one, other in pairwise(zip(loops, places, strict=True)):
+        agree = np.dot(_direction(mesh, *one, gap), _direction(mesh, *other, gap)) > 0
+        forward.append(forward[-1] == agree)
+    return list(zip(places, forward, strict=True))
+
+
+def _over(mesh: Triangles, loop: Loop, leave: int, along: float, onto: int) -> list[int] | None:
+    """The vertices between a place of a loop and a vertex of the next, nearest to a line aslant.
+
+    On that line the distance from the loop grows evenly with the way along it.
+
+    Args:
+        along: how far along the loop the line leads, m; backward if that is negative.
+    """
+    near = ways_from(mesh.graph(), np.array(loop.row), 2 * abs(along))
+    reached = np.isfinite(near.lengths)
+    if not reached[onto]:
+        return None
+    place = np.zeros(len(mesh.points), dtype=np.int64)
+    place[loop.row] = np.arange(len(loop.row))
+    passed = loop.along[place[near.source[reached]]] - loop.along[leave]
+    passed = (np.sign(along) * passed) % loop.length / abs(along)
+    off = np.ones(len(mesh.points))
+    off[reached] = np.abs(near.lengths[reached] / near.lengths[onto] - passed)
+    weights = mesh.lengths * (1.0 + _STRAY * np.minimum(off, 1.0)[mesh.edges].mean(axis=1))
+    ways = ways_from(mesh.graph(weights), np.array([loop.row[leave]]), _LONGEST * abs(along))
+    way = ways.back_from(onto)
+    return way[-2:0:-1] if way[-1] == loop.row[leave] else None
+
+
+def _direction(mesh: Triangles, loop: Loop, place: int, gap: float) -> Array:
+    """Where a loop leads at a place, forward."""
+    behind, ahead = (loop.row[loop.moved(place, way)] for way in (-gap, gap))
+    return np.asarray(mesh.points[ahead] - mesh.points[behind])
+
+
+def _clear(loop: Loop, left_out: tuple[int, int], doors: list[Door], number: int) -> bool:
+    """Whether no door needs a place of a stretch of a loop, nor leaves out one of its ends."""
+    for door in doors:
+        _, begin, end = loop.arc(*door.places(number))
+        if any(loop.inside(place, left_out) for place in (begin, end)):
+            return False
+        if loop.inside(left_out[0], (begin, end)):
+            return False
+    return True

@@ -1,0 +1,95 @@
+"""What a walk leaves uncovered is reached by bends where these do no harm, by spurs elsewhere."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial import cKDTree
+
+from cellcolor.deadline import NEVER
+from cellcolor.tool_paths.interface import Laid
+from cellcolor.tool_paths.spurs import with_spurs
+from cellcolor.tool_paths.triangles import Triangles
+from examples import examples
+
+SPACING = 0.1
+SIZE = 101  # vertices on a side of the square; they are a tenth of the spacing apart
+
+
+def sheet() -> Triangles:
+    """A flat unit square; each small square is cut along its diagonal from lower left."""
+    x, y = (rows.ravel() for rows in np.meshgrid(*[np.linspace(0, 1, SIZE)] * 2))
+    points = np.stack([x, y, np.zeros_like(x)], axis=1)
+    across = range(SIZE - 1)
+    first = np.array([row * SIZE + column for row in across for column in across])
+    lower = np.stack([first, first + 1, first + SIZE + 1], axis=1)
+    upper = np.stack([first, first + SIZE + 1, first + SIZE], axis=1)
+    corners = np.concatenate([lower, upper])
+    return Triangles(
+        points, corners, np.tile([0.0, 0.0, 1.0], (len(x), 1)), np.arange(len(corners))
+    )
+
+
+SHEET = sheet()
+
+
+def back_and_forth(rows: list[int]) -> list[int]:
+    """A walk along whole rows of vertices, and up at their ends, half a spacing from the border."""
+    walk: list[int] = []
+    for number, row in enumerate(rows):
+        columns = range(5, SIZE - 5) if number % 2 == 0 else range(SIZE - 6, 4, -1)
+        line = [row * SIZE + column for column in columns]
+        if walk:
+            low, column = divmod(walk[-1], SIZE)
+            walk += [height * SIZE + column for height in range(low + 1, row)]
+        walk += line
+    return walk
+
+
+def reversals(walk: list[int]) -> int:
+    return sum(before == after for before, after in zip(walk, walk[2:], strict=False))
+
+
+def uncovered(walk: list[int]) -> np.ndarray:
+    """Which vertices are farther than 0.75 spacings from the walk's: the sheet is flat."""
+    far = cKDTree(SHEET.points[np.unique(walk)]).query(SHEET.points)[0]
+    return np.asarray(far > 0.76 * SPACING)
+
+
+def test_a_strip_that_is_a_little_too_wide_is_reached_by_bends() -> None:
+    """Two rows are 17 steps apart, so the line between them is 0.85 spacings from both."""
+    walk = back_and_forth([5, 15, 25, 35, 52, 62, 72, 82, 95])
+    assert uncovered(walk).sum() > 80
+    reached = with_spurs(Laid(SHEET, walk), SPACING, NEVER).walk
+    assert reversals(reached) == 0
+    assert uncovered(reached).sum() < 20
+    lengths = [
+        np.linalg.norm(np.diff(SHEET.points[row], axis=0), axis=1).sum() for row in (walk, reached)
+    ]
+    assert lengths[1] < 1.05 * lengths[0]
+
+
+def test_where_a_bend_would_uncover_the_other_side_there_is_a_spur() -> None:
+    """Rows are 14 steps apart, and 22 once. What reaches the middle leaves its own row's side."""
+    walk = back_and_forth([5, 19, 33, 55, 69, 83, 94])
+    reached = with_spurs(Laid(SHEET, walk), SPACING, NEVER).walk
+    assert reversals(reached) > 0
+    inner = {vertex for vertex in walk if 25 < vertex % SIZE < SIZE - 25}  # at turns there is room
+    assert inner <= set(reached)
+    assert uncovered(reached).sum() < 0.1 * uncovered(walk).sum()
+
+
+@given(st.lists(st.integers(8, 24), min_size=12, max_size=12))
+@examples(15)
+def test_nothing_of_some_size_is_left(gaps: list[int]) -> None:
+    rows = [row for row in np.cumsum([5, *gaps]).tolist() if row < SIZE - 4]  # up to the border
+    walk = back_and_forth(rows)
+    reached = with_spurs(Laid(SHEET, walk), SPACING, NEVER).walk
+    assert (reached[0], reached[-1]) == (walk[0], walk[-1])
+    SHEET.find(np.array([reached[:-1], reached[1:]]).T)  # raises where a step is no edge
+    # A small place may stay: a tenth of the spacing squared is 10 vertices.
+    left = uncovered(reached).reshape(SIZE, SIZE)
+    for row in range(SIZE - 4):
+        for column in range(SIZE - 4):
+            assert not left[row : row + 4, column : column + 4].all()
