@@ -28,7 +28,7 @@ from cellcolor.motion.small_triangles import JUMP
 from cellcolor.motion.steady import steady
 from cellcolor.tool_paths.cover import Covered
 
-_ROUNDS = 3  # of paths laid out; what still fails on the last ones is cut out of them
+_ROUNDS = 5  # of paths laid out; what still fails on the last ones is cut out of them
 _FARTHEST = 0.4  # rad, m; of a joint from a sample to the next
 _HALVINGS = 9  # of a step in which one goes farther, or the tool leaves its way
 _BETWEEN = (0.25, 0.5, 0.75)  # of a step, where that is tested
@@ -115,10 +115,10 @@ def _course(
     between them fails a test. A step that still does on the last round is torn.
     """
 
-    at = steady(
-        lambda places: with_normals_of(sampled(path, places), surface.mesh, normals),
-        float(places[-1]),
-    )
+    def on_surface(places: Array) -> Samples:
+        return with_normals_of(sampled(path, places), surface.mesh, normals)
+
+    at = steady(on_surface, float(places[-1]))
     samples = at(places)
     followed = follow(prepared, samples, branch, deadline)
     for halvings in range(_HALVINGS + 1):
@@ -128,7 +128,8 @@ def _course(
         bad |= bowed(prepared.robot, joints)
         for share in _BETWEEN:
             way = joints[:-1] + share * np.diff(joints, axis=0)
-            bad |= off_way(prepared.robot, way, at(places[:-1] + share * np.diff(places)))
+            inner = places[:-1] + share * np.diff(places)
+            bad |= off_way(prepared.robot, way, at(inner), on_surface(inner).normals)
         ends = valid[:-1] & valid[1:] & ~torn
         bad &= ends
         if not bad.any():

@@ -5,16 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Index
 from cellcolor.data.surface import LabelledSurface
-from cellcolor.data.tool_paths import ToolPath, ToolPaths
+from cellcolor.data.tool_paths import ToolPaths
 from cellcolor.data.wording import in_meters, looks_like_millimeters
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
+from cellcolor.tool_paths.inside_border import inside_border
 from cellcolor.tool_paths.interface import Laid, Pattern
 from cellcolor.tool_paths.measures import PathMeasures, Uncovered, in_all, measure
 from cellcolor.tool_paths.overlap import Overlap, clipped, owned
@@ -29,14 +29,10 @@ _TRIANGLES = 24  # for each square of the spacing, about
 _MOST_TRIANGLES = 4_000_000
 _REFUSED = 0.25  # spacings: sides of triangles at the border of what is refused
 _LEAST_AREA = 0.25  # spacings squared: smaller parts have no path
-_TURNED = 1e-6  # rad; a border that turns by less is straight, and has no direction to keep off to
 _OFTEN = 1.2  # visits in the mean; where a pattern makes more, a single line is tried,
 _NARROW = 2.0  # if the part is narrower in the mean, in spacings
 _MIDDLE = 0.15  # spacings: so near to its middle that line is
 _COVERED = 0.98  # share of the part's area that this has to cover, if the pattern does
-_STRAIGHT = 1e-8  # m; a point so little beside the way past it is left out
-_INWARD = 2e-5  # m; so far off the border points are put that lie on it
-_INWARD_SHARE = 0.1  # of the way into the triangle, at most
 
 
 @dataclass(frozen=True, repr=False, eq=False)
@@ -119,7 +115,7 @@ def cover(
             uncovered.append(Uncovered(region.segment, area, place, cause))
             continue
         line, own, left = _better(lay, part, region.segment, spacing_m, deadline)
-        path, beside = _path(region, line)
+        path, beside = inside_border(region, line)
         paths.append(path)
         along_border.append(beside)
         measures.append(own)
@@ -236,107 +232,6 @@ def check_spacing(surface: LabelledSurface, segment_of: Index, spacing_m: float)
             f"{looks_like_millimeters(spacing_m)}"
         )
         raise InputError(None, "spacing_m", message)
-
-
-def _path(region: Region, line: Line) -> tuple[ToolPath, Index]:
-    """The path in the world, a hair inside the region where it runs along the border.
-
-    On the border itself rounding decides on which side of a crack a point lies. Each step stays in
-    its triangle, so where the triangle beside the border changes, the path touches the border,
-    unless both lie in one triangle of the surface and the border is convex there. Where a path
-    turns round a corner of the border, such as the end of a crack, it keeps off that as well.
-
-    Returns:
-        The path, and the numbers of its points that were put inside.
-    """
-    mesh, walk = line.mesh, line.vertices
-    faces = mesh.faces[line.triangles]
-    along = np.flatnonzero((walk[:-1] >= 0) & (walk[1:] >= 0))
-    number = mesh.find(np.stack([walk[along], walk[along + 1]], axis=1))
-    on_border = np.zeros(len(faces), dtype=bool)
-    on_border[along] = mesh.triangles_at[number] == 1
-    angles, around = _round_corners(mesh)
-    points, normals = [line.points[0]], [line.normals[0]]
-    owns: list[Any] = []
-    moved: list[int] = []
-    for step, beside in enumerate(on_border.tolist()):
-        ends, face = walk[step : step + 2], faces[step]
-        if beside:
-            third = mesh.points[np.setdiff1d(mesh.corners[line.triangles[step]], ends)[0]]
-            before = step and on_border[step - 1] and faces[step - 1] == face
-            if before and angles[ends[0]] < np.pi:
-                for rows in (points, normals, owns):
-                    rows.pop()
-            for end in ends:
-                way = third - mesh.points[end]
-                moved.append(len(points))
-                share = min(_INWARD / max(float(np.linalg.norm(way)), _INWARD), _INWARD_SHARE)
-                points.append(mesh.points[end] + share * way)
-                normals.append(mesh.normals[end])
-                owns.append(face)
-        off = around[ends[1]] if ends[1] >= 0 else 0.0
-        points.append(line.points[step + 1] + off)
-        normals.append(line.normals[step + 1])
-        owns.append(face)
-        if np.any(off):
-            moved.append(len(points) - 1)
-    kept = _bends(np.array(points), np.array(owns))
-    kept[moved] = True
-    path = ToolPath(
-        region.segment,
-        region.color,
-        np.array(points)[kept],
-        np.array(normals)[kept],
-        np.array(owns)[kept[:-1]],
-    )
-    return path, np.cumsum(kept)[moved] - 1
-
-
-def _bends(points: Array, owns: Array) -> Mask:
-    """Which points (k,) are needed: those where the triangle (k - 1,) or the direction changes."""
-    needed = np.ones(len(points), dtype=bool)
-    before, after = points[1:-1] - points[:-2], points[2:] - points[1:-1]
-    whole = np.linalg.norm(before + after, axis=1)
-    off = np.linalg.norm(np.cross(before, after), axis=1)
-    onward = (before * after).sum(axis=1) > 0
-    needed[1:-1] = (owns[1:] != owns[:-1]) | (off > _STRAIGHT * whole) | ~onward
-    return needed
-
-
-def _round_corners(mesh: Triangles) -> tuple[Array, Array]:
-    """The angle (n,) inside the mesh at each point, and how far (n, 3) to keep off corners, m.
-
-    Corners are points of the border with more than half a circle inside. On those whose triangles
-    all lie in one triangle of the surface a point can be moved.
-    """
-    corners = mesh.corners.ravel()
-    angles, inward = np.zeros(len(mesh.points)), np.zeros((len(mesh.points), 3))
-    np.add.at(angles, corners, _angles(mesh.points[mesh.corners]).ravel())
-    # Away from both border edges that meet there, which at the end of a crack are the same.
-    border = mesh.edges[mesh.triangles_at == 1]
-    along = mesh.points[border[:, 1]] - mesh.points[border[:, 0]]
-    lengths = np.linalg.norm(along, axis=1, keepdims=True)
-    along /= np.where(lengths > 0, lengths, 1.0)  # vertices may coincide
-    np.add.at(inward, border[:, 0], -along)
-    np.add.at(inward, border[:, 1], along)
-    least, most = np.full(len(mesh.points), np.inf), np.full(len(mesh.points), -1)
-    first = np.full(len(mesh.points), len(mesh.faces) + int(mesh.faces.max(initial=0)))
-    faces = np.repeat(mesh.faces, 3)
-    np.minimum.at(least, mesh.edges.ravel(), np.repeat(mesh.lengths, 2))
-    np.minimum.at(first, corners, faces)
-    np.maximum.at(most, corners, faces)
-    sizes = np.linalg.norm(inward, axis=1)
-    turned = mesh.border & (angles > np.pi + _TURNED) & (first == most) & (sizes > 0)
-    far = np.where(turned, np.minimum(_INWARD, _INWARD_SHARE * least), 0.0)
-    return angles, far[:, None] * inward / np.where(sizes > 0, sizes, 1.0)[:, None]
-
-
-def _angles(triangles: Array) -> Array:
-    """Angles (m, 3) at the corners of triangles (m, 3, 3), rad."""
-    one = np.roll(triangles, -1, axis=1) - triangles
-    other = np.roll(triangles, 1, axis=1) - triangles
-    across = np.linalg.norm(np.cross(one, other), axis=2)
-    return np.asarray(np.arctan2(across, (one * other).sum(axis=2)))
 
 
 def _point(row: Array) -> tuple[float, float, float]:

@@ -159,10 +159,7 @@ class _Tracer:
         for triangle, corners in enumerate(self._corners):
             for corner in corners:
                 self._at_vertex.setdefault(corner, []).append(triangle)
-        beyond = np.full(3 * len(mesh.corners), -1, dtype=np.int64)
-        one, other = mesh.pairs[1].T
-        beyond[one], beyond[other] = other // 3, one // 3
-        self._beyond = beyond.reshape(-1, 3).tolist()
+        self._beyond = mesh.beyond.tolist()
         # Barycentric coordinates of a point's projection are linear in the point.
         a, b, c = (mesh.points[mesh.corners[:, k]] for k in range(3))
         normals = np.cross(b - a, c - a)

@@ -58,6 +58,14 @@ class Triangles(TriangleMesh):
         return distances
 
     @cached_property
+    def beyond(self) -> Index:
+        """(m, 3) the triangle beyond each side, -1 where there is none."""
+        one, other = self.pairs[1].T
+        found = np.full(3 * len(self.corners), -1, dtype=np.int64)
+        found[one], found[other] = other // 3, one // 3
+        return found.reshape(-1, 3)
+
+    @cached_property
     def from_border(self) -> Array:
         """(n,) distance of each vertex from the border along the mesh, m; there must be one."""
         return self.distances_from(np.flatnonzero(self.border))

@@ -19,7 +19,7 @@ from cellcolor.frontend.setup import Setup
 from cellcolor.mesh.triangle_mesh import TriangleMesh
 from cellcolor.motion import courses
 from cellcolor.motion.courses import Course, laid_out
-from cellcolor.motion.following import Followed, bowed
+from cellcolor.motion.following import Followed, bowed, off_way
 from cellcolor.motion.samples import DISTANCE, Samples, even_places, sampled
 from cellcolor.tool_paths.cover import cover
 from cellcolor.tool_paths.registry import PATTERNS
@@ -124,6 +124,42 @@ def test_steps_that_bow_off_their_way_are_told() -> None:
     assert share[~told].max() < 0.4 and tilt[~told].max() < 0.75
     assert ((share > 0.25) | (tilt > 0.4))[told].all()
     assert 50 < told.sum() < 350
+
+
+@pytest.mark.parametrize("beyond", [0.0, 1e-6, 2e-5])
+def test_no_sample_is_just_beside_one_that_is_asked_for(beyond: float) -> None:
+    """A step of micrometers takes a millisecond, and so would look like a stop."""
+    x = np.array([0.0, 0.0095 + beyond, 0.019])
+    points = np.stack([x, 0 * x, 0 * x], axis=1)
+    path = ToolPath(0, 0, points, np.tile([0.0, 0.0, 1.0], (3, 1)), np.zeros(2, dtype=np.int64))
+    places = even_places(path, np.array([1]))
+    samples = sampled(path, places)
+    steps = np.diff(samples.points[:, 0])
+    assert steps.min() > 0.9e-3 and steps.max() <= DISTANCE
+    assert np.abs(samples.points[:, 0] - x[1]).min() < 1e-12
+    assert samples.points[-1, 0] == pytest.approx(x[2])
+
+
+@pytest.mark.parametrize(
+    ("off_axis", "off_surface", "bad"), [(0.5, 0.8, False), (0.7, 0.8, True), (0.5, 0.95, True)]
+)
+def test_the_axis_is_near_the_one_meant_and_the_normal(
+    off_axis: float, off_surface: float, bad: bool
+) -> None:
+    """Degrees. The samples' normals are steadied ones; the judge asks about the surface's."""
+    robot = prepare_arm(Setup.read(ROBOTS / "ur5_polishing.toml")).robot
+    joints = np.array([[0.3, -1.2, 1.5, -1.0, -1.4, 0.2]])
+    poses = forward(robot, joints)
+    (axis,) = poses.tool_axis
+    beside = np.cross(axis, [0.0, 0.0, 1.0])
+    beside /= np.linalg.norm(beside)
+
+    def turned(degrees: float) -> np.ndarray:
+        angle = np.radians(degrees)
+        return -(np.cos(angle) * axis + np.sin(angle) * beside)[None]
+
+    samples = Samples(poses.tip, turned(off_axis), np.zeros(1, dtype=np.int64))
+    assert off_way(robot, joints, samples, turned(off_surface)).tolist() == [bad]
 
 
 @pytest.mark.parametrize("pattern", PATTERNS)

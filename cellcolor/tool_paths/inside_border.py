@@ -1,0 +1,165 @@
+"""A line on a mesh as a tool path, a hair inside the border where it runs along it.
+
+On the border itself rounding decides on which side of a crack a point lies.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cellcolor.arrays import Array, Index, Mask
+from cellcolor.data.tool_paths import ToolPath
+from cellcolor.tool_paths.region import Region
+from cellcolor.tool_paths.rounding import Line
+from cellcolor.tool_paths.triangles import Triangles
+
+_TURNED = 1e-6  # rad; a border that turns by less is straight, and has no direction to keep off to
+_STRAIGHT = 1e-8  # m; a point so little beside the way past it is left out
+_INWARD = 2e-5  # m; so far off the border points are put that lie on it
+_INWARD_SHARE = 0.1  # of the way into the triangle, at most
+
+
+def inside_border(region: Region, line: Line) -> tuple[ToolPath, Index]:
+    """The path in the world.
+
+    Each step stays in its triangle. A path that goes on along the border is led round the vertex
+    between, over the edges that meet there. Where a path turns round a corner of the border
+    elsewhere, such as the end of a crack, it keeps off that as well.
+
+    Returns:
+        The path, and the numbers of its points that no chord may leave out, for it would cut the
+        border: one beside each of its vertices.
+    """
+    mesh, walk, triangles = line.mesh, line.vertices.tolist(), line.triangles.tolist()
+    on_border = [*_on_border(line).tolist(), False]
+    off_corner = _off_corners(mesh)
+    points, normals = [line.points[0]], [line.normals[0]]
+    owns, kept, asked = list[int](), list[int](), list[int]()
+
+    def beside(vertex: int, toward: Array, triangle: int, ask: bool) -> None:
+        way = toward - mesh.points[vertex]
+        share = min(_INWARD / max(float(np.linalg.norm(way)), _INWARD), _INWARD_SHARE)
+        kept.append(len(points))
+        if ask:
+            asked.append(len(points))
+        points.append(mesh.points[vertex] + share * way)
+        normals.append(mesh.normals[vertex])
+        owns.append(triangle)
+
+    inside = False
+    for step, triangle in enumerate(triangles):
+        start, end = walk[step : step + 2]
+        if on_border[step]:
+            (third,) = mesh.points[np.setdiff1d(mesh.corners[triangle], [start, end])]
+            if not inside:
+                beside(start, third, triangle, True)
+            inside = on_border[step + 1]
+            spokes = _round(mesh, end, start, triangle, triangles[step + 1]) if inside else None
+            for number, (other, before) in enumerate(spokes or ()):
+                middle = number == (len(spokes or ()) - 1) // 2
+                beside(end, mesh.points[other], before, middle)
+            inside = spokes is not None
+            if not spokes:
+                beside(end, third, triangle, True)
+            if inside:
+                continue
+        corner = off_corner[end] if end >= 0 else np.zeros(3)
+        if corner.any():
+            kept.append(len(points))
+            asked.append(len(points))
+        points.append(line.points[step + 1] + corner)
+        normals.append(line.normals[step + 1])
+        owns.append(triangle)
+    faces = mesh.faces[owns]
+    needed = _bends(np.array(points), faces)
+    needed[kept] = True
+    path = ToolPath(
+        region.segment,
+        region.color,
+        np.array(points)[needed],
+        np.array(normals)[needed],
+        faces[needed[:-1]],
+    )
+    return path, np.cumsum(needed)[asked] - 1
+
+
+def _on_border(line: Line) -> Mask:
+    """Which steps of a line (k - 1,) lead along the border."""
+    mesh, walk = line.mesh, line.vertices
+    along = np.flatnonzero((walk[:-1] >= 0) & (walk[1:] >= 0))
+    number = mesh.find(np.stack([walk[along], walk[along + 1]], axis=1))
+    found = np.zeros(len(line.triangles), dtype=bool)
+    found[along] = mesh.triangles_at[number] == 1
+    return found
+
+
+def _round(
+    mesh: Triangles, vertex: int, behind: int, first: int, last: int
+) -> list[tuple[int, int]] | None:
+    """The way round a vertex of the border, from one triangle at it to another.
+
+    Args:
+        behind: where the way comes from, along the border; a corner of the first triangle.
+
+    Returns:
+        The edges that are crossed: their other ends, and the triangles before them. None where the
+        triangles at the vertex are not connected, as where parts touch in a point.
+    """
+    spokes, triangle = list[tuple[int, int]](), first
+    while triangle != last:
+        corners = mesh.corners[triangle].tolist()
+        (other,) = set(corners) - {vertex, behind}
+        side = next(k for k in range(3) if behind not in (corners[k], corners[k - 2]))
+        onto = int(mesh.beyond[triangle, side])
+        if onto < 0:
+            return None
+        spokes.append((other, triangle))
+        behind, triangle = other, onto
+    return spokes
+
+
+def _bends(points: Array, owns: Index) -> Mask:
+    """Which points (k,) are needed: those where the triangle (k - 1,) or the direction changes."""
+    needed = np.ones(len(points), dtype=bool)
+    before, after = points[1:-1] - points[:-2], points[2:] - points[1:-1]
+    whole = np.linalg.norm(before + after, axis=1)
+    off = np.linalg.norm(np.cross(before, after), axis=1)
+    onward = (before * after).sum(axis=1) > 0
+    needed[1:-1] = (owns[1:] != owns[:-1]) | (off > _STRAIGHT * whole) | ~onward
+    return needed
+
+
+def _off_corners(mesh: Triangles) -> Array:
+    """How far (n, 3) to keep off corners at each point, m.
+
+    Corners are points of the border with more than half a circle inside. On those whose triangles
+    all lie in one triangle of the surface a point can be moved.
+    """
+    corners = mesh.corners.ravel()
+    angles, inward = np.zeros(len(mesh.points)), np.zeros((len(mesh.points), 3))
+    np.add.at(angles, corners, _angles(mesh.points[mesh.corners]).ravel())
+    # Away from both border edges that meet there, which at the end of a crack are the same.
+    border = mesh.edges[mesh.triangles_at == 1]
+    along = mesh.points[border[:, 1]] - mesh.points[border[:, 0]]
+    lengths = np.linalg.norm(along, axis=1, keepdims=True)
+    along /= np.where(lengths > 0, lengths, 1.0)  # vertices may coincide
+    np.add.at(inward, border[:, 0], -along)
+    np.add.at(inward, border[:, 1], along)
+    least, most = np.full(len(mesh.points), np.inf), np.full(len(mesh.points), -1)
+    first = np.full(len(mesh.points), len(mesh.faces) + int(mesh.faces.max(initial=0)))
+    faces = np.repeat(mesh.faces, 3)
+    np.minimum.at(least, mesh.edges.ravel(), np.repeat(mesh.lengths, 2))
+    np.minimum.at(first, corners, faces)
+    np.maximum.at(most, corners, faces)
+    sizes = np.linalg.norm(inward, axis=1)
+    turned = mesh.border & (angles > np.pi + _TURNED) & (first == most) & (sizes > 0)
+    far = np.where(turned, np.minimum(_INWARD, _INWARD_SHARE * least), 0.0)
+    return far[:, None] * inward / np.where(sizes > 0, sizes, 1.0)[:, None]
+
+
+def _angles(triangles: Array) -> Array:
+    """Angles (m, 3) at the corners of triangles (m, 3, 3), rad."""
+    one = np.roll(triangles, -1, axis=1) - triangles
+    other = np.roll(triangles, 1, axis=1) - triangles
+    across = np.linalg.norm(np.cross(one, other), axis=2)
+    return np.asarray(np.arctan2(across, (one * other).sum(axis=2)))
