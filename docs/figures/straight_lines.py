@@ -1,8 +1,8 @@
-"""Draw tool paths before and now: ``python docs/figures/straight_lines.py BEFORE NOW``.
+"""Draw tool paths: ``python docs/figures/straight_lines.py BEFORE NOW SPIRAL``.
 
-Both are folders in which ``cellcolor plan square`` and ``cellcolor plan wok`` have written
-``square/paths.json`` and ``wok/paths.json``, seen from above. The picture of
-docs/measured/motions.md has BEFORE from commit aa0319a.
+These are folders in which ``cellcolor plan square`` and ``cellcolor plan wok`` have written
+``square/paths.json`` and ``wok/paths.json``, the last ones with ``--pattern spiral``. They are seen
+from above. The picture of docs/measured/motions.md has BEFORE from commit aa0319a.
 """
 
 from __future__ import annotations
@@ -18,11 +18,14 @@ ROWS = {"square": (0.21, 0.33, 0.29, 0.41), "wok": (0.40, 0.52, -0.30, -0.18)}
 """What is drawn of each part: 120 mm, from and to in m along x and y."""
 
 
-def main(before: Path, after: Path) -> None:
-    """One row for each part, two columns."""
-    figure, axes = plt.subplots(2, 2, figsize=(8, 8.2), layout="constrained")
+COLUMNS = ("before", "now", "now, spiral")
+
+
+def main(folders: list[Path]) -> None:
+    """One row for each part, a column for each folder."""
+    figure, axes = plt.subplots(2, 3, figsize=(12, 8.2), layout="constrained")
     for row, (name, (left, right, low, high)) in zip(axes, ROWS.items(), strict=True):
-        for place, folder, when in zip(row, (before, after), ("before", "now"), strict=True):
+        for place, folder, when in zip(row, folders, COLUMNS, strict=True):
             paths = json.loads((folder / name / "paths.json").read_text())["paths"]
             for path, color in zip(paths, ("#1f5fa8", "#c8553d"), strict=False):
                 x, y, _ = np.array(path["points"]).T
@@ -33,4 +36,4 @@ def main(before: Path, after: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:3]))
+    main([Path(text) for text in sys.argv[1:4]])
