@@ -24,7 +24,7 @@ _BOW_ANGLE = float(np.deg2rad(0.5))  # of the tool's axis
 _ROUNDING = 1e-6  # m
 _OFF = 4e-4  # m, of the tip off the surface; the judge allows a millimeter
 _FAR_TURN, _FAR_SLIDE = float(np.deg2rad(1.0)), 0.001  # rad, m; what no joint passes untested
-_TILT = float(np.deg2rad(0.6))  # of the tool's axis off the one that is meant, and
+_TILT = float(np.deg2rad(0.6))  # of the tool's axis off the intended one
 _TILT_OFF_SURFACE = float(np.deg2rad(0.9))  # off the surface's normal; the judge allows a degree
 
 

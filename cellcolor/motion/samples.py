@@ -19,7 +19,7 @@ from cellcolor.mesh.triangle_mesh import TriangleMesh
 
 DISTANCE = 0.001  # m, at most from one sample to the next
 TURN = float(np.deg2rad(1.0))  # rad, the same for the normal
-_NEAR = 0.04  # of both; so near to a corner that is asked for no other sample is needed
+_NEAR = 0.025  # of both; so near to a corner that is asked for no other sample is needed
 _ROOM = 0.95  # of both, for rounding and for normals that are not a path's own
 
 

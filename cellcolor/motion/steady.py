@@ -17,8 +17,10 @@ from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 from cellcolor.arrays import Array
 from cellcolor.motion.samples import Samples
 
-OFF = float(np.deg2rad(0.3))
+OFF = float(np.deg2rad(0.4))
 """So far at most a normal is turned, rad; the judge allows a degree, and steps bow."""
+_MEAN = float(np.deg2rad(0.3))  # rad; the same for means, which may be more off between points
+_CLOSED = 1e-9  # m; between the ends of a closed path
 _WIDTHS = 1e-3 * np.array([0.0, 0.3, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8])  # m, of bell curves
 _REACH = 4.0  # widths; what is farther away does not count
 _EVEN = 1e-3  # m; over which widths themselves are averaged
@@ -42,13 +44,16 @@ def steady(at: Callable[[Array], Samples], last: float) -> Callable[[Array], Sam
     if len(grid) < _FEW:
         return at
     normals = np.stack([np.interp(grid, along, axis) for axis in samples.normals.T], axis=1)
-    closed = bool((samples.points[0] == samples.points[-1]).all())
+    closed = float(np.linalg.norm(samples.points[0] - samples.points[-1])) < _CLOSED
     means = _means(normals, float(grid[1]), closed)
     line = make_interp_spline(grid, means, bc_type="periodic" if closed else None)
 
     def steadied(places: Array) -> Samples:
         found = at(places)
-        turned = line(np.interp(places, rough, along))
+        moved = line(np.interp(places, rough, along)) - found.normals
+        # Beside a sharp fold normals turn by more between two points of the grid.
+        sizes = np.linalg.norm(moved, axis=1, keepdims=True)
+        turned = found.normals + moved * np.minimum(1.0, OFF / np.maximum(sizes, OFF))
         return replace(found, normals=turned / np.linalg.norm(turned, axis=1, keepdims=True))
 
     return steadied
@@ -57,7 +62,7 @@ def steady(at: Callable[[Array], Samples], last: float) -> Callable[[Array], Sam
 def _means(normals: Array, step: float, closed: bool) -> Array:
     """Means (k, 3) of normals a step apart, m, each over a width of its own.
 
-    Beyond its ends an open path goes on as if turned by half a circle there, so its ends stay.
+    Beyond its ends an open path is continued by its point reflection, so its ends stay.
     """
     more = int(np.ceil(_REACH * _WIDTHS[-1] / step))
     around = ((more, more), (0, 0))
@@ -67,10 +72,10 @@ def _means(normals: Array, step: float, closed: bool) -> Array:
         longer = np.pad(normals, around, mode="reflect", reflect_type="odd")
     bells = [gaussian_filter1d(longer, width / step, axis=0) for width in _WIDTHS[1:]]
     means = np.stack([longer, *bells])
-    small = np.linalg.norm(means - longer, axis=2) <= OFF
+    small = np.linalg.norm(means - longer, axis=2) <= _MEAN
     widest = np.logical_and.accumulate(small).sum(axis=0) - 1
     # The least width nearby is averaged, so nowhere does a mean become wider than it may be.
-    near = 2 * int(3 * _EVEN / step) + 1
+    near = 2 * int(3 * _EVEN / step + 0.5) + 1
     width = minimum_filter1d(_slowly(_WIDTHS[widest], _RISE * step), near)
     width = gaussian_filter1d(width, _EVEN / step, truncate=3.0)
     level = np.clip(np.searchsorted(_WIDTHS, width, side="right") - 1, 0, len(_WIDTHS) - 2)

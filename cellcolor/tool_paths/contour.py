@@ -26,8 +26,8 @@ _NARROWEST, _WIDEST = 0.85, 1.05  # between which spacings are made to fit, in w
 _CORE = 0.7  # where a core reaches so far, in spacings, inside the last loop, there is one more
 
 
-Join = Callable[[Triangles, list[Index], float], list[int]]
-"""Makes one path of loops: a mesh, the loops as rows of its edges, the spacing, m."""
+Join = Callable[[Triangles, list[Index], float, Deadline], list[int]]
+"""Makes one path of loops: a mesh, the loops as rows of its edges, the spacing in m, a deadline."""
 
 
 def lay_contours(
@@ -114,7 +114,7 @@ def lay_loops(
     cores = slice_along(sliced.mesh, heights, np.array([_CORE * spacing]))
     rows += [line.vertices for line in level_lines(cores) if len(line.vertices) > 2]
     deadline.check()
-    return Laid(cores.mesh, join(cores.mesh, rows, spacing))
+    return Laid(cores.mesh, join(cores.mesh, rows, spacing, deadline))
 
 
 def _fitting(farthest: float, spacing: float) -> float:

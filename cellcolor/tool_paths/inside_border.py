@@ -27,8 +27,8 @@ def inside_border(region: Region, line: Line) -> tuple[ToolPath, Index]:
     elsewhere, such as the end of a crack, it keeps off that as well.
 
     Returns:
-        The path, and the numbers of its points that no chord may leave out, for it would cut the
-        border: one beside each of its vertices.
+        The path, and the numbers of the points that must be sampled, since a chord past them would
+        cut the border: one beside each of its vertices.
     """
     mesh, walk, triangles = line.mesh, line.vertices.tolist(), line.triangles.tolist()
     on_border = [*_on_border(line).tolist(), False]
@@ -50,17 +50,18 @@ def inside_border(region: Region, line: Line) -> tuple[ToolPath, Index]:
     for step, triangle in enumerate(triangles):
         start, end = walk[step : step + 2]
         if on_border[step]:
-            (third,) = mesh.points[np.setdiff1d(mesh.corners[triangle], [start, end])]
+            centroid = mesh.points[mesh.corners[triangle]].mean(axis=0)
             if not inside:
-                beside(start, third, triangle, True)
+                beside(start, centroid, triangle, True)
             inside = on_border[step + 1]
             spokes = _round(mesh, end, start, triangle, triangles[step + 1]) if inside else None
-            for number, (other, before) in enumerate(spokes or ()):
-                middle = number == (len(spokes or ()) - 1) // 2
-                beside(end, mesh.points[other], before, middle)
             inside = spokes is not None
-            if not spokes:
-                beside(end, third, triangle, True)
+            if spokes:
+                middle = _middle(mesh, end, spokes, triangles[step + 1])
+                for number, (other, before) in enumerate(spokes):
+                    beside(end, mesh.points[other], before, number == middle)
+            else:
+                beside(end, centroid, triangle, True)
             if inside:
                 continue
         corner = off_corner[end] if end >= 0 else np.zeros(3)
@@ -116,6 +117,14 @@ def _round(
         spokes.append((other, triangle))
         behind, triangle = other, onto
     return spokes
+
+
+def _middle(mesh: Triangles, vertex: int, spokes: list[tuple[int, int]], last: int) -> int:
+    """The number of the spoke that is nearest to half of the angle round a vertex."""
+    corners = mesh.corners[[*(before for _, before in spokes), last]]
+    angles = _angles(mesh.points[corners])[corners == vertex]
+    passed = np.cumsum(angles)
+    return int(np.abs(passed[:-1] - passed[-1] / 2).argmin())
 
 
 def _bends(points: Array, owns: Index) -> Mask:

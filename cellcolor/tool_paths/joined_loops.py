@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cellcolor.arrays import Array, Index
+from cellcolor.deadline import Deadline
 from cellcolor.tool_paths.distances import Ways, off_border, ways_from
 from cellcolor.tool_paths.triangles import Triangles
 from cellcolor.union_find import UnionFind
@@ -81,15 +82,17 @@ Part = tuple[int, int, int, bool, Door | None]
 and the door that it was entered by."""
 
 
-def join_loops(mesh: Triangles, rows: list[Index], gap: float) -> list[int]:
+def join_loops(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadline) -> list[int]:
     """One closed path along all loops, as vertices; the first is the last as well.
 
     Args:
         mesh: on which the loops are rows of edges; connected.
         rows: the loops.
         gap: wanted distance between the two bridges of a door, m.
+        deadline: when to give up.
     """
     loops, doors = doors_between(mesh, rows, gap)
+    deadline.check()
     at = by_loop(doors)
     # Begin where no door leaves a piece out.
     start = loops[0].arc(*at[0][0].places(0))[2] if at.get(0) else 0

@@ -22,9 +22,10 @@ from cellcolor.tool_paths.joined_loops import (
 )
 from cellcolor.tool_paths.triangles import Triangles
 
-_OVER = 5.0  # spacings; on that length a way leads over into the next loop,
-_SHARE = 0.25  # but on no more of the shorter one
-_LONGEST = 30.0  # spacings, of ways to the next loop; of a way aslant, times what it should be
+_OVER = 5.0  # spacings along a loop on which the path leads over into the next, at most
+_SHARE = 0.25  # of the shorter loop, at most, for the same
+_NEXT = 6.0  # spacings to the next loop, weighted, at most
+_LONGEST = 30.0  # times its intended length, weighted, a way over is at most
 _STRAY = 20.0  # times longer counts what is a whole spacing off such a way
 _BEGINNINGS = 24  # places of the innermost loop from which a spiral is tried
 
@@ -40,29 +41,33 @@ def lay_spiral(mesh: Triangles, spacing: float, deadline: Deadline) -> Laid:
     return lay_contours(mesh, spacing, deadline, wind)
 
 
-def wind(mesh: Triangles, rows: list[Index], gap: float) -> list[int]:
+def wind(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadline) -> list[int]:
     """One path along all loops: a spiral along a longest chain inward, and doors to all others.
 
     The first loop and the last one are walked all round. Of each loop between a stretch is left
-    out, and these stretches lie side by side: there the path leads aslant from each loop to the
-    next, so that these ways are as far apart as the loops. Where doors are everywhere in the way of
-    such stretches, all loops are joined by doors.
+    out, and these stretches lie side by side: there the path leads at a slant from each loop to the
+    next, so that these ways are as far apart as the loops. If no such stretches are found that no
+    door needs, all loops are joined by doors.
 
     Args:
         mesh: on which the loops are rows of edges; connected.
         rows: the loops.
         gap: wanted distance between the two bridges of a door, m.
+        deadline: when to give up.
     """
     loops, doors = doors_between(mesh, rows, gap)
+    if min(loop.length for loop in loops) <= 0:  # vertices may coincide
+        return join_loops(mesh, rows, gap, deadline)
     chain = _inward(loops, doors)
     links = {frozenset(pair) for pair in pairwise(chain)}
     at = by_loop([door for door in doors if frozenset(door.loops) not in links])
     last = loops[chain[-1]]
     for share in np.arange(_BEGINNINGS) / _BEGINNINGS:
-        parts = _spiral(mesh, loops, chain, at, last.moved(0, share * last.length), gap)
+        innermost = last.moved(0, share * last.length)
+        parts = _spiral(mesh, loops, chain, at, innermost, gap, deadline)
         if parts is not None:
             return walked(loops, at, parts)
-    return join_loops(mesh, rows, gap)
+    return join_loops(mesh, rows, gap, deadline)
 
 
 def _inward(loops: list[Loop], doors: list[Door]) -> list[int]:
@@ -89,12 +94,14 @@ def _spiral(
     at: dict[int, list[Door]],
     innermost: int,
     gap: float,
+    deadline: Deadline,
 ) -> list[Part | list[int]] | None:
     """The parts of a spiral past a place of the innermost loop; None if a door is in the way."""
     left = _left(mesh, [loops[number] for number in chain], innermost, gap)
     if left is None:
         return None
-    parts: list[Part | list[int]] = []
+    rounds: list[tuple[int, int, int, bool, None]] = []
+    ways: list[tuple[Loop, int, float, int]] = []
     enter = left[0][0]
     for position, (number, (leave, forward)) in enumerate(zip(chain, left, strict=True)):
         loop, inside = loops[number], position + 1 < len(chain)
@@ -103,15 +110,19 @@ def _spiral(
         left_out = (leave, enter) if forward else (enter, leave)
         if not _clear(loop, left_out, at.get(number, []), number):
             return None
-        parts.append((number, enter, leave, forward, None))
+        rounds.append((number, enter, leave, forward, None))
         if inside:
             inner, (beside, onward) = loops[chain[position + 1]], left[position + 1]
             along = min(_OVER * gap, _SHARE * min(loop.length, inner.length))
             enter = inner.moved(beside, along if onward else -along)
-            way = _over(mesh, loop, leave, along if forward else -along, inner.row[enter])
-            if way is None:
-                return None
-            parts.append(way)
+            ways.append((loop, leave, along if forward else -along, inner.row[enter]))
+    parts: list[Part | list[int]] = [rounds[0]]
+    for around, way_over in zip(rounds[1:], ways, strict=True):
+        deadline.check()
+        way = _over(mesh, *way_over, gap)
+        if way is None:
+            return None
+        parts += [way, around]
     return parts
 
 
@@ -120,13 +131,13 @@ def _left(
 ) -> list[tuple[int, bool]] | None:
     """Where loops, each inside the one before, are left, side by side, and if walked forward.
 
-    From the last one outward: no long loop is far from a short one inside it, while a short one may
-    be far from a place of the long one.
+    From the last one outward: every place of a short loop is near the long loop around it, while a
+    place of the long loop may be far from the short one.
     """
     graph = mesh.graph(off_border(mesh, gap / 2))
     places = [innermost]
     for inner, outer in pairwise(reversed(loops)):
-        ways = ways_from(graph, np.array([inner.row[places[-1]]]), _LONGEST * gap)
+        ways = ways_from(graph, np.array([inner.row[places[-1]]]), _NEXT * gap)
         places.append(int(ways.lengths[outer.row].argmin()))
         if not np.isfinite(ways.lengths[outer.row[places[-1]]]):
             return None
@@ -138,15 +149,17 @@ def _left(
     return list(zip(places, forward, strict=True))
 
 
-def _over(mesh: Triangles, loop: Loop, leave: int, along: float, onto: int) -> list[int] | None:
-    """The vertices between a place of a loop and a vertex of the next, nearest to a line aslant.
+def _over(
+    mesh: Triangles, loop: Loop, leave: int, along: float, onto: int, gap: float
+) -> list[int] | None:
+    """The vertices between a place of a loop and a vertex of the next, nearest to a slanting line.
 
     On that line the distance from the loop grows evenly with the way along it.
 
     Args:
         along: how far along the loop the line leads, m; backward if that is negative.
     """
-    near = ways_from(mesh.graph(), np.array(loop.row), 2 * abs(along))
+    near = ways_from(mesh.graph(), np.array(loop.row), max(2 * abs(along), 3 * gap))
     reached = np.isfinite(near.lengths)
     if not reached[onto]:
         return None
@@ -157,14 +170,17 @@ def _over(mesh: Triangles, loop: Loop, leave: int, along: float, onto: int) -> l
     off = np.ones(len(mesh.points))
     off[reached] = np.abs(near.lengths[reached] / near.lengths[onto] - passed)
     weights = mesh.lengths * (1.0 + _STRAY * np.minimum(off, 1.0)[mesh.edges].mean(axis=1))
-    ways = ways_from(mesh.graph(weights), np.array([loop.row[leave]]), _LONGEST * abs(along))
+    ways = ways_from(
+        mesh.graph(weights), np.array([loop.row[leave]]), _LONGEST * max(abs(along), gap)
+    )
     way = ways.back_from(onto)
     return way[-2:0:-1] if way[-1] == loop.row[leave] else None
 
 
 def _direction(mesh: Triangles, loop: Loop, place: int, gap: float) -> Array:
     """Where a loop leads at a place, forward."""
-    behind, ahead = (loop.row[loop.moved(place, way)] for way in (-gap, gap))
+    far = min(gap, loop.length / 8)
+    behind, ahead = (loop.row[loop.moved(place, way)] for way in (-far, far))
     return np.asarray(mesh.points[ahead] - mesh.points[behind])
 
 

@@ -1,7 +1,7 @@
 """What a pattern has left uncovered, reached by bends of the path and by spurs.
 
 A **bend** leads the path a little aside, toward such a place, and on. Where a bend is not enough,
-or would uncover another place, a **spur** leads there and back.
+would uncover another place or has no room near an end of the walk, a **spur** leads there and back.
 """
 
 from __future__ import annotations
@@ -33,7 +33,11 @@ _LONGEST = 12.0  # spacings: a way round to where a bend begins is no longer, we
 
 @dataclass(frozen=True)
 class _Bend:
-    """A piece of a walk, from one place to another, and the row of vertices to take its place."""
+    """A piece of a walk and the row of vertices to take its place.
+
+    ``first`` and ``last`` are places in the walk, both replaced; the row has the same vertices at
+    its ends.
+    """
 
     first: int
     last: int
@@ -64,7 +68,7 @@ def with_spurs(laid: Laid, spacing: float, deadline: Deadline) -> Laid:
         ways = [nearest.back_from(target) for target, _ in targets]
         bends, waiting = dict[int, _Bend](), set[int]()
         if number < _BENDING:
-            bends, waiting = _bends(mesh, graph, walk, ways, spacing)
+            bends, waiting = _bends(mesh, graph, walk, ways, spacing, deadline)
             bends = _harmless(mesh, walk, distances, bends, spacing)
         spurs = dict[int, list[int]]()
         for place, (way, (_, far)) in enumerate(zip(ways, targets, strict=True)):
@@ -82,7 +86,12 @@ def _short_of(mesh: Triangles, way: list[int], length: float) -> int:
 
 
 def _bends(
-    mesh: Triangles, graph: csr_matrix, walk: list[int], ways: list[list[int]], spacing: float
+    mesh: Triangles,
+    graph: csr_matrix,
+    walk: list[int],
+    ways: list[list[int]],
+    spacing: float,
+    deadline: Deadline,
 ) -> tuple[dict[int, _Bend], set[int]]:
     """Bends of a walk toward where ways begin that end on it.
 
@@ -99,6 +108,7 @@ def _bends(
     lasts = np.searchsorted(along, bases + _HALF * spacing)
     found, waiting, free = dict[int, _Bend](), set[int](), 1
     for number in np.argsort(firsts, kind="stable").tolist():
+        deadline.check()
         first, last, way = int(firsts[number]), int(lasts[number]), ways[number]
         if first < 1 or last == len(walk):
             continue

@@ -127,7 +127,7 @@ def test_steps_that_bow_off_their_way_are_told() -> None:
 
 
 @pytest.mark.parametrize("beyond", [0.0, 1e-6, 2e-5])
-def test_no_sample_is_just_beside_one_that_is_asked_for(beyond: float) -> None:
+def test_no_even_sample_is_just_beside_one_that_is_asked_for(beyond: float) -> None:
     """A step of micrometers takes a millisecond, and so would look like a stop."""
     x = np.array([0.0, 0.0095 + beyond, 0.019])
     points = np.stack([x, 0 * x, 0 * x], axis=1)

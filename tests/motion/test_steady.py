@@ -1,4 +1,4 @@
-"""Normals along a path turn steadily, and stay within a third of a degree of the surface's."""
+"""Normals along a path turn steadily, and stay within 0.4 degrees of the surface's."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import cellcolor
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, angles_between
 from cellcolor.motion.samples import Samples
 from cellcolor.motion.steady import OFF, steady
 from examples import examples
@@ -52,18 +52,18 @@ def test_what_turns_evenly_stays() -> None:
     assert turned(steady(at, 100.0)(places)) == pytest.approx(turned(at(places)), abs=1e-5)
 
 
-@given(st.lists(st.floats(-17.0, 17.0), min_size=1, max_size=12), st.integers(2, 200))
+@given(st.lists(st.floats(-2000.0, 2000.0), min_size=1, max_size=12), st.integers(2, 200))
 @examples(40)
 def test_never_far_off(rates: list[float], last: int) -> None:
-    """Rates in rad/m from knot to knot, so that a place is a degree at most. Means are taken every
-    0.2 mm, and between two of them the normal may bend by 34 rad/m."""
+    """Rates in rad/m from knot to knot; some paths are shorter than a bell curve, and some turns as
+    sharp as at a fold."""
     knots = np.linspace(0.0, 1e-3 * last, len(rates) + 1)
     angles = np.concatenate([[0.0], np.cumsum(np.diff(knots) * rates)])
     at = along_x(lambda x: np.interp(x, knots, angles))
     places = np.linspace(0.0, last, 7 * last)
     found = steady(at, float(last))(places)
     assert np.linalg.norm(found.normals, axis=1) == pytest.approx(1.0)
-    assert np.abs(turned(found) - turned(at(places))).max() < OFF + 34 * 2e-4 / 4
+    assert angles_between(found.normals, at(places).normals).max() < 1.001 * OFF
 
 
 def test_a_closed_path_ends_as_it_begins() -> None:

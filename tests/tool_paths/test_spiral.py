@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from painted import Painting, one_segment, square
 
 from cellcolor.arrays import Array
@@ -60,7 +61,38 @@ def test_two_lobes_are_a_spiral_and_loops_behind_a_door() -> None:
     inside = (np.abs(x - 1) > 0.1) | (np.abs(y - 0.5) < 0.16)
     faces = faces[inside[faces].all(axis=1)]
     used, faces = np.unique(faces, return_inverse=True)
-    found = covered(one_segment(points[used], faces.reshape(-1, 3)), "spiral")
+    lobes = one_segment(points[used], faces.reshape(-1, 3))
+    found = covered(lobes, "spiral")
     (path,) = found.paths.paths
     assert found.in_all.covered > 0.985 and found.in_all.mean_visits < 1.1
-    assert (turning(path.points, 0.8 * SPACING) > np.radians(150)).any()
+    sharp = (turning(path.points, 0.8 * SPACING) > np.radians(150)).sum()
+    (door_path,) = covered(lobes, "contour").paths.paths
+    assert 0 < sharp < 0.8 * (turning(door_path.points, 0.8 * SPACING) > np.radians(150)).sum()
+    assert np.linalg.norm(path.points[-1] - path.points[0]) > 3 * SPACING
+
+
+@pytest.mark.parametrize("spacing", [0.05, 0.07, 0.1])
+def test_short_inner_loops_do_not_end_the_spiral(spacing: float) -> None:
+    """Of an L, whose innermost loop is half a spacing long at 0.07."""
+    x, y = (rows.ravel() for rows in np.meshgrid(*[np.linspace(0, 1, 21)] * 2))
+    points = np.stack([x, y, np.zeros_like(x)], axis=1)
+    faces = np.array(grid_faces(21, 21))
+    inside = (x < 0.51) | (y < 0.51)
+    used, faces = np.unique(faces[inside[faces].all(axis=1)], return_inverse=True)
+    painting = one_segment(points[used], faces.reshape(-1, 3))
+    paths = [
+        cover(*painting, pattern=pattern, spacing_m=spacing, tool_radius_m=spacing).paths.paths[0]
+        for pattern in ("spiral", "contour")
+    ]
+    assert np.linalg.norm(paths[0].points[-1] - paths[0].points[0]) > spacing / 2
+    assert paths[0].length < 1.15 * paths[1].length
+
+
+def test_two_loops_are_walked_the_same_way_round() -> None:
+    """The inner one is shorter than two spacings. Turning back would take another half of one."""
+    options = {"spacing_m": 0.33, "tool_radius_m": 0.33}
+    spiral, doors = (
+        cover(*square(21), pattern=pattern, **options).paths.paths[0].length
+        for pattern in ("spiral", "contour")
+    )
+    assert spiral < doors
