@@ -103,8 +103,8 @@ def _round(
         behind: where the way comes from, along the border; a corner of the first triangle.
 
     Returns:
-        The edges that are crossed: their other ends, and the triangles before them. None where the
-        triangles at the vertex are not connected, as where parts touch in a point.
+        The other ends of the edges that are crossed, each with the triangle before it. None where
+        the triangles at the vertex are not connected, as where parts touch in a point.
     """
     spokes, triangle = list[tuple[int, int]](), first
     while triangle != last:

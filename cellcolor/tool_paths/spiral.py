@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from cellcolor.arrays import Array, Index
 from cellcolor.deadline import Deadline
@@ -61,11 +62,16 @@ def wind(mesh: Triangles, rows: list[Index], gap: float, deadline: Deadline) -> 
     chain = _inward(loops, doors)
     links = {frozenset(pair) for pair in pairwise(chain)}
     at = by_loop([door for door in doors if frozenset(door.loops) not in links])
+    graph = mesh.graph(off_border(mesh, gap / 2))
     last = loops[chain[-1]]
     for share in np.arange(_BEGINNINGS) / _BEGINNINGS:
+        deadline.check()
         innermost = last.moved(0, share * last.length)
-        parts = _spiral(mesh, loops, chain, at, innermost, gap, deadline)
-        if parts is not None:
+        left = _left(mesh, graph, [loops[number] for number in chain], innermost, gap)
+        parts = left and _spiral(
+            mesh, loops, list(zip(chain, left, strict=True)), at, gap, deadline
+        )
+        if parts:
             return walked(loops, at, parts)
     return join_loops(mesh, rows, gap, deadline)
 
@@ -90,20 +96,20 @@ def _inward(loops: list[Loop], doors: list[Door]) -> list[int]:
 def _spiral(
     mesh: Triangles,
     loops: list[Loop],
-    chain: list[int],
+    chain: list[tuple[int, tuple[int, bool]]],
     at: dict[int, list[Door]],
-    innermost: int,
     gap: float,
     deadline: Deadline,
 ) -> list[Part | list[int]] | None:
-    """The parts of a spiral past a place of the innermost loop; None if a door is in the way."""
-    left = _left(mesh, [loops[number] for number in chain], innermost, gap)
-    if left is None:
-        return None
+    """The parts of a spiral along a chain of loops; None if a door is in the way.
+
+    Args:
+        chain: the loops by number, each with what :func:`_left` says of it.
+    """
     rounds: list[tuple[int, int, int, bool, None]] = []
     ways: list[tuple[Loop, int, float, int]] = []
-    enter = left[0][0]
-    for position, (number, (leave, forward)) in enumerate(zip(chain, left, strict=True)):
+    enter = chain[0][1][0]
+    for position, (number, (leave, forward)) in enumerate(chain):
         loop, inside = loops[number], position + 1 < len(chain)
         if not inside:
             leave = enter
@@ -112,7 +118,8 @@ def _spiral(
             return None
         rounds.append((number, enter, leave, forward, None))
         if inside:
-            inner, (beside, onward) = loops[chain[position + 1]], left[position + 1]
+            following, (beside, onward) = chain[position + 1]
+            inner = loops[following]
             along = min(_OVER * gap, _SHARE * min(loop.length, inner.length))
             enter = inner.moved(beside, along if onward else -along)
             ways.append((loop, leave, along if forward else -along, inner.row[enter]))
@@ -127,14 +134,13 @@ def _spiral(
 
 
 def _left(
-    mesh: Triangles, loops: list[Loop], innermost: int, gap: float
+    mesh: Triangles, graph: csr_matrix, loops: list[Loop], innermost: int, gap: float
 ) -> list[tuple[int, bool]] | None:
     """Where loops, each inside the one before, are left, side by side, and if walked forward.
 
     From the last one outward: every place of a short loop is near the long loop around it, while a
     place of the long loop may be far from the short one.
     """
-    graph = mesh.graph(off_border(mesh, gap / 2))
     places = [innermost]
     for inner, outer in pairwise(reversed(loops)):
         ways = ways_from(graph, np.array([inner.row[places[-1]]]), _NEXT * gap)
@@ -161,7 +167,7 @@ def _over(
     """
     near = ways_from(mesh.graph(), np.array(loop.row), max(2 * abs(along), 3 * gap))
     reached = np.isfinite(near.lengths)
-    if not reached[onto]:
+    if not reached[onto] or near.lengths[onto] <= 0:  # vertices may coincide
         return None
     place = np.zeros(len(mesh.points), dtype=np.int64)
     place[loop.row] = np.arange(len(loop.row))
