@@ -9,6 +9,9 @@ from painted import Painting, one_segment, square
 from cellcolor.arrays import Array
 from cellcolor.lab.families.meshes import grid_faces
 from cellcolor.tool_paths.cover import Covered, cover
+from cellcolor.tool_paths.joined_loops import Loop
+from cellcolor.tool_paths.spiral import _direction
+from cellcolor.tool_paths.triangles import Triangles
 
 SPACING = 0.05
 
@@ -86,6 +89,26 @@ def test_short_inner_loops_do_not_end_the_spiral(spacing: float) -> None:
     ]
     assert np.linalg.norm(paths[0].points[-1] - paths[0].points[0]) > spacing / 2
     assert paths[0].length < 1.15 * paths[1].length
+
+
+@pytest.mark.parametrize("spacing", [0.2, 0.27])
+def test_a_core_shorter_than_two_spacings_is_led_into(spacing: float) -> None:
+    (path,) = cover(
+        *square(21), pattern="spiral", spacing_m=spacing, tool_radius_m=spacing
+    ).paths.paths
+    assert np.linalg.norm(path.points[-1] - path.points[0]) > spacing / 2
+
+
+@pytest.mark.parametrize("gaps_round", [1.3, 1.6, 1.9, 10.0])
+def test_where_a_loop_leads(gaps_round: float) -> None:
+    """Round a fan of triangles, forward: to +y at the place on the x axis."""
+    angles = 2 * np.pi * np.arange(36) / 36
+    ring = np.stack([np.cos(angles), np.sin(angles), 0 * angles], axis=1)
+    points = np.vstack([ring, np.zeros((1, 3))]) / (2 * np.pi)  # one meter round
+    corners = np.array([[k, (k + 1) % 36, 36] for k in range(36)])
+    mesh = Triangles(points, corners, np.tile([0.0, 0.0, 1.0], (37, 1)), np.arange(36))
+    found = _direction(mesh, Loop(mesh, np.arange(36)), 0, 1.0 / gaps_round)
+    assert found[1] > 0.9 * np.linalg.norm(found)
 
 
 def test_two_loops_are_walked_the_same_way_round() -> None:
