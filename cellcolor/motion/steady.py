@@ -14,7 +14,7 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 from scipy.ndimage import gaussian_filter1d, minimum_filter1d
 
-from cellcolor.arrays import Array
+from cellcolor.arrays import Array, unit
 from cellcolor.motion.samples import Samples
 
 OFF = float(np.deg2rad(0.4))
@@ -54,7 +54,7 @@ def steady(at: Callable[[Array], Samples], last: float) -> Callable[[Array], Sam
         # Beside a sharp fold normals turn by more between two points of the grid.
         sizes = np.linalg.norm(moved, axis=1, keepdims=True)
         turned = found.normals + moved * np.minimum(1.0, OFF / np.maximum(sizes, OFF))
-        return replace(found, normals=turned / np.linalg.norm(turned, axis=1, keepdims=True))
+        return replace(found, normals=unit(turned))
 
     return steadied
 

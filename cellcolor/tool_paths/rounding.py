@@ -27,7 +27,7 @@ _OFF = 0.25  # spacings; a traced point may be so far from where it was to lie
 _ROUNDS = 4
 _MOST_CROSSED = 100  # triangles, between two points
 _OUTSIDE = 1e-9  # of a triangle; points this far outside of it count as inside
-_SAME = 1e-9  # m; points nearer to each other are one. Of a unit normal, what counts as nothing
+_SAME = 1e-9  # m; points nearer to each other are one. Shorter sums of normals have no direction
 
 Row = list[float]
 

@@ -16,8 +16,6 @@ import numpy as np
 
 ROWS = {"square": (0.21, 0.33, 0.29, 0.41), "wok": (0.40, 0.52, -0.30, -0.18)}
 """What is drawn of each part: 120 mm, from and to in m along x and y."""
-
-
 COLUMNS = ("before", "now", "now, spiral")
 
 
