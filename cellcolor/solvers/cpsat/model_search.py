@@ -23,6 +23,8 @@ from cellcolor.solvers.cpsat.model.full import (
 )
 from cellcolor.solvers.cpsat.model.painting import canonical, moved
 from cellcolor.solvers.cpsat.part_state import FEW_STRANDS, PartState
+from cellcolor.solvers.cpsat.quota_model import colors_within, quota_model
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner, Quota
 from cellcolor.solvers.interface import PORTFOLIO
 
 TRIAL_EFFORT = 2.0
@@ -58,6 +60,58 @@ class ModelSearch:
             if not self._part.done and stages.index(stage) == number:
                 self._minimize(*stage, self._part.colors, deadline, final=stage == stages[-1])
 
+    def draw(
+        self, planner: Planner, quota: Quota, effort: float, deadline: Deadline
+    ) -> bool | None:
+        """Whether a division with as many segments as the bound keeps to a quota; it is offered.
+
+        Args:
+            planner: what has planned the part.
+            effort: deterministic seconds.
+
+        Returns:
+            None if that was not decided.
+        """
+        colors = colors_within(quota, len(self._part.colors))
+        stages = self._stages()
+        for stage in reversed(stages):
+            graph = self._graph(*stage, colors, deadline)
+            if isinstance(graph, DartGraph):
+                break
+        else:
+            return None
+        costs = self._part.costs
+        built = quota_model(graph, planner, quota, self._part.bound, costs, deadline)
+        solver = self._part.runner.single(effort, 0, deadline)
+        # Nothing is minimized, and without a linear relaxation CP-SAT is far quicker then.
+        solver.parameters.linearization_level = 0
+        status = self._part.runner.solve(solver, built.model)
+        if status in (cp_model.OPTIMAL, cp_model.FEASIBLE):
+            self._part.offer(graph, read_painting(graph, built.variables, solver, costs))
+            return True
+        return False if status == cp_model.INFEASIBLE and stage == stages[-1] else None
+
+    def _graph(
+        self,
+        strands: dict[int, int],
+        seams: tuple[Seam, ...],
+        colors: tuple[frozenset[int], ...],
+        deadline: Deadline,
+    ) -> DartGraph | float:
+        """The graph of a model, or how many terms the model would have if these are too many.
+
+        Raises:
+            OutOfTime: there is no time to build it.
+        """
+        if self._too_large(size := seams_size(seams)):
+            return size
+        graph = dart_graph(self._part.instance, colors, strands, seams, self._part.connected.loops)
+        if self._too_large(size := model_size(graph)):
+            return size
+        if size * SECONDS_A_TERM > deadline.left:
+            raise OutOfTime("building the model would take longer than the time left")
+        return graph
+
     def _stages(self) -> list[tuple[dict[int, int], tuple[Seam, ...]]]:
         """Strands and seams, from narrow to as wide as was asked for and can be needed."""
         wanted = self._part.widest
@@ -78,14 +132,10 @@ class ModelSearch:
         final: bool,
     ) -> None:
         """Solve one model; only the final one, the widest, also proves a bound."""
-        if not self._fits(seams_size(seams)):
+        graph = self._graph(strands, seams, colors, deadline)
+        if not isinstance(graph, DartGraph):
+            self.notes.append(not_built(self._with_workers(graph)))
             return
-        graph = dart_graph(self._part.instance, colors, strands, seams, self._part.connected.loops)
-        size = model_size(graph)
-        if not self._fits(size):
-            return
-        if size * SECONDS_A_TERM > deadline.left:
-            raise OutOfTime("building the model would take longer than the time left")
         costs = self._part.costs
         regions = color_regions(self._part.instance, colors)
         built = full_model(graph, regions, deadline=deadline, costs=costs)
@@ -106,13 +156,13 @@ class ModelSearch:
     def _proved(self, bound: float) -> None:
         self._part.raise_to(ceil(bound - 1e-6), for_surface=False)
 
-    def _fits(self, size: float) -> bool:
-        """Whether a model of so many terms is small enough to be built; noted if it is not."""
-        # Every worker has its own copy.
-        size *= max(1.0, (self._part.options.workers or PORTFOLIO) / PORTFOLIO)
-        if size > LARGEST_MODEL:
-            self.notes.append(not_built(size))
-        return size <= LARGEST_MODEL
+    def _too_large(self, size: float) -> bool:
+        """Whether a model of so many terms is too large to be built."""
+        return self._with_workers(size) > LARGEST_MODEL
+
+    def _with_workers(self, size: float) -> float:
+        """The terms of a model in comparable numbers: every worker has its own copy."""
+        return size * max(1.0, (self._part.options.workers or PORTFOLIO) / PORTFOLIO)
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
         """Hint the best division, if the model has all of its strands and colors."""

@@ -44,6 +44,9 @@ that of plans."""
 TURNS = 2
 """Turns in a row that may bring nothing before models are tried all the same."""
 
+EFFORTS = 4
+"""How often plans are tried with more effort before the model of the whole."""
+
 MORE_TRIES = 10
 """Segments left out in vain, for each segment, before a turn expects nothing better of that."""
 
@@ -152,6 +155,19 @@ class PartSearch(PartState):
         """A few moves from the cells painted whole, as the cover has them."""
         self.recolor(*self._whole, seed, deadline, FEW_MOVES, whole_first=True)
 
+    def avoid(self, deadline: Deadline) -> None:
+        """Plans that say what segments avoid, too; on a small part they are decided one by one."""
+        if self.large:
+            self.planning.avoid(deadline)
+        else:
+            self.planning.decide(self.models.draw, deadline)
+
+    def settle(self, deadline: Deadline) -> None:
+        """Plans of a small part, with more and more effort."""
+        for _ in range(0 if self.large else EFFORTS):
+            if not self.done:
+                self.planning.decide(self.models.draw, deadline)
+
     def narrow_gap(self, deadline: Deadline) -> None:
         """Take turns while the gap is wide, until some in a row bring nothing."""
         in_vain = 0
@@ -199,7 +215,10 @@ class PartSearch(PartState):
     def insist(self, deadline: Deadline) -> None:
         """Plans with more effort, until their share of the time is over."""
         try:
-            self.planning.insist(deadline)
+            if self.large:
+                self.planning.insist(deadline)
+            else:
+                self.planning.decide(self.models.draw, deadline)
         except OutOfTime as error:
             if isinstance(error, KeyboardInterrupt):
                 raise

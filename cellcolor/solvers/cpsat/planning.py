@@ -5,6 +5,7 @@ A plan says of each segment its color and the cells that it has a share in; ``ro
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from contextlib import suppress
 
 from ortools.sat.python import cp_model
@@ -15,7 +16,12 @@ from cellcolor.solvers.cpsat.part_state import PartState
 from cellcolor.solvers.cpsat.routes.recoloring import FEW_MOVES
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
-from cellcolor.solvers.cpsat.routes.segment_plans import Planner, SegmentPlan, Undecided
+from cellcolor.solvers.cpsat.routes.segment_plans import (
+    Planner,
+    Quota,
+    SegmentPlan,
+    Undecided,
+)
 
 PLAN_EFFORT, MORE_EFFORT, GROWTH = 0.05, 2.0, 4
 """Deterministic seconds for a plan; most take a hundredth of the first number. The second one is
@@ -25,17 +31,24 @@ FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
 be routed takes a few."""
 
-LEVELS = ((1, 0.1), (2, 0.1), (1, 0.4), (2, 0.4)), ((1, 1.0), (2, 0.2))
+LEVELS = ((1, 0.1), (2, 0.1), (0, 0.2), (1, 0.3), (2, 0.3)), ((1, 1.0), (2, 0.2))
 """How much of a linear relaxation plans are made with that were left undecided, and the share of
-the effort; on large parts the second row. Plans of many segments are ruled out by a full relaxation
-or by a small one, hardly ever by both; without any, as small plans are made, by neither. On large
+the effort; on large parts the second row. On small parts most is decided soonest without any. Plans
+of many segments are ruled out by a full relaxation or by a small one, hardly ever by both. On large
 parts a full one takes longest, and seldom says more."""
 
 LITTLE = 2
 """With a gap of up to so many segments, plans may also say which cells segments avoid."""
 
+SHARE_OF_BOTH = 0.25
+"""The share of the effort for drawing the segments of two plans together."""
+
 ATTEMPTS = 3
 """Plans to route before the full model has to decide; with more effort only one of a large part."""
+
+
+Draw = Callable[[Planner, Quota, float, Deadline], bool | None]
+"""Decides whether a division keeps to a quota (``ModelSearch.draw``)."""
 
 
 class Planning:
@@ -52,6 +65,8 @@ class Planning:
         self._undecided = False
         self._avoiding = False
         self._routed_at = 0
+        # For a number of segments, quotas to which no division keeps that has so many.
+        self._refused: dict[int, list[Quota]] = {}
         self._deadline = part.options.deadline
 
     def route(self, deadline: Deadline) -> None:
@@ -73,6 +88,52 @@ class Planning:
         """Plan what was left undecided with more effort, unless hubs give a better bound."""
         if self._undecided:
             self._plan_with_effort(MORE_EFFORT, deadline)
+
+    def decide(self, draw: Draw, deadline: Deadline) -> None:
+        """Decide plan by plan whether its segments can be drawn, until one can be or none is left.
+
+        If none is left, the bound rises, and it goes on with one segment more. What is proved so is
+        true in the search space only, because it limits how many segments cross an edge.
+
+        Args:
+            draw: see there.
+        """
+        if self.planner is None or self._part.hubs is not None:
+            return
+        self._avoiding = True
+        self._deadline = deadline
+        self._effort = GROWTH * self._effort if self._thorough else MORE_EFFORT
+        with suppress(Undecided):
+            while not self._part.done:
+                plan = self._plan_that_holds(self.planner, 0, deadline)
+                self._route(plan, 1, ROUNDS, 0, deadline)
+                if not self._part.done:
+                    self._draw(self.planner, draw, deadline)
+
+    def _draw(self, planner: Planner, draw: Draw, deadline: Deadline) -> None:
+        """Draw the last plan, or refuse how many segments its regions have, and other plans, too.
+
+        The quota that was refused last grows as long as that takes little effort. So a few models
+        decide about many plans.
+
+        Raises:
+            Undecided: that takes more effort.
+        """
+        quota = planner.quota
+        refused = self._refused.setdefault(self._part.bound, [])
+        if refused:
+            both = {region: max(most, quota.get(region, 0)) for region, most in refused[-1].items()}
+            both = {**quota, **both}
+            drawn = draw(planner, both, SHARE_OF_BOTH * self._effort, deadline)
+            if drawn is False:
+                refused[-1] = both
+            if drawn is not None:
+                return
+        drawn = draw(planner, quota, self._effort, deadline)
+        if drawn is None:
+            raise Undecided
+        if not drawn:
+            refused.append(quota)
 
     def avoid(self, deadline: Deadline) -> None:
         """Plans that say what segments avoid, too, where few segments are left above the bound.
@@ -119,10 +180,11 @@ class Planning:
         """
         while True:
             deadline.check()
-            plan = planner.plan(self._part.bound, attempt, self._thorough)
+            refused = self._refused.get(self._part.bound, ())
+            plan = planner.plan(self._part.bound, attempt, self._thorough, refused)
             if plan is None:
-                self._part.raise_to(self._part.bound + 1, for_surface=True)
-                if not planner.heeds_conflicts:
+                self._part.raise_to(self._part.bound + 1, for_surface=not refused)
+                if not refused and not planner.heeds_conflicts:
                     self._part.cover_bound = self._part.bound  # nothing but the cells was heeded
                 continue
             self._part.planned = [segment.region for segment in plan]
@@ -130,6 +192,8 @@ class Planning:
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
             if self._part.done:
                 return plan
+            if self._rare and not planner.find_partings(plan, deadline):
+                self._route(plan, 1, ROUNDS, attempt, deadline)
             if not planner.find_conflicts(plan, deadline, avoiding=self._avoiding):
                 return plan
 
@@ -159,6 +223,12 @@ class Planning:
             return 0, 1
         known, self._routed_at = self._routed_at, self._part.bound
         return () if known == self._part.bound else (1,)
+
+    @property
+    def _rare(self) -> bool:
+        """Whether hardly any plan holds, and others may well lead to better divisions."""
+        wide = self._part.segments >= self._part.bound + LITTLE
+        return self._avoiding and wide and not self._part.large
 
     @property
     def _thorough(self) -> bool:

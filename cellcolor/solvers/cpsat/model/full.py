@@ -106,6 +106,7 @@ def full_model(
     groups: Sequence[Group] = DEFINING + REDUNDANT,
     deadline: Deadline = NEVER,
     costs: Sequence[int] | None = None,
+    model: cp_model.CpModel | None = None,
 ) -> Model:
     """The model that minimizes the number of segments, or what they cost.
 
@@ -113,8 +114,9 @@ def full_model(
         regions: the color regions of the instance, for the set-cover constraint.
         groups: the functions that add its constraints.
         costs: what a segment of each color costs; None for 1 each.
+        model: to add all this to; None for a new one.
     """
-    model = cp_model.CpModel()
+    model = cp_model.CpModel() if model is None else model
     variables = make_variables(model, graph)
     for group in groups:
         deadline.check()

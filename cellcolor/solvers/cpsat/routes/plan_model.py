@@ -157,6 +157,16 @@ class PlanModel:
         for tangle in cells.tangles:
             self._add_tangle(tangle)
 
+    def refuse(self, quota: Mapping[int, int]) -> None:
+        """Have a region with more segments than a quota allows it; none where it is not named."""
+        literals = []
+        for region, own in enumerate(self._copies):
+            allowed = quota.get(region, 0)
+            if allowed < own:
+                literals.append(self.in_use[region, allowed])
+            literals += self._beyond(region)
+        self.model.add_bool_or(literals)
+
     def _add_segments(self, last: Mapping[SegmentName, set[int]]) -> None:
         """Literals for the copies in use, in their order, and for the kinds that each touches."""
         model = self.model
@@ -200,7 +210,7 @@ class PlanModel:
             for region in self._cells.regions_of[merged_cell]:
                 kind = self._cells.kinds[region].get(merged_cell)
                 if kind is None:
-                    literals.append(self.in_use[region, 0])
+                    literals += [self.in_use[first] for first in self._segments_in(region)[:1]]
                 else:
                     own = self._segments_in(region)
                     literals += [self.touched[segment][kind] for segment in own]

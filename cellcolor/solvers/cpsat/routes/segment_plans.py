@@ -10,7 +10,8 @@ seconds.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterator, Mapping, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from math import prod
@@ -54,6 +55,9 @@ class PlannedSegment:
 
 SegmentPlan = tuple[PlannedSegment, ...]
 
+Quota = Mapping[Region, int]
+"""How many segments each color region may have at most; none if it is not named."""
+
 MOST_LITERALS = 100_000
 """The most literals of a model, one for each copy and kind; beyond that the planner gives up."""
 
@@ -73,6 +77,20 @@ MOST_STARTS = 5
 are drawn from this many of its merged cells."""
 
 
+@dataclass(frozen=True, slots=True)
+class ModelWithin:
+    """The model of the plans that keep to a quota.
+
+    Attributes:
+        model: the model.
+        touching: for a color region and a cell of it, literals of which one is true if a segment of
+            the region touches the cell; None if no parting and no tangle asks.
+    """
+
+    model: cp_model.CpModel
+    touching: Callable[[Region, int], list[cp_model.IntVar] | None]
+
+
 class Undecided(Exception):
     """Within its limits the planner neither found a plan nor proved that there is none."""
 
@@ -89,6 +107,9 @@ class Planner:
             cheapest cover costs.
         at_once: whether all segments of a region are told apart from the beginning. With few cells
             that is decided sooner; with many the model would be too large.
+
+    Attributes:
+        instance: the instance.
     """
 
     def __init__(
@@ -102,7 +123,7 @@ class Planner:
         at_once: bool = False,
     ) -> None:
         self._prices = None if costs is None else [costs[color] for color, _ in regions]
-        self._instance = instance
+        self.instance = instance
         self._regions = regions
         self._fewest = fewest
         self._solve = solve
@@ -126,7 +147,13 @@ class Planner:
             (self._number[region], 0): set() for region in cover
         }
 
-    def plan(self, segments: int, seed: int, thoroughly: bool = False) -> SegmentPlan | None:
+    def plan(
+        self,
+        segments: int,
+        seed: int,
+        thoroughly: bool = False,
+        refused: Sequence[Quota] = (),
+    ) -> SegmentPlan | None:
         """A plan with an exact number of segments that respects all partings and tangles so far.
 
         Args:
@@ -134,6 +161,7 @@ class Planner:
                 cost together.
             seed: other seeds give other plans, if there are several.
             thoroughly: whether to accept far more partings before giving up, which takes longer.
+            refused: the plan keeps to none of these quotas.
 
         Returns:
             A plan, or None if it is proved that there is none.
@@ -149,6 +177,8 @@ class Planner:
             copies = list(map(min, self._copies, most))
             self._refuse_large(cells, copies, thoroughly)
             built = PlanModel(cells, segments, copies, most, self._last, self._prices)
+            for quota in refused:
+                built.refuse({self._number[region]: number for region, number in quota.items()})
             model, touched = built.model, built.touched
             if seed:
                 # Without a random objective, other seeds find the same plan again.
@@ -173,6 +203,25 @@ class Planner:
         }
         return self._read(cells.kinds, seed)
 
+    def model_within(self, quota: Quota, segments: int) -> ModelWithin:
+        """The model of the plans with an exact number of segments that keep to a quota.
+
+        Args:
+            segments: as in :meth:`plan`.
+        """
+        cells = PlanCells(self._merged_cells_of, self._parted_cells(), self._tangles)
+        copies = [quota.get(region, 0) for region in self._regions]
+        built = PlanModel(cells, segments, copies, copies, self._last, self._prices)
+
+        def touching(region: Region, cell: int) -> list[cp_model.IntVar] | None:
+            number = self._number[region]
+            kind = cells.kinds[number].get(self._merged.merged_cell_of[cell])
+            if kind is None:
+                return None
+            return [built.touched[number, copy][kind] for copy in range(copies[number])]
+
+        return ModelWithin(built.model, touching)
+
     def _refuse_large(self, cells: PlanCells, copies: Sequence[int], thoroughly: bool) -> None:
         """Refuse what would take too long.
 
@@ -191,6 +240,15 @@ class Planner:
             or sum(tangled) > MOST_TANGLED
         ):
             raise Undecided
+
+    @property
+    def quota(self) -> Quota:
+        """How many segments each color region has in the last plan.
+
+        Together they are as many as were asked for. The plan itself leaves out segments for which
+        no cell is left.
+        """
+        return Counter(self._regions[region] for region, _ in self._last)
 
     @property
     def heeds_conflicts(self) -> bool:
@@ -262,7 +320,7 @@ class Planner:
                 continue
             if numbers not in self._pairs:
                 deadline.check()
-                self._pairs[numbers] = RegionPair(self._instance, first.region, second.region)
+                self._pairs[numbers] = RegionPair(self.instance, first.region, second.region)
             pair = self._pairs[numbers]
             for key, side, own, parted in (
                 (numbers, pair.first, first, second),

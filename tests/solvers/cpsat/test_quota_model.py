@@ -1,0 +1,136 @@
+"""Plans decided one after the other by the full model in their colors."""
+
+from __future__ import annotations
+
+from itertools import product
+
+import pytest
+from exhaustive_minima import minimum
+from hypothesis import given
+from hypothesis import strategies as st
+from library import INSTANCES
+from rooms import hub, planner_of
+
+from cellcolor.data.bounds import greatest
+from cellcolor.data.instance import Instance
+from cellcolor.deadline import NEVER, Deadline
+from cellcolor.lab.families import planar_graph
+from cellcolor.solvers.bounds.cover import color_regions
+from cellcolor.solvers.checked import solve
+from cellcolor.solvers.cpsat.model_runs import Runner
+from cellcolor.solvers.cpsat.part_search import PartSearch
+from cellcolor.solvers.cpsat.parts import split
+from cellcolor.solvers.interface import Options
+from examples import examples
+
+RED, BLUE, GREEN = 0, 1, 2
+
+EFFORT = 100.0
+
+
+def searches(instance: Instance) -> list[PartSearch]:
+    """The parts of an instance in all colors, covered."""
+    options = Options(workers=1)
+    own = tuple(frozenset(cell.colors) for cell in instance.cells)
+    found = [
+        PartSearch(part, options, Runner(options), lambda: None) for part in split(instance, own)
+    ]
+    for search in found:
+        search.cover(NEVER)
+    return found
+
+
+@examples(40)
+@given(seed=st.integers(0, 10**6), cells=st.integers(2, 8), colors=st.integers(2, 4))
+def test_plans_decided_one_by_one_come_to_the_minimum(seed: int, cells: int, colors: int) -> None:
+    """Against brute force. Nothing else is asked: no routes, no segments left out, no model of the
+    whole."""
+    instance = planar_graph(seed, cells, cells + 3, colors)
+    parts = searches(instance)
+    for part in parts:
+        part.planning.planner = planner_of(part.instance)
+        part.planning.decide(part.models.draw, NEVER)
+        assert part.segments == part.bound
+        assert part.surface_bound <= part.bound
+    assert sum(part.bound for part in parts) == minimum(instance)
+
+
+@pytest.mark.parametrize(
+    ("quota", "drawn"),
+    [
+        # Either color may join its two petals in the hub, and the others are one segment each.
+        ({RED: 1, BLUE: 2}, True),
+        ({RED: 2, BLUE: 1}, True),
+        ({RED: 2, BLUE: 2}, True),
+        ({RED: 1, BLUE: 1}, False),
+    ],
+)
+def test_what_keeps_to_a_quota_is_drawn(quota: dict[int, int], drawn: bool) -> None:
+    (part,) = searches(hub(RED, BLUE, RED, BLUE))
+    planner = planner_of(part.instance)
+    part.raise_to(3, for_surface=True)
+    own = {region: quota[region[0]] for region in color_regions(part.instance)}
+    assert part.models.draw(planner, own, EFFORT, NEVER) is drawn
+
+
+@examples(30)
+@given(
+    seed=st.integers(0, 10**6),
+    most=st.lists(st.integers(0, 2), min_size=12, max_size=12),
+    more=st.integers(0, 2),
+)
+def test_plans_keep_to_no_quota_that_was_refused(seed: int, most: list[int], more: int) -> None:
+    """And if there is no plan then, each cover of that size keeps to one of them."""
+    instance = planar_graph(seed, 7, 10, 3)
+    planner = planner_of(instance)
+    regions = color_regions(instance)
+    refused = [
+        {region: number for region, number in zip(regions, numbers, strict=False) if number}
+        for numbers in (most[:6] + most[6:], most[6:] + most[:6])
+    ]
+    fewest = next(n for n in range(1, 20) if planner.plan(n, 0) is not None)
+    plan = planner.plan(fewest + more, 0, refused=refused)
+    if plan is not None:
+        used = planner.quota
+        assert sum(used.values()) == fewest + more
+        assert {segment.region for segment in plan} <= used.keys()
+        assert all(any(used[r] > quota.get(r, 0) for r in used) for quota in refused)
+        return
+    every = {cell.id for cell in instance.cells}
+    for counts in product(range(fewest + more + 1), repeat=len(regions)):
+        if sum(counts) != fewest + more:
+            continue
+        used_cells = {c for (_, cells), n in zip(regions, counts, strict=True) if n for c in cells}
+        if used_cells == every:
+            kept = [
+                all(n <= quota.get(r, 0) for r, n in zip(regions, counts, strict=True))
+                for quota in refused
+            ]
+            assert any(kept)
+
+
+def test_a_quota_grows_with_the_plans_that_cannot_be_drawn() -> None:
+    """On this double torus, 153 choices of regions cover all cells. A handful of models decide."""
+    instance = Instance.read(INSTANCES / "hard" / "large_double_torus_1.json")
+    asked = []
+    for part in searches(instance):
+        part.planning.route(NEVER)
+
+        def draw(planner, quota, effort, deadline, part=part):  # type: ignore[no-untyped-def]
+            asked.append(quota)
+            return part.models.draw(planner, quota, effort, deadline)
+
+        part.planning.decide(draw, Deadline.after(60))
+        assert part.done
+    assert len(asked) < 30
+
+
+def test_a_limit_of_corridors_proves_nothing_for_the_surface() -> None:
+    """With two corridors across an edge six segments are enough for this surface, with one seven:
+    what models in the colors of plans prove is true in their search space only."""
+    instance = Instance.read(INSTANCES / "hard" / "large_double_torus_1.json")
+    solution = solve(instance, Options(deadline=Deadline.after(60), workers=1))
+    assert (solution.status, solution.segments) == ("optimal", 7)
+    assert greatest(solution.bounds or (), "surface") == 6
+    wide = solve(instance, Options(deadline=Deadline.after(60), search_space="surface", workers=1))
+    assert (wide.status, wide.segments) == ("optimal", 6)
