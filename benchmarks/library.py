@@ -43,6 +43,7 @@ ORIGINS = {
     "resolutions/*": ("scenes", ""),
     "parts/machined-part*": ("parts", "fandisk.obj of common-3d-test-models before a UR5"),
     "parts/*": ("parts", ""),
+    "hard/*_raw*": ("parts", ""),
     "random/blobs_*": ("blobs", "random blobs, given with the specification of this project"),
     "random/hub_*": ("hubs", "a random hub, given with the specification of this project"),
     "random/planar_*": ("planar graphs", ""),

@@ -95,6 +95,7 @@ RANDOM = {
         "large_blobs_96_2": "blobs(2, 96, 12, waves=3.0)",
         "large_blobs_96_4": "blobs(4, 96, 12, waves=3.0)",
         "large_trees_1": "LARGE['trees'](1)",
+        "large_blobs_192_0": "blobs(0, 192, 12, waves=8.0)",
         **{
             f"patches_overlapping_{seed}": (f"voronoi({seed}, 'disc', 24, 78, 20, scattered=True)")
             for seed in (0, 2, 3, 4)

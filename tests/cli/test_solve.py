@@ -184,9 +184,7 @@ class TestSolve:
         ("instance", "options"),
         [
             # Its minimum is open, so that the search does not end before the signal comes.
-            pytest.param(
-                INSTANCES / "hard" / "large_double_torus_1.json", [], marks=pytest.mark.second
-            ),
+            pytest.param(INSTANCES / "hard" / "hub_loops_4x6_8.json", [], marks=pytest.mark.second),
             (INSTANCES / "random" / "hub_24.json", ["--solver", "dfs"]),
         ],
         ids=["cp-sat", "dfs"],

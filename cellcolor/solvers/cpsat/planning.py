@@ -31,11 +31,11 @@ FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
 be routed takes a few."""
 
-LEVELS = ((1, 0.1), (2, 0.1), (0, 0.2), (1, 0.3), (2, 0.3)), ((1, 1.0), (2, 0.2))
+LEVELS = ((1, 0.1), (2, 0.1), (0, 0.6), (1, 0.1), (2, 0.1)), ((1, 1.0), (2, 0.2))
 """How much of a linear relaxation plans are made with that were left undecided, and the share of
-the effort; on large parts the second row. On small parts most is decided soonest without any. Plans
-of many segments are ruled out by a full relaxation or by a small one, hardly ever by both. On large
-parts a full one takes longest, and seldom says more."""
+the effort; on large parts the second row. Plans of many segments are ruled out by a full relaxation,
+by a small one or by none, hardly ever by all. On large parts a full one takes longest, and seldom
+says more."""
 
 LITTLE = 2
 """With a gap of up to so many segments, plans may also say which cells segments avoid."""

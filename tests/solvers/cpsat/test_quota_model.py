@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import product
 
 import pytest
-from exhaustive_minima import minimum
+from exhaustive_minima import literal_minimum, minimum
 from hypothesis import given
 from hypothesis import strategies as st
 from library import INSTANCES
@@ -13,6 +13,7 @@ from rooms import hub, planner_of
 
 from cellcolor.data.bounds import greatest
 from cellcolor.data.instance import Instance
+from cellcolor.data.objective import Objective
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.lab.families import planar_graph
 from cellcolor.solvers.bounds.cover import color_regions
@@ -20,6 +21,7 @@ from cellcolor.solvers.checked import solve
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.part_search import PartSearch
 from cellcolor.solvers.cpsat.parts import split
+from cellcolor.solvers.cpsat.routes.segment_plans import Planner
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -28,9 +30,9 @@ RED, BLUE, GREEN = 0, 1, 2
 EFFORT = 100.0
 
 
-def searches(instance: Instance) -> list[PartSearch]:
+def searches(instance: Instance, options: Options | None = None) -> list[PartSearch]:
     """The parts of an instance in all colors, covered."""
-    options = Options(workers=1)
+    options = options or Options(workers=1)
     own = tuple(frozenset(cell.colors) for cell in instance.cells)
     found = [
         PartSearch(part, options, Runner(options), lambda: None) for part in split(instance, own)
@@ -46,13 +48,47 @@ def test_plans_decided_one_by_one_come_to_the_minimum(seed: int, cells: int, col
     """Against brute force. Nothing else is asked: no routes, no segments left out, no model of the
     whole."""
     instance = planar_graph(seed, cells, cells + 3, colors)
-    parts = searches(instance)
+    assert decided(searches(instance)) == minimum(instance)
+
+
+def decided(parts: list[PartSearch]) -> int:
+    """What the parts come to by plans decided one by one, and nothing else."""
     for part in parts:
-        part.planning.planner = planner_of(part.instance)
+        part.planning.planner = Planner(
+            part.instance,
+            part.regions,
+            part.cover_bound,
+            part.planning._solve_plan,
+            costs=part.costs,
+            at_once=True,
+        )
         part.planning.decide(part.models.draw, NEVER)
         assert part.segments == part.bound
-        assert part.surface_bound <= part.bound
-    assert sum(part.bound for part in parts) == minimum(instance)
+    return sum(part.bound for part in parts)
+
+
+@examples(20)
+@given(
+    seed=st.integers(0, 10**6), cells=st.integers(2, 5), costs=st.tuples(*[st.integers(1, 4)] * 3)
+)
+def test_with_costs_they_come_to_the_least_cost(
+    seed: int, cells: int, costs: tuple[int, ...]
+) -> None:
+    """Against every division, literally."""
+    instance = planar_graph(seed, cells, cells + 2, 3)
+    objective = Objective(dict(zip(instance.colors, costs, strict=False)))
+    parts = searches(instance, Options(workers=1, objective=objective))
+    assert decided(parts) == literal_minimum(instance, costs)
+
+
+@examples(10)
+@given(seed=st.integers(0, 10**6), cells=st.integers(2, 7))
+def test_with_two_corridors_they_come_to_the_minimum_of_the_depth_first_search(
+    seed: int, cells: int
+) -> None:
+    instance = planar_graph(seed, cells, cells + 3, 3)
+    wide = Options(workers=1, search_space="surface", strands=2)
+    assert decided(searches(instance, wide)) == solve(instance, wide, "dfs").segments
 
 
 @pytest.mark.parametrize(
