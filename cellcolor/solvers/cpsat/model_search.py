@@ -63,7 +63,7 @@ class ModelSearch:
     def draw(
         self, planner: Planner, quota: Quota, effort: float, deadline: Deadline
     ) -> bool | None:
-        """Whether a division with as many segments as the bound keeps to a quota; it is offered.
+        """Whether a division with as many segments as the bound keeps to a quota; one is offered.
 
         Args:
             planner: what has planned the part.
@@ -75,7 +75,7 @@ class ModelSearch:
         colors = colors_within(quota, len(self._part.colors))
         stages = self._stages()
         for stage in reversed(stages):
-            graph = self._graph(*stage, colors, deadline)
+            graph = self._graph(*stage, colors, deadline, 1)
             if isinstance(graph, DartGraph):
                 break
         else:
@@ -97,17 +97,21 @@ class ModelSearch:
         seams: tuple[Seam, ...],
         colors: tuple[frozenset[int], ...],
         deadline: Deadline,
+        workers: int,
     ) -> DartGraph | float:
         """The graph of a model, or how many terms the model would have if these are too many.
+
+        Every worker has its own copy, and up to ``PORTFOLIO`` copies are counted as one.
 
         Raises:
             OutOfTime: there is no time to build it.
         """
-        if self._too_large(size := seams_size(seams)):
-            return size
+        copies = max(1.0, workers / PORTFOLIO)
+        if copies * (size := seams_size(seams)) > LARGEST_MODEL:
+            return copies * size
         graph = dart_graph(self._part.instance, colors, strands, seams, self._part.connected.loops)
-        if self._too_large(size := model_size(graph)):
-            return size
+        if copies * (size := model_size(graph)) > LARGEST_MODEL:
+            return copies * size
         if size * SECONDS_A_TERM > deadline.left:
             raise OutOfTime("building the model would take longer than the time left")
         return graph
@@ -132,9 +136,10 @@ class ModelSearch:
         final: bool,
     ) -> None:
         """Solve one model; only the final one, the widest, also proves a bound."""
-        graph = self._graph(strands, seams, colors, deadline)
+        workers = self._part.options.workers or PORTFOLIO
+        graph = self._graph(strands, seams, colors, deadline, workers)
         if not isinstance(graph, DartGraph):
-            self.notes.append(not_built(self._with_workers(graph)))
+            self.notes.append(not_built(graph))
             return
         costs = self._part.costs
         regions = color_regions(self._part.instance, colors)
@@ -155,14 +160,6 @@ class ModelSearch:
 
     def _proved(self, bound: float) -> None:
         self._part.raise_to(ceil(bound - 1e-6), for_surface=False)
-
-    def _too_large(self, size: float) -> bool:
-        """Whether a model of so many terms is too large to be built."""
-        return self._with_workers(size) > LARGEST_MODEL
-
-    def _with_workers(self, size: float) -> float:
-        """The terms of a model in comparable numbers: every worker has its own copy."""
-        return size * max(1.0, (self._part.options.workers or PORTFOLIO) / PORTFOLIO)
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
         """Hint the best division, if the model has all of its strands and colors."""

@@ -44,7 +44,7 @@ that of plans."""
 TURNS = 2
 """Turns in a row that may bring nothing before models are tried all the same."""
 
-EFFORTS = 4
+EFFORTS = 3
 """How often plans are tried with more effort before the model of the whole."""
 
 MORE_TRIES = 10

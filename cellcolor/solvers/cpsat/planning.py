@@ -31,14 +31,22 @@ FIRST_ROUNDS, ROUNDS = 20, 60
 """Rounds of routing before crossing segments are looked for in a plan, and after. A plan that can
 be routed takes a few."""
 
-LEVELS = ((1, 0.1), (2, 0.1), (0, 0.6), (1, 0.1), (2, 0.1)), ((1, 1.0), (2, 0.2))
+LEVELS = ((1, 0.1), (2, 0.2), (0, 0.7)), ((1, 1.0), (2, 0.2))
 """How much of a linear relaxation plans are made with that were left undecided, and the share of
-the effort; on large parts the second row. Plans of many segments are ruled out by a full relaxation,
-by a small one or by none, hardly ever by all. On large parts a full one takes longest, and seldom
-says more."""
+the effort; on large parts the second row. Plans of many segments are ruled out by a full
+relaxation, by a small one or by none, hardly ever by all of these. On large parts a full one takes
+longest, and seldom says more."""
 
 LITTLE = 2
-"""With a gap of up to so many segments, plans may also say which cells segments avoid."""
+"""With a gap of up to so many segments, plans of large parts may also say which cells segments
+avoid."""
+
+WIDE_GAP = 2
+"""With a gap of so many segments, small parts are routed by plans of which any two segments fit."""
+
+MOST_EFFORT = 100.0
+"""No more than so many deterministic seconds are spent on a plan that is decided alone; then it is
+the turn of the full model."""
 
 SHARE_OF_BOTH = 0.25
 """The share of the effort for drawing the segments of two plans together."""
@@ -102,11 +110,13 @@ class Planning:
             return
         self._avoiding = True
         self._deadline = deadline
-        self._effort = GROWTH * self._effort if self._thorough else MORE_EFFORT
+        effort = GROWTH * self._effort if self._thorough else MORE_EFFORT
+        self._effort = min(effort, MOST_EFFORT)
         with suppress(Undecided):
             while not self._part.done:
                 plan = self._plan_that_holds(self.planner, 0, deadline)
-                self._route(plan, 1, ROUNDS, 0, deadline)
+                if not self._rare:
+                    self._route(plan, 1, ROUNDS, 0, deadline)
                 if not self._part.done:
                     self._draw(self.planner, draw, deadline)
 
@@ -136,7 +146,7 @@ class Planning:
             refused.append(quota)
 
     def avoid(self, deadline: Deadline) -> None:
-        """Plans that say what segments avoid, too, where few segments are left above the bound.
+        """Plans of a large part that say what segments avoid, too, with few segments left.
 
         The bound rises by one in seconds, if at all. If the gap is larger, other routes use the
         time better.
@@ -146,7 +156,7 @@ class Planning:
             self._plan_with_effort(MORE_EFFORT, deadline)
 
     def insist(self, deadline: Deadline) -> None:
-        """Both again, as long as something is undecided, with more effort each time."""
+        """Both again on a large part, as long as something is undecided, with more effort."""
         if self._undecided:
             effort = GROWTH * self._effort if self._thorough else MORE_EFFORT
             self._plan_with_effort(effort, deadline)
@@ -176,9 +186,9 @@ class Planning:
         """A plan with as many segments as the bound in which no two are known to cross.
 
         Raises:
-            Undecided: none was found, nor that there is none.
+            Undecided: none was found, nor that there is none; or the part is done.
         """
-        while True:
+        while not self._part.done:
             deadline.check()
             refused = self._refused.get(self._part.bound, ())
             plan = planner.plan(self._part.bound, attempt, self._thorough, refused)
@@ -192,10 +202,15 @@ class Planning:
                 self._route(plan, rings, FIRST_ROUNDS, attempt, deadline)
             if self._part.done:
                 return plan
-            if self._rare and not planner.find_partings(plan, deadline):
+            if self._rare:
+                if planner.find_partings(plan, deadline):
+                    continue
                 self._route(plan, 1, ROUNDS, attempt, deadline)
+                if self._part.done:
+                    return plan
             if not planner.find_conflicts(plan, deadline, avoiding=self._avoiding):
                 return plan
+        raise Undecided  # and nothing is left to decide
 
     def _solve_plan(
         self, model: cp_model.CpModel, seed: int
@@ -227,7 +242,7 @@ class Planning:
     @property
     def _rare(self) -> bool:
         """Whether hardly any plan holds, and others may well lead to better divisions."""
-        wide = self._part.segments >= self._part.bound + LITTLE
+        wide = self._part.segments >= self._part.bound + WIDE_GAP
         return self._avoiding and wide and not self._part.large
 
     @property

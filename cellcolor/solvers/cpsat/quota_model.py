@@ -42,6 +42,9 @@ def quota_model(
 ) -> Model:
     """A model of the divisions with a number of segments that keep to a quota, with no objective.
 
+    Cells that are alone count as segments, but not in the quota, since they have no color in the
+    model. So a solution may be a division that does not keep to the quota; it meets the bound.
+
     Args:
         graph: in the colors of the quota.
         segments: no division has fewer, or costs less.

@@ -54,7 +54,7 @@ class Variables:
 
 
 def make_variables(model: cp_model.CpModel, graph: DartGraph) -> Variables:
-    """Add the variables of a dart graph to an empty model."""
+    """Add the variables of a dart graph to a model."""
     darts = range(len(graph.darts))
     edges = graph.edges
     joined = {

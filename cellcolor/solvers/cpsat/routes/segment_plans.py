@@ -245,8 +245,8 @@ class Planner:
     def quota(self) -> Quota:
         """How many segments each color region has in the last plan.
 
-        Together they are as many as were asked for. The plan itself leaves out segments for which
-        no cell is left.
+        Together they are as many as were asked for, or cost no more. The plan itself leaves out
+        segments for which no cell is left.
         """
         return Counter(self._regions[region] for region, _ in self._last)
 
