@@ -166,3 +166,11 @@ def test_a_limit_of_corridors_proves_nothing_for_the_surface() -> None:
     assert greatest(solution.bounds or (), "surface") == 6
     wide = solve(instance, Options(deadline=Deadline.after(60), search_space="surface", workers=1))
     assert (wide.status, wide.segments) == ("optimal", 6)
+
+
+def test_what_is_not_decided_is_not_refused() -> None:
+    """In all colors of this part the model decides nothing in a hundredth of a second."""
+    instance = Instance.read(INSTANCES / "hard" / "large_double_torus_1.json")
+    part = max(searches(instance), key=lambda part: len(part.cells))
+    quota = dict.fromkeys(part.regions, part.bound)
+    assert part.models.draw(planner_of(part.instance), quota, 0.01, NEVER) is None
