@@ -21,7 +21,7 @@ from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.model_search import ModelSearch
 from cellcolor.solvers.cpsat.part_state import PartState
 from cellcolor.solvers.cpsat.parts import ConnectedPart
-from cellcolor.solvers.cpsat.planning import Planning
+from cellcolor.solvers.cpsat.planning import WIDE_GAP, Planning
 from cellcolor.solvers.cpsat.routes.dropping import FRUITLESS, drop_segments
 from cellcolor.solvers.cpsat.routes.recoloring import FEW_MOVES
 from cellcolor.solvers.cpsat.windows import improve
@@ -33,10 +33,6 @@ FEW_DARTS = 10
 LITTLE = 2
 """The most segments by which plans are likely to raise a bound."""
 
-WIDE_GAP = 2
-"""With so many segments above the bound, divisions and plans are improved in turns first: a model
-is not likely to close the gap."""
-
 SHARE_OF_ROUTES, SHARE_OF_PLANS = 1 / 4, 1 / 2
 """Of the time that is left in such a turn: the share of each way to improve the division, and then
 that of plans."""
@@ -44,8 +40,9 @@ that of plans."""
 TURNS = 2
 """Turns in a row that may bring nothing before models are tried all the same."""
 
-EFFORTS = 3
-"""How often plans are tried with more effort before the model of the whole."""
+EFFORTS, MOST_EFFORT = 3, 100.0
+"""How often plans are decided with more effort before the model of the whole, and the deterministic
+seconds for a plan after which it is that model's turn."""
 
 MORE_TRIES = 10
 """Segments left out in vain, for each segment, before a turn expects nothing better of that."""
@@ -165,7 +162,7 @@ class PartSearch(PartState):
     def settle(self, deadline: Deadline) -> None:
         """Plans of a small part, with more and more effort."""
         for _ in range(0 if self.large else EFFORTS):
-            if not self.done:
+            if not self.done and self.planning.effort < MOST_EFFORT:
                 self.planning.decide(self.models.draw, deadline)
 
     def narrow_gap(self, deadline: Deadline) -> None:

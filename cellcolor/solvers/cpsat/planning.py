@@ -42,11 +42,9 @@ LITTLE = 2
 avoid."""
 
 WIDE_GAP = 2
-"""With a gap of so many segments, small parts are routed by plans of which any two segments fit."""
-
-MOST_EFFORT = 100.0
-"""No more than so many deterministic seconds are spent on a plan that is decided alone; then it is
-the turn of the full model."""
+"""With so many segments above the bound, divisions and plans are improved in turns first, since a
+model is not likely to close the gap; and small parts are routed by plans of which any two segments
+fit."""
 
 SHARE_OF_BOTH = 0.25
 """The share of the effort for drawing the segments of two plans together."""
@@ -64,12 +62,13 @@ class Planning:
 
     Attributes:
         planner: what has planned its segments; None before.
+        effort: deterministic seconds for a plan, of the last ones.
     """
 
     def __init__(self, part: PartState) -> None:
         self._part = part
         self.planner: Planner | None = None
-        self._effort = PLAN_EFFORT
+        self.effort = PLAN_EFFORT
         self._undecided = False
         self._avoiding = False
         self._routed_at = 0
@@ -110,8 +109,7 @@ class Planning:
             return
         self._avoiding = True
         self._deadline = deadline
-        effort = GROWTH * self._effort if self._thorough else MORE_EFFORT
-        self._effort = min(effort, MOST_EFFORT)
+        self.effort = GROWTH * self.effort if self._thorough else MORE_EFFORT
         with suppress(Undecided):
             while not self._part.done:
                 plan = self._plan_that_holds(self.planner, 0, deadline)
@@ -134,12 +132,12 @@ class Planning:
         if refused:
             both = {region: max(most, quota.get(region, 0)) for region, most in refused[-1].items()}
             both = {**quota, **both}
-            drawn = draw(planner, both, SHARE_OF_BOTH * self._effort, deadline)
+            drawn = draw(planner, both, SHARE_OF_BOTH * self.effort, deadline)
             if drawn is False:
                 refused[-1] = both
             if drawn is not None:
                 return
-        drawn = draw(planner, quota, self._effort, deadline)
+        drawn = draw(planner, quota, self.effort, deadline)
         if drawn is None:
             raise Undecided
         if not drawn:
@@ -158,14 +156,14 @@ class Planning:
     def insist(self, deadline: Deadline) -> None:
         """Both again on a large part, as long as something is undecided, with more effort."""
         if self._undecided:
-            effort = GROWTH * self._effort if self._thorough else MORE_EFFORT
+            effort = GROWTH * self.effort if self._thorough else MORE_EFFORT
             self._plan_with_effort(effort, deadline)
         elif not self._avoiding:
             self.avoid(deadline)
 
     def _plan_with_effort(self, effort: float, deadline: Deadline) -> None:
         if self.planner is not None and self._part.hubs is None:
-            self._effort, self._undecided = effort, True
+            self.effort, self._undecided = effort, True
             with suppress(Undecided):
                 self._route_all(self.planner, deadline)
 
@@ -217,7 +215,7 @@ class Planning:
     ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
         # Too small for a portfolio.
         for level, share in LEVELS[self._part.large] if self._thorough else ((None, 1.0),):
-            solver = self._part.runner.single(share * self._effort, seed, self._deadline)
+            solver = self._part.runner.single(share * self.effort, seed, self._deadline)
             if level is not None:
                 solver.parameters.linearization_level = level
             status = self._part.runner.solve(solver, model)
@@ -248,7 +246,7 @@ class Planning:
     @property
     def _thorough(self) -> bool:
         """Whether this is for plans that were left undecided."""
-        return self._effort > PLAN_EFFORT
+        return self.effort > PLAN_EFFORT
 
     def _route(
         self, plan: SegmentPlan, rings: int, rounds: int, seed: int, deadline: Deadline

@@ -25,7 +25,7 @@ from cellcolor.solvers.cpsat.routes.segment_plans import Planner
 from cellcolor.solvers.interface import Options
 from examples import examples
 
-RED, BLUE, GREEN = 0, 1, 2
+RED, BLUE = 0, 1
 
 EFFORT = 100.0
 
