@@ -1,4 +1,4 @@
-"""Fewest cutting paths once the number of segments is known (docs/encodings.md)."""
+"""Fewest cutting paths once the number of segments is known (docs/encodings/fewest-cuts.md)."""
 
 from __future__ import annotations
 

@@ -3,7 +3,7 @@
 A plan says how many segments each color region has. The full model in the colors of one plan is far
 smaller than in all colors. It also knows what the planner knows of segments that cannot be drawn
 together: the model of plans is part of it, and a cell that is joined in a color is touched by a
-segment of the plan (docs/encodings.md, "One plan at a time").
+segment of the plan (docs/encodings/one-plan.md).
 """
 
 from __future__ import annotations

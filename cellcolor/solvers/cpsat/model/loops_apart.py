@@ -1,7 +1,7 @@
 """A model of the divisions in which no cutting path connects two loops of a cell.
 
-In such a division the loops and sub-cells of a cell form a forest (docs/encodings.md, "Fewest
-cutting paths"). So each loop can be divided on its own, like a cell with one loop. A **bridge**
+In such a division the loops and sub-cells of a cell form a forest (docs/encodings/fewest-cuts.md).
+So each loop can be divided on its own, like a cell with one loop. A **bridge**
 says that a sub-cell on one loop and a sub-cell on another are the same sub-cell. Bridges need not
 be drawn: as long as those of a cell make no cycle of its loops, they can always be drawn without
 crossing. So the model needs no seams.
