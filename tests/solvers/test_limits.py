@@ -13,7 +13,6 @@ from ortools.sat.python import cp_model
 from cellcolor.checker.division import check_division, check_solution
 from cellcolor.data.cells_and_edges import Cell, Edge
 from cellcolor.data.instance import Instance
-from cellcolor.data.solution import count_segments
 from cellcolor.deadline import NEVER, Deadline, OutOfTime
 from cellcolor.decomposition import decompose
 from cellcolor.lab.families import blobs, hub, planar_graph
@@ -22,7 +21,7 @@ from cellcolor.solvers.bounds.conflicts import conflicts
 from cellcolor.solvers.bounds.cover import color_regions, greedy_strangers, set_cover
 from cellcolor.solvers.bounds.reductions import drop_dominated, left_out
 from cellcolor.solvers.checked import solve
-from cellcolor.solvers.cpsat import cuts, model_search, windows
+from cellcolor.solvers.cpsat import cuts, model_search
 from cellcolor.solvers.cpsat.model import full as model_module
 from cellcolor.solvers.cpsat.model.dart_graph import DartGraph, dart_graph, seams_of
 from cellcolor.solvers.cpsat.model.full import full_model, model_size
@@ -31,7 +30,6 @@ from cellcolor.solvers.cpsat.parts import split
 from cellcolor.solvers.cpsat.routes.routing import route
 from cellcolor.solvers.cpsat.routes.sectors import refined
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner
-from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.interface import Options
 from examples import examples
 
@@ -128,10 +126,9 @@ def test_plans_partings_and_models_end_with_the_deadline() -> None:
         planner.find_partings(plan, OVER)
     with pytest.raises(OutOfTime):
         full_model(graph, regions, deadline=OVER)
-    # What is left of a route is a division; windows are not begun.
+    # What is left of a route is a division.
     painting = route(refined(graph, 1), plan, 1000, 0, OVER)
     assert check_division(instance, division_of(graph, painting), graph.seams).valid
-    assert list(improve(graph, whole_cells(graph), solved, 0, OVER)) == []
 
 
 @pytest.mark.parametrize("solver", ["cp-sat", "cp-sat-model"])
@@ -278,53 +275,6 @@ def test_parts_are_what_live_edges_connect(seed: int, cells: int, colors: int) -
         regions = color_regions(part.instance)
         assert all(cells <= set(range(len(part.cells))) for _, cells in regions)
         assert [frozenset(c.colors) for c in part.instance.cells] == [left[c] for c in part.cells]
-
-
-# --- windows --------------------------------------------------------------------------------------
-
-
-@examples(6)
-@given(seed=SEEDS, shape=st.sampled_from([(0, 0), (2, 2), (3, 0)]))
-def test_windows_only_improve(seed: int, shape: tuple[int, int]) -> None:
-    """From the division that paints every cell whole; the checker sees each step."""
-    holes, cracks = shape
-    instance = decompose(blobs(seed, size=9, colors=3, holes=holes, cracks=cracks))
-    graph = graph_of(instance)
-    painting = whole_cells(graph)
-    known = count_segments(division_of(graph, painting))
-    for better in improve(graph, painting, solved, seed, NEVER):
-        report = check_division(instance, division_of(graph, better), graph.seams)
-        assert report.valid, report.problems
-        assert report.segments is not None and report.segments < known
-        known = report.segments
-    assert known >= set_cover(instance).bound
-
-
-def test_windows_get_as_far_as_the_whole_model() -> None:
-    reached, best = 0, 0
-    for seed in range(4):
-        instance = decompose(blobs(seed, size=10, colors=4))
-        graph = graph_of(instance)
-        last = [whole_cells(graph), *improve(graph, whole_cells(graph), solved, seed, NEVER)][-1]
-        found = solve(instance, Options(workers=1, deadline=Deadline.after(60.0)))
-        reached += count_segments(division_of(graph, last))
-        best += found.segments or 0
-    assert best <= reached <= best + 2
-
-
-def test_windows_leave_out_what_is_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A hub of 150 petals has 2 million terms; no window may hold it, or face it with all darts."""
-    graph = graph_of(hub(1, 150, 3))
-    assert model_size(graph) > 10 * windows.LARGEST_WINDOW
-    sizes = []
-
-    def noted(window: DartGraph, *rest: object, **named: object) -> object:
-        sizes.append(model_size(window))
-        return full_model(window, *rest, **named)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(windows, "full_model", noted)
-    list(improve(graph, whole_cells(graph), solved, 0, NEVER))
-    assert all(size <= windows.LARGEST_WINDOW for size in sizes)
 
 
 @pytest.mark.second

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
-from itertools import islice
 from typing import Any
 
 import pytest
@@ -25,7 +24,6 @@ from cellcolor.data.cells_and_edges import OUTSIDE, Cell, Edge
 from cellcolor.data.instance import Instance
 from cellcolor.data.objective import Objective
 from cellcolor.data.solution import Solution
-from cellcolor.deadline import NEVER
 from cellcolor.decomposition import decompose
 from cellcolor.errors import InputError
 from cellcolor.lab.families import blobs, planar_graph
@@ -33,10 +31,9 @@ from cellcolor.solvers.bounds.cover import color_regions
 from cellcolor.solvers.checked import enumerate_schemes, solve
 from cellcolor.solvers.cpsat.model.dart_graph import dart_graph
 from cellcolor.solvers.cpsat.model.full import full_model, read_painting
-from cellcolor.solvers.cpsat.model.painting import Block, canonical, counted
+from cellcolor.solvers.cpsat.model.painting import counted
 from cellcolor.solvers.cpsat.model_runs import Runner
 from cellcolor.solvers.cpsat.routes.segment_plans import Planner
-from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.interface import Options, Start
 from examples import examples
 
@@ -190,26 +187,6 @@ def test_a_cell_alone_is_painted_in_its_cheapest_color() -> None:
     runner.solve(solver, built.model)
     ((block,),) = read_painting(graph, built.variables, solver, (5, 1, 1))
     assert (block.color, round(solver.objective_value)) == (2, 1)
-
-
-@examples(10)
-@given(seed=SEEDS, costs=COSTS)
-def test_windows_make_a_division_cheaper(seed: int, costs: list[int]) -> None:
-    instance = decompose(blobs(seed, 9, 3))
-    _, own = weighed(instance, costs)
-    colors = [frozenset(cell.colors) for cell in instance.cells]
-    graph = dart_graph(instance, colors, dict.fromkeys(instance.live_edges, 1), ())
-    painting = canonical(graph, [[Block(min(its), set())] for its in colors])
-    runner = Runner(Options())
-
-    def run(model: cp_model.CpModel, seed: int) -> tuple[cp_model.CpSolver, Any]:
-        solver = runner.single(0.1, seed)
-        return solver, runner.solve(solver, model)
-
-    cost = counted(graph, painting, own)
-    for better in islice(improve(graph, painting, run, seed % 99, NEVER, own), 4):
-        assert counted(graph, better, own) < cost
-        cost = counted(graph, better, own)
 
 
 @examples(12)

@@ -42,23 +42,13 @@ class ModelSearch:
         self._part = part
         self.notes: list[str] = []
 
-    def solve_small(self, deadline: Deadline) -> None:
-        """Solve the narrowest model in the colors of the last segment plan only."""
-        colors = tuple(
-            frozenset(color for color, cells in self._part.planned if cell.id in cells)
-            for cell in self._part.instance.cells
-        )
-        if all(colors) and colors != self._part.colors:
-            seams = self._part.seams(self._part.once, FEW_STRANDS)
-            self._minimize(self._part.once, seams, colors, deadline, final=False)
-
     def solve(self, deadline: Deadline) -> None:
         """Solve the stages one after the other; the last one proves a bound."""
         stages = self._stages()
         # Some may be equal: each is solved once, and what equals the last one is final.
         for number, stage in enumerate(stages):
             if not self._part.done and stages.index(stage) == number:
-                self._minimize(*stage, self._part.colors, deadline, final=stage == stages[-1])
+                self._minimize(*stage, deadline, final=stage == stages[-1])
 
     def draw(
         self, planner: Planner, quota: Quota, effort: float, deadline: Deadline
@@ -131,12 +121,12 @@ class ModelSearch:
         self,
         strands: dict[int, int],
         seams: tuple[Seam, ...],
-        colors: tuple[frozenset[int], ...],
         deadline: Deadline,
         final: bool,
     ) -> None:
         """Solve one model; only the final one, the widest, also proves a bound."""
         workers = self._part.options.workers or PORTFOLIO
+        colors = self._part.colors
         graph = self._graph(strands, seams, colors, deadline, workers)
         if not isinstance(graph, DartGraph):
             self.notes.append(not_built(graph))
@@ -162,12 +152,7 @@ class ModelSearch:
         self._part.raise_to(ceil(bound - 1e-6), for_surface=False)
 
     def _hint(self, built: Model, graph: DartGraph) -> None:
-        """Hint the best division, if the model has all of its strands and colors."""
+        """Hint the best division, if the model has all of its strands."""
         known, painting = self._part.best
-        fits = all(
-            block.color in graph.colors[cell]
-            for cell, blocks in enumerate(painting)
-            for block in blocks
-        )
-        if fits and {dart.name for dart in known.darts} <= {dart.name for dart in graph.darts}:
+        if {dart.name for dart in known.darts} <= {dart.name for dart in graph.darts}:
             add_hint(built, graph, canonical(graph, moved(known, painting, graph)))

@@ -9,8 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import isfinite
 
-from ortools.sat.python import cp_model
-
 from cellcolor.deadline import Deadline, OutOfTime
 from cellcolor.solvers.bounds.cover import set_cover
 from cellcolor.solvers.bounds.hubs import hub_bound
@@ -22,9 +20,7 @@ from cellcolor.solvers.cpsat.model_search import ModelSearch
 from cellcolor.solvers.cpsat.part_state import PartState
 from cellcolor.solvers.cpsat.parts import ConnectedPart
 from cellcolor.solvers.cpsat.planning import WIDE_GAP, Planning
-from cellcolor.solvers.cpsat.routes.dropping import FRUITLESS, drop_segments
 from cellcolor.solvers.cpsat.routes.recoloring import FEW_MOVES
-from cellcolor.solvers.cpsat.windows import improve
 from cellcolor.solvers.interface import Options
 
 FEW_DARTS = 10
@@ -44,14 +40,9 @@ EFFORTS, MOST_EFFORT = 3, 100.0
 """How often plans are decided with more effort before the model of the whole, and the deterministic
 seconds for a plan after which it is that model's turn."""
 
-MORE_TRIES = 10
-"""Segments left out in vain, for each segment, before a turn expects nothing better of that."""
-
-MOVES = 1_000
-"""Moves of local search in vain, for each segment, before nothing better is expected."""
-
-WINDOW_EFFORT = 0.1
-"""Deterministic seconds for the model of a window."""
+MOVES, MOVES_OF_SMALL = 1_000, 100
+"""Moves of local search in vain, for each segment, before nothing better is expected. On a small
+part plans and models soon find as much."""
 
 
 class PartSearch(PartState):
@@ -127,21 +118,14 @@ class PartSearch(PartState):
         """Take the minimum that ``solve_exactly`` found as the bound; it has no certificate."""
         self.raise_to(self._exact, for_surface=False)
 
-    def drop(self, deadline: Deadline) -> None:
-        """Better divisions by leaving segments out (ruin and recreate).
+    def recolor_best(self, deadline: Deadline) -> None:
+        """Better divisions by local search.
 
-        Around hubs the model works better, for divisions and for the bound.
+        Around hubs the model of a small part works better, for divisions and for the bound.
         """
-        if self.hubs is None and not self.large:
-            self._drop(self.options.seed, deadline, FRUITLESS)
-
-    def recolor_large(self, deadline: Deadline) -> None:
-        """Better divisions of a large part by local search.
-
-        On small parts other routes and windows find as much or more.
-        """
-        if self.large:
-            self.recolor(*self.best, self.options.seed, deadline, MOVES)
+        if self.large or self.hubs is None:
+            moves = MOVES if self.large else MOVES_OF_SMALL
+            self.recolor(*self.best, self.options.seed, deadline, moves)
 
     def begin_large(self, deadline: Deadline) -> None:
         """A few moves before plans, so that plans can be compared with a good division."""
@@ -182,30 +166,14 @@ class PartSearch(PartState):
     def _take_turns(self, deadline: Deadline) -> None:
         """Improve the division with a new seed, then plan with more effort than before.
 
-        On a large part, local search begins again from whole cells, then from the best division,
-        since what it finds differs from start to start. On others, segments are left out, and then
-        windows divided again.
+        Local search begins again from whole cells, then from the best division, since what it finds
+        differs from start to start.
         """
         deadline.check()
         self._turns += 1
         seed = self.options.seed + self._turns
-        if self.large:
-            self.begin_again(seed, deadline.share(SHARE_OF_ROUTES))
-            self.recolor(*self.best, seed, deadline.share(SHARE_OF_ROUTES), MOVES)
-        else:
-            self._drop(seed, deadline.share(SHARE_OF_ROUTES), MORE_TRIES)
-            graph, painting = self.best
-            self.keep_all(
-                graph,
-                improve(
-                    graph,
-                    painting,
-                    self._solve_window,
-                    seed,
-                    deadline.share(SHARE_OF_ROUTES),
-                    self.costs,
-                ),
-            )
+        self.begin_again(seed, deadline.share(SHARE_OF_ROUTES))
+        self.recolor(*self.best, seed, deadline.share(SHARE_OF_ROUTES), MOVES)
         if not self.done:
             self.insist(deadline.share(SHARE_OF_PLANS))
 
@@ -219,13 +187,3 @@ class PartSearch(PartState):
         except OutOfTime as error:
             if isinstance(error, KeyboardInterrupt):
                 raise
-
-    def _drop(self, seed: int, deadline: Deadline, tries: float) -> None:
-        graph, painting = self.best
-        self.keep_all(graph, drop_segments(graph, painting, self.regions, seed, deadline, tries))
-
-    def _solve_window(
-        self, model: cp_model.CpModel, seed: int
-    ) -> tuple[cp_model.CpSolver, cp_model.CpSolverStatus]:
-        solver = self.runner.single(WINDOW_EFFORT, seed)
-        return solver, self.runner.solve(solver, model)

@@ -176,7 +176,7 @@ def test_what_segments_avoid_proves_the_last_one() -> None:
     """Where segments two and three at a time may pass through each other's cells, six are not ruled
     out. But one that touches the cell between two of another color cannot get out of there."""
     search = _routed_rim()
-    search.drop(NEVER)
+    search.recolor_best(NEVER)
     assert (search.segments, search.surface_bound) == (7, 6)
     search.insist(NEVER)
     assert search.surface_bound == 7
@@ -204,13 +204,18 @@ def test_a_large_part_begins_with_local_search() -> None:
     assert report.segments == search.segments
 
 
-def test_a_small_part_is_left_to_other_routes() -> None:
+def test_a_small_part_is_improved_by_local_search_after_plans() -> None:
+    """Before plans its cells stay whole; afterwards what local search finds is a legal division."""
     instance = decompose(MEDIUM["rim"](26))
     (part,) = split(instance, drop_dominated(instance, left_out(instance)))
     options = Options()
     search = PartSearch(part, options, Runner(options), lambda: None)
     search.cover(NEVER)
-    before = search.best
+    whole, before = search.best, search.segments
     search.begin_large(NEVER)
-    search.recolor_large(NEVER)
-    assert search.best is before and not search.done
+    assert search.best is whole
+    search.recolor_best(NEVER)
+    graph, painting = search.best
+    report = check_division(part.instance, division_of(graph, painting), seams=graph.seams)
+    assert report.valid, report.problems
+    assert search.bound <= report.segments == search.segments < before

@@ -11,8 +11,7 @@ from __future__ import annotations
 
 import heapq
 import random
-from collections.abc import Iterable, Sequence
-from collections.abc import Set as AbstractSet
+from collections.abc import Iterable
 from math import inf
 
 from cellcolor.deadline import NEVER, Deadline
@@ -32,8 +31,6 @@ def route(
     rounds: int,
     seed: int,
     deadline: Deadline = NEVER,
-    held: Sequence[AbstractSet[int]] = (),
-    patience: int | None = None,
 ) -> Painting:
     """Paint a plan.
 
@@ -43,34 +40,19 @@ def route(
         rounds: of routing all nets that are in conflict.
         seed: of the order in which cells are connected.
         deadline: when to stop; looked at after each net.
-        held: for each segment connected nodes that it has already, none where nothing is known. Its
-            first route keeps to them.
-        patience: give up after this many successive rounds without fewer shared nodes.
 
     Returns:
         A painting; with more segments than planned if some could not be connected.
     """
-    router = _Router(graph, plan, seed, held)
-    fewest, in_vain = inf, 0
+    router = _Router(graph, plan, seed)
     for _ in range(rounds):
         if router.improve(deadline) or deadline.over:
-            break
-        # No node is shared but a cell is missed: connect its net from scratch.
-        gain = not router.shared or router.shared < fewest
-        fewest, in_vain = (router.shared or inf, 0) if gain else (fewest, in_vain + 1)
-        if in_vain == patience:
             break
     return painting_of_nodes(graph, router.colors())
 
 
 class _Router:
-    def __init__(
-        self,
-        graph: RefinedGraph,
-        plan: SegmentPlan,
-        seed: int,
-        held: Sequence[AbstractSet[int]],
-    ) -> None:
+    def __init__(self, graph: RefinedGraph, plan: SegmentPlan, seed: int) -> None:
         self._graph = graph
         self._plan = plan
         self._random = random.Random(seed)
@@ -96,11 +78,6 @@ class _Router:
         self._used = [0] * len(graph.cell)
         self._past = [0.0] * len(graph.cell)
         self._price = FIRST_PRICE
-        self.shared = 0
-        for net, nodes in enumerate(held):
-            places = {graph.cell[node] for node in nodes}.intersection(self._terminals[net])
-            if places:
-                self._connect(net, sorted(places), nodes)
 
     def improve(self, deadline: Deadline) -> bool:
         """One round; whether no two nets share a node and every cell is touched."""
@@ -110,7 +87,6 @@ class _Router:
             if self._has_to_move(net):
                 self._reroute(net)
         shared = [node for node, count in enumerate(self._used) if count > 1]
-        self.shared = len(shared)
         for node in shared:
             self._past[node] += 1.0
         if shared:
@@ -150,21 +126,15 @@ class _Router:
             self._used[node] -= 1
         cells = self._terminals[net][:]
         self._random.shuffle(cells)
-        self._connect(net, cells, None)
-
-    def _connect(self, net: int, cells: Sequence[int], within: AbstractSet[int] | None) -> None:
-        """Connect cells, by some nodes only if any are given."""
         start = min(
-            (node for node in self._graph.nodes[cells[0]] if within is None or node in within),
+            self._graph.nodes[cells[0]],
             key=lambda node: (self._cost(node, net), self._random.random()),
         )
-        self._routes[net] = self._grown(net, start, set(cells) - {cells[0]}, within)
+        self._routes[net] = self._grown(net, start, set(cells) - {cells[0]})
         for node in self._routes[net]:
             self._used[node] += 1
 
-    def _grown(
-        self, net: int, start: int, targets: set[int], within: AbstractSet[int] | None
-    ) -> set[int]:
+    def _grown(self, net: int, start: int, targets: set[int]) -> set[int]:
         """A route from a node to all target cells, always on to the nearest one.
 
         One search serves for all of them (Dijkstra): what a new way takes starts at distance 0
@@ -193,7 +163,7 @@ class _Router:
                 continue  # it stands in the heap again, at distance 0
             for other in near[node]:
                 known = distance.get(other, inf)
-                if known <= length or (within is not None and other not in within):
+                if known <= length:
                     continue
                 longer = length
                 if cell_of[other] not in own:

@@ -134,23 +134,3 @@ def node_colors(refined: RefinedGraph, painting: Painting) -> list[int]:
             for place, node in enumerate(nodes[:-1]):
                 colors[node] = ring[place % len(ring)].color
     return colors
-
-
-def held_nodes(refined: RefinedGraph, painting: Painting) -> list[tuple[int, set[int]]]:
-    """The connected nodes of one color (``node_colors``), the largest sets first."""
-    colors = node_colors(refined, painting)
-    found: list[tuple[int, set[int]]] = []
-    seen: set[int] = set()
-    for first, color in enumerate(colors):
-        if first in seen:
-            continue
-        near = refined.near(color)
-        seen.add(first)
-        reached = [first]
-        for node in reached:
-            for other in near[node]:
-                if colors[other] == color and other not in seen:
-                    seen.add(other)
-                    reached.append(other)
-        found.append((color, set(reached)))
-    return sorted(found, key=lambda own: -len(own[1]))
