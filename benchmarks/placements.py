@@ -41,7 +41,7 @@ def row(file: Path, placements: int, rounds: int) -> tuple[float, float, str]:
             place = scene.placement.varied(position_m=tuple((here + shift).tolist()))
             started = time.process_time()
             stages = with_finer_borders(prepared.at(place), StageClock(NEVER, None))
-            surface = labelled(*stages, {})
+            surface, _ = labelled(*stages, {})
             built = time.process_time()
             cellcolor.solve(surface, workers=1)
             proving += time.process_time() - built

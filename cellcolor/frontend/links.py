@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 from cellcolor.arrays import Array, Index, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import Deadline
-from cellcolor.frontend.contact.clearance import Clearance
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.prepared import PreparedScene
 from cellcolor.frontend.reach.between import at_domain_border, bytes_of_point, remains_valid
@@ -24,8 +23,6 @@ from cellcolor.frontend.reach.continuity import link
 from cellcolor.frontend.reach.smooth import bytes_of_following
 from cellcolor.frontend.reach.validity import Candidates
 from cellcolor.memory import chunks
-
-_PAYS = 3  # from this many points near a vertex, computing all distances there pays
 
 
 @dataclass(frozen=True)
@@ -138,8 +135,7 @@ def valid_links(
 
         def test(points: Array, directions: Array, at: Index) -> tuple[Mask, Array]:
             found = prepared.arm.follow(points, directions, branches[at])
-            near = _clearances(prepared, candidates, points, edges[rows[at]], branches[at])
-            verdicts = prepared.judge(found, deadline, near)
+            verdicts = prepared.judge(found, deadline)
             valid = np.asarray(verdicts.reasons == VALID)
             failed = at[~valid]
             reasons[rows[failed], branches[failed]] = verdicts.reasons[~valid]
@@ -151,22 +147,6 @@ def valid_links(
 
     _in_parts(test_part, chunks(len(all_rows), each), deadline)
     return Links(edges, linked, reasons)
-
-
-def _clearances(
-    prepared: PreparedScene, candidates: Candidates, points: Array, edges: Index, branches: Index
-) -> tuple[Clearance, Index] | None:
-    """Distances at the vertices beside points (k, 3) on mesh edges, if it pays to know them."""
-    if prepared.judge.partial:
-        return None  # one or two tests take less time than the distances
-    ends = prepared.surface.vertices[edges]
-    nearer = np.argmin(np.linalg.norm(ends - points[:, None], axis=2), axis=1)
-    vertex = edges[np.arange(len(edges)), nearer]
-    nodes, row = np.unique(vertex * candidates.valid.shape[1] + branches, return_inverse=True)
-    if len(points) < _PAYS * len(nodes):
-        return None
-    known = candidates.configurations.reshape(-1, prepared.robot.joints)[nodes]
-    return prepared.judge.clearance(known), row
 
 
 def _in_both(edges: Index, others: Index) -> tuple[Index, Index]:

@@ -58,15 +58,12 @@ def body_ends(robot: Robot, poses: Poses) -> Array:
     return ends
 
 
-def hits_itself(
-    robot: Robot, ends: Array, poses: Poses | None = None, asked: Mask | None = None
-) -> Mask:
+def hits_itself(robot: Robot, ends: Array, poses: Poses | None = None) -> Mask:
     """Whether any tested pair of bodies overlaps, (n,).
 
     Args:
         ends: of the bodies, see :func:`body_ends`.
         poses: of the joints; robots without solids do not need them.
-        asked: (pairs, n) which pairs may overlap at all; None for all.
     """
     hit = np.zeros(ends.shape[2], dtype=bool)
     if not robot.tested_pairs:
@@ -74,13 +71,12 @@ def hits_itself(
     bodies, (one, other) = robot.bodies, np.array(robot.tested_pairs).T
     radii = np.array([body.radius for body in bodies])
     reach = radii[one] + radii[other]
-    if asked is None:  # then bounding spheres first
-        centers = ends.mean(axis=1)
-        halves = np.array([body.length for body in bodies]) / 2
-        between = (centers[one] - centers[other]).reshape(-1, 3)
-        farthest = reach + halves[one] + halves[other]
-        asked = _norm(between).reshape(len(one), -1) <= farthest[:, None]
-    pairs, at = np.nonzero(asked)
+    # Bounding spheres first.
+    centers = ends.mean(axis=1)
+    halves = np.array([body.length for body in bodies]) / 2
+    between = (centers[one] - centers[other]).reshape(-1, 3)
+    farthest = reach + halves[one] + halves[other]
+    pairs, at = np.nonzero(_norm(between).reshape(len(one), -1) <= farthest[:, None])
     axes = (ends[bodies_of[pairs], end, at] for bodies_of in (one, other) for end in (0, 1))
     close = segment_distance(*axes) <= reach[pairs]
     pairs, at = pairs[close], at[close]

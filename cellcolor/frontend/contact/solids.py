@@ -94,23 +94,20 @@ class Solid:
         there._thing = Thing(shape, placement.placed(self._parts))
         return there
 
-    def hits(
-        self, robot: Robot, ends: Array, poses: Poses | None = None, asked: Mask | None = None
-    ) -> Mask:
+    def hits(self, robot: Robot, ends: Array, poses: Poses | None = None) -> Mask:
         """Whether any moving body touches the solid, (n,).
 
         Args:
             ends: (bodies, 2, n, 3), see :func:`~cellcolor.frontend.contact.collision.body_ends`.
             poses: of the joints; robots without solids do not need them.
-            asked: (bodies, n) which bodies may touch it at all; None for all.
         """
         hit = np.zeros(ends.shape[2], dtype=bool)
         moving = [index for index, body in enumerate(robot.bodies) if body.joint > 0]
-        if not moving:
-            return hit
-        near = self._near_whole(robot, ends, moving)
-        if asked is not None:
-            near &= asked[moving]
+        # Balls around whole bodies first, those of all bodies at once.
+        middles = ends[moving].mean(axis=1)
+        wholes = np.array([_around_whole(robot.bodies[index]) for index in moving])
+        apart = self.at_least(middles.reshape(-1, 3)).reshape(middles.shape[:2])
+        near = apart <= wholes[:, None]
         # From the tool to the base: what is near the object is tested first.
         for index, nearby in zip(reversed(moving), near[::-1], strict=True):
             rows = np.flatnonzero(nearby & ~hit)
@@ -120,13 +117,6 @@ class Solid:
             chosen = None if poses is None or body.solid is None else poses.take(rows)
             hit[rows] = self.touched_by(body, ends[index][:, rows], chosen)
         return hit
-
-    def _near_whole(self, robot: Robot, ends: Array, moving: list[int]) -> Mask:
-        """Whether a ball around each of some bodies may touch the solid, (moving, n)."""
-        middles = ends[moving].mean(axis=1)
-        wholes = np.array([_around_whole(robot.bodies[index]) for index in moving])
-        at_least = self.at_least(middles.reshape(-1, 3)).reshape(middles.shape[:2])
-        return np.asarray(at_least <= wholes[:, None])
 
     def touched_by(self, body: Body, ends: Array, poses: Poses | None = None) -> Mask:
         """Whether one body touches the solid, (n,); ``ends`` (2, n, 3) are those of its axis."""

@@ -9,14 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cellcolor.arrays import Array, Index, Mask
+from cellcolor.arrays import Array, Mask
 from cellcolor.data.candidate_table import VALID
 from cellcolor.deadline import NEVER, Deadline
 from cellcolor.errors import InputError
-from cellcolor.frontend.arm.kinematics import bytes_of_poses, forward
+from cellcolor.frontend.arm.kinematics import bytes_of_poses
 from cellcolor.frontend.arm.robot import Robot
-from cellcolor.frontend.contact.clearance import Clearance, body_gaps, pair_gaps, pair_levers
-from cellcolor.frontend.contact.collision import body_ends, tracked_points, tracked_steps
+from cellcolor.frontend.contact.collision import tracked_points, tracked_steps
 from cellcolor.frontend.forked import share_out, shared
 from cellcolor.frontend.reach.validity_tests import (
     STANDARD_TESTS,
@@ -107,7 +106,6 @@ class Judge:
         reason_names: of the codes of verdicts: valid, no solution, and the tests in the order of
             testing, whether the setup leaves them out or not.
         left_out: names of tests that are not made.
-        partial: whether it makes some of its tests only, see :meth:`only`.
         tracked_steps: (points,) how far those of :attr:`Verdicts.tracked` may move between two
             tests, m.
     """
@@ -127,7 +125,7 @@ class Judge:
         Raises:
             InputError: an added test has the name of a standard one.
         """
-        self._workplace, self.left_out, self.partial = workplace, left_out, False
+        self._workplace, self.left_out = workplace, left_out
         standard_names = (*_NAMES, *(test.name for test in STANDARD_TESTS))
         for number, test in enumerate(added):
             if test.name in standard_names:
@@ -142,17 +140,8 @@ class Judge:
         least = min(margins.to_object_m, margins.to_obstacles_m, margins.to_ground_m)
         self.tracked_steps = tracked_steps(workplace.robot, least, margins.between_links_m)
 
-    def __call__(
-        self,
-        configurations: Array,
-        deadline: Deadline = NEVER,
-        near: tuple[Clearance, Index] | None = None,
-    ) -> Verdicts:
+    def __call__(self, configurations: Array, deadline: Deadline = NEVER) -> Verdicts:
         """Test configurations (k, joints) in rad, NaN where there is none.
-
-        Args:
-            near: known distances, and which of their configurations each of these is near to, (k,);
-                then what cannot touch is not tested. The verdicts are the same.
 
         Raises:
             TooLarge: the verdicts would not fit into the machine's memory.
@@ -181,8 +170,7 @@ class Judge:
         def judge(number: int) -> None:
             deadline.check()
             rows = parts[number]
-            known = None if near is None else (near[0], near[1][rows])
-            part = self._judged(configurations[rows], known)
+            part = self._judged(configurations[rows])
             whole.configurations[rows], whole.reasons[rows] = part.configurations, part.reasons
             whole.determinants[rows], whole.tracked[:, rows] = part.determinants, part.tracked
             seconds[number] = [part.seconds[name] for name in timed]
@@ -195,7 +183,6 @@ class Judge:
         """The same judge, with the tests of these names only."""
         judge = copy(self)
         judge._tests = tuple(test for test in self._tests if test.name in names)
-        judge.partial = True
         return judge
 
     def all_failures(self, configurations: Array) -> dict[str, Mask]:
@@ -209,30 +196,11 @@ class Judge:
             failed[test.name] = before | test.failed(postures)
         return failed
 
-    def clearance(self, configurations: Array) -> Clearance:
-        """How far everything is apart at least in configurations (k, joints), in rad."""
-        place, robot = self._workplace, self._workplace.robot
-        moved = turned_into_limits(robot, configurations)
-        poses = forward(robot, moved)
-        ends = body_ends(robot, poses)
-        # The corners of a cylinder that is longer and wider by a margin are this much farther out.
-        margins, farther = place.setup.margins, np.sqrt(2)
-        around = body_gaps(robot, ends, [place.target]) - farther * margins.to_object_m
-        others = body_gaps(robot, ends, place.obstacles) - farther * margins.to_obstacles_m
-        return Clearance(
-            robot=robot,
-            levers=pair_levers(robot),
-            configurations=moved,
-            tracked=tracked_points(robot, ends, poses),
-            between=pair_gaps(robot, ends) - farther * margins.between_links_m,
-            around=np.minimum(around, others),
-        )
-
     def bytes_kept(self, joints: int) -> int:
         """What the verdict on one configuration takes."""
         return 8 * joints + 9 + 24 * len(self.tracked_steps)
 
-    def _judged(self, configurations: Array, near: tuple[Clearance, Index] | None) -> Verdicts:
+    def _judged(self, configurations: Array) -> Verdicts:
         count = len(configurations)
         moved, reasons = configurations.copy(), np.full(count, NO_SOLUTION, dtype=np.uint8)
         solved = np.flatnonzero(~np.isnan(configurations[:, 0]))
@@ -245,11 +213,7 @@ class Judge:
         )
         determinants[solved] = postures.determinant
         robot = self._workplace.robot
-        tracked = places[:, solved] = tracked_points(robot, postures.ends, postures.poses)
-        if near is not None:
-            known, rows = near
-            may_touch = known.may_touch(rows[solved], moved[solved], tracked)
-            postures = postures.where_near(*may_touch)
+        places[:, solved] = tracked_points(robot, postures.ends, postures.poses)
         seconds = {"forward kinematics": time.perf_counter() - started}
         reasons[solved] = self._first_failures(postures, seconds)
         return Verdicts(moved, reasons, determinants, places, seconds)

@@ -8,12 +8,10 @@ Cheap tests come first; each looks only at what is left.
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 from typing import ClassVar, Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
 from cellcolor.arrays import Array, Mask
 from cellcolor.frontend.arm.kinematics import (
@@ -62,28 +60,25 @@ class Workplace:
         return self.arm.setup
 
 
-@dataclass(frozen=True)
-class _Arm:
-    """The arm in a batch of configurations, k of them."""
-
-    configurations: Array
-    poses: Poses
-    linear: Array
-    determinant: Array
-    ends: Array
-    near: tuple[Mask, Mask] | None
-
-
+@dataclass(frozen=True, eq=False)
 class Postures:
     """The arm in k configurations, all of them with a solution.
 
     Attributes:
         workplace: where it stands.
+        configurations: (k, joints) in rad, turned into the limits where possible.
+        poses: of all joint frames in the world.
+        linear: (k, 3, joints) how the tip moves with the joints, m per rad.
+        determinant: (k,) the task determinant, m^3.
+        ends: (bodies, 2, k, 3) the ends of the axes of all bodies, in the world, m.
     """
 
-    def __init__(self, workplace: Workplace, arm: _Arm, rows: NDArray[np.intp]) -> None:
-        """Those of a batch that the rows (k,) name; :meth:`of` makes a whole batch."""
-        self.workplace, self._arm, self._rows = workplace, arm, rows
+    workplace: Workplace
+    configurations: Array
+    poses: Poses
+    linear: Array
+    determinant: Array
+    ends: Array
 
     @classmethod
     def of(cls, workplace: Workplace, configurations: Array) -> Postures:
@@ -93,80 +88,38 @@ class Postures:
         task = workplace.robot.task
         determinant = task_determinant(linear, angular, poses.tool_axis, task)
         ends = body_ends(workplace.robot, poses)
-        arm = _Arm(configurations, poses, linear, determinant, ends, None)
-        return cls(workplace, arm, np.arange(len(configurations)))
-
-    def where_near(self, pairs: Mask, bodies: Mask) -> Postures:
-        """The same, of which only these pairs of links (pairs, k) and bodies (bodies, k) may touch.
-
-        See :meth:`~cellcolor.frontend.contact.clearance.Clearance.may_touch`.
-        """
-        return Postures(self.workplace, replace(self._arm, near=(pairs, bodies)), self._rows)
+        return cls(workplace, configurations, poses, linear, determinant, ends)
 
     def without(self, failed: Mask) -> Postures:
         """Those that have not failed, (k,)."""
         if not failed.any():
-            return self  # with what is computed of them already
-        return Postures(self.workplace, self._arm, self._rows[~failed])
+            return self
+        left = np.flatnonzero(~failed)
+        return Postures(
+            self.workplace,
+            self.configurations[left],
+            self.poses.take(left),
+            self.linear[left],
+            self.determinant[left],
+            self.ends[:, :, left],
+        )
 
     def __len__(self) -> int:
-        return len(self._rows)
-
-    @property
-    def configurations(self) -> Array:
-        """(k, joints) in rad, turned into the limits where possible."""
-        return self._arm.configurations[self._rows]
-
-    @cached_property
-    def poses(self) -> Poses:
-        """Poses of all joint frames in the world."""
-        return self._arm.poses if self._whole else self._arm.poses.take(self._rows)
+        return len(self.configurations)
 
     @property
     def tip(self) -> Array:
         """(k, 3) where the tool's tip is, in the world, m."""
-        return self._arm.poses.tip[self._rows]
+        return self.poses.tip
 
     @property
     def tool_axis(self) -> Array:
         """(k, 3) unit vectors from the flange to the tip, in the world."""
-        return self._arm.poses.tool_axis[self._rows]
-
-    @property
-    def linear(self) -> Array:
-        """(k, 3, joints) how the tip moves with the joints, m per rad."""
-        return self._arm.linear[self._rows]
-
-    @property
-    def determinant(self) -> Array:
-        """(k,) the task determinant, m^3."""
-        return self._arm.determinant[self._rows]
-
-    @property
-    def near_links(self) -> Mask | None:
-        """(pairs, k) the pairs of links that may touch each other; None for all."""
-        return None if self._arm.near is None else self._arm.near[0][:, self._rows]
-
-    @property
-    def near_things(self) -> Mask | None:
-        """(bodies, k) the bodies that may touch object or obstacles; None for all."""
-        return None if self._arm.near is None else self._arm.near[1][:, self._rows]
+        return self.poses.tool_axis
 
     def ends_of(self, robot: Robot) -> Array:
         """The ends of the axes of all bodies of the same robot, or of a wider one."""
-        if robot is self.workplace.robot:
-            return self.ends
-        return body_ends(robot, self.poses)
-
-    @property
-    def ends(self) -> Array:
-        """(bodies, 2, k, 3) the ends of the axes of all bodies, in the world, m."""
-        return self._arm.ends if self._whole else self._arm.ends[:, :, self._rows]
-
-    @property
-    def _whole(self) -> bool:
-        """Whether these are all of a batch, so that nothing has to be copied."""
-        return len(self._rows) == len(self._arm.configurations)
+        return self.ends if robot is self.workplace.robot else body_ends(robot, self.poses)
 
 
 class ValidityTest(Table):
@@ -307,7 +260,7 @@ class SelfCollision(StandardTest):
     def failed(self, postures: Postures) -> Mask:
         """Those in which two links overlap."""
         robot = postures.workplace.arm.near_itself
-        return hits_itself(robot, postures.ends_of(robot), postures.poses, postures.near_links)
+        return hits_itself(robot, postures.ends_of(robot), postures.poses)
 
 
 class ObstacleCollision(StandardTest):
@@ -323,7 +276,7 @@ class ObstacleCollision(StandardTest):
         ends = postures.ends_of(robot)
         for obstacle in postures.workplace.obstacles:
             left = postures.without(hit)
-            hit[~hit] = obstacle.hits(robot, ends[:, :, ~hit], left.poses, left.near_things)
+            hit[~hit] = obstacle.hits(robot, ends[:, :, ~hit], left.poses)
         return hit
 
 
@@ -337,8 +290,7 @@ class ObjectCollision(StandardTest):
     def failed(self, postures: Postures) -> Mask:
         """Those in which the object is hit."""
         robot = postures.workplace.arm.near_object
-        ends, near = postures.ends_of(robot), postures.near_things
-        return postures.workplace.target.hits(robot, ends, postures.poses, near)
+        return postures.workplace.target.hits(robot, postures.ends_of(robot), postures.poses)
 
 
 STANDARD_TESTS: tuple[StandardTest, ...] = (
