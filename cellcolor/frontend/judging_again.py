@@ -61,7 +61,7 @@ def judged_asking_less(
                 & ~known.links.linked
                 & np.isin(known.links.reasons, [VALID, *codes]),
             )
-    stages = colored_stages(prepared, known.branches, candidates, continuous, links, clock)
+    stages = colored_stages(prepared, candidates, continuous, links, clock)
     return Judged(stages, verdicts)
 
 
@@ -97,7 +97,7 @@ def judged_asking_more(
             # Near a new border of the domain all tests are made at closer points.
             taken = known.links, known.candidates
             links = valid_links(prepared, candidates, left, tracked, taken, deadline)
-    stages = colored_stages(prepared, known.branches, candidates, continuous, links, clock)
+    stages = colored_stages(prepared, candidates, continuous, links, clock)
     return Judged(stages, verdicts)
 
 

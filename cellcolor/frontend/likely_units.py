@@ -7,8 +7,6 @@ degrees are refused where a table is read (:mod:`cellcolor.frontend.tables`).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from cellcolor.data.wording import in_meters, looks_like_millimeters
@@ -129,12 +127,9 @@ def _within_reach(lengths: dict[str, float], reach: float) -> None:
 
 def notes_on_units(scene: Scene, reach: float) -> tuple[str, ...]:
     """Things so far away that they may have been given in millimeters, one sentence each."""
-    return tuple(_far_things(scene, reach))
-
-
-def _far_things(scene: Scene, reach: float) -> Iterator[str]:
+    found = []
     if scene.ground is not None and abs(scene.ground.height_m) > _REACHES * reach:
-        yield f"ground.height_m: {looks_like_millimeters(scene.ground.height_m)}"
+        found.append(f"ground.height_m: {looks_like_millimeters(scene.ground.height_m)}")
     for number, obstacle in enumerate(scene.obstacle):
         if isinstance(obstacle, HalfSpaceObstacle):
             continue  # which has no place: a wall goes through any point of it
@@ -142,7 +137,8 @@ def _far_things(scene: Scene, reach: float) -> Iterator[str]:
         nearest = float(np.linalg.norm(obstacle.placed(vertices), axis=1).min())
         if nearest > _REACHES * reach:
             meant = looks_like_millimeters(*obstacle.position_m)
-            yield f"obstacle[{number}].position_m: {meant}"
+            found.append(f"obstacle[{number}].position_m: {meant}")
+    return tuple(found)
 
 
 def size_of(part: Surface) -> str:

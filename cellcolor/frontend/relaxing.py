@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import compress
 from math import degrees
-from typing import ClassVar
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -24,19 +24,25 @@ from cellcolor.frontend.reach.validity import Judge
 from cellcolor.frontend.reach.validity_tests import Workplace
 
 
+@dataclass(frozen=True)
 class Relaxation(ABC):
     """One restriction of a scene, which can be left out or weakened.
 
     Attributes:
+        amount: by how much it is weakened, in units; infinite if it is left out.
         reasons: the tests that it can make a candidate fail. None if bodies change, so that
             everything has to be tested again.
         unit: of amounts, ``None`` where the thing is there or not.
+        most: the largest amount worth trying.
+        finest: the smallest share of the most to try, and the halvings between enough and too
+            little.
     """
 
+    amount: float = field(default=np.inf, kw_only=True)
     reasons: ClassVar[frozenset[str] | None]
     unit: ClassVar[str | None] = None
+    most: ClassVar[float] = 0.0
     finest: ClassVar[tuple[int, int]] = (512, 4)
-    """The smallest share of the most to try, and the halvings between enough and too little."""
 
     @property
     @abstractmethod
@@ -52,14 +58,9 @@ class Relaxation(ABC):
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         """The scene without it."""
 
-    @property
-    def most(self) -> float:
-        """The largest amount worth trying, in units."""
-        return 0.0
-
-    def by(self, amount: float) -> Relaxation:  # noqa: ARG002
+    def by(self, amount: float) -> Self:
         """The same, relaxed by an amount only."""
-        return self
+        return self if self.unit is None else replace(self, amount=amount)
 
     def said_of(self, amount: float) -> str:
         """An amount in words, as in "limits of joint_4 wider by 12°"."""
@@ -84,9 +85,9 @@ class JointRange(Relaxation):
     """The limits of one joint, which then turns or slides as far as it has to."""
 
     joint: str
-    wider: float = np.inf
     reasons = frozenset({"joint limits"})
     unit = "rad"
+    most = 2 * np.pi  # a full circle on both sides
 
     @property
     def name(self) -> str:
@@ -96,19 +97,14 @@ class JointRange(Relaxation):
     def key(self) -> str:
         return f"joint[{self.joint}].limit"
 
-    most = 2 * np.pi  # a full circle on both sides
-
-    def by(self, amount: float) -> JointRange:
-        return replace(self, wider=amount)
-
     def said_of(self, amount: float) -> str:
         return f"{self.name} wider by {degrees(amount):.3g}° on both sides"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         robot = prepared.robot
         here = np.array([name == self.joint for name in robot.joint_names])
-        lower = np.where(here, robot.lower - self.wider, robot.lower)
-        upper = np.where(here, robot.upper + self.wider, robot.upper)
+        lower = np.where(here, robot.lower - self.amount, robot.lower)
+        upper = np.where(here, robot.upper + self.amount, robot.upper)
         arm = replace(prepared.arm, robot=replace(robot, lower=lower, upper=upper))
         return _remade(prepared, replace(prepared.workplace, arm=arm))
 
@@ -159,12 +155,12 @@ _OF_THRESHOLD = {
 
 @dataclass(frozen=True)
 class Threshold(Relaxation):
-    """A threshold of conditioning, as a share or in m^3 (``given``); ``share`` of it is kept."""
+    """A threshold of conditioning, as a share or in m^3 (``given``)."""
 
     threshold: str
     given: str
-    share: float = 0.0
     unit = "%"
+    most = 100.0
 
     @property
     def reasons(self) -> frozenset[str]:  # type: ignore[override]
@@ -179,18 +175,13 @@ class Threshold(Relaxation):
     def key(self) -> str:
         return f"thresholds.{self.given}"
 
-    most = 100.0
-
-    def by(self, amount: float) -> Threshold:
-        """The threshold lower by an amount in percent."""
-        return replace(self, share=1 - amount / 100)
-
     def said_of(self, amount: float) -> str:
         return f"{self.name} lower by {amount:.3g} %"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         least = prepared.arm.conditioning
-        lowered = {self.threshold: self.share * getattr(least, self.threshold)}
+        kept = max(1 - self.amount / 100, 0.0)
+        lowered = {self.threshold: kept * getattr(least, self.threshold)}
         arm = replace(prepared.arm, conditioning=replace(least, **lowered))
         return _remade(prepared, replace(prepared.workplace, arm=arm))
 
@@ -199,24 +190,19 @@ class Threshold(Relaxation):
 class GroundPlane(Relaxation):
     """The ground."""
 
-    lower: float = np.inf
     reasons = frozenset({"ground", "tip blocked"})
     unit = "m"
+    most = 1.0  # few arms reach farther down
     name = "ground"
     key = "ground"
-
-    most = 1.0  # few arms reach farther down
-
-    def by(self, amount: float) -> GroundPlane:
-        return replace(self, lower=amount)
 
     def said_of(self, amount: float) -> str:
         return f"ground lower by {1e3 * amount:.3g} mm"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         place, ground = prepared.workplace, None
-        if np.isfinite(self.lower) and place.ground is not None:
-            ground = replace(place.ground, offset_m=place.ground.offset_m - self.lower)
+        if np.isfinite(self.amount) and place.ground is not None:
+            ground = replace(place.ground, offset_m=place.ground.offset_m - self.amount)
         return _remade(prepared, _around(replace(place, ground=ground)))
 
 
@@ -226,13 +212,13 @@ class ObstacleBody(Relaxation):
 
     number: int
     kind: str
-    farther: float = np.inf
     unit = "m"
+    most = 0.5  # beyond that distance it might as well be gone
 
     @property
     def reasons(self) -> frozenset[str] | None:  # type: ignore[override]
         """A moved obstacle may block configurations that were valid before."""
-        return frozenset({"obstacle collision", "tip blocked"}) if self.farther == np.inf else None
+        return frozenset({"obstacle collision", "tip blocked"}) if self.amount == np.inf else None
 
     @property
     def name(self) -> str:
@@ -243,11 +229,6 @@ class ObstacleBody(Relaxation):
     def key(self) -> str:
         return f"obstacle[{self.number - 1}]"
 
-    most = 0.5  # beyond that distance it might as well be gone
-
-    def by(self, amount: float) -> ObstacleBody:
-        return replace(self, farther=amount)
-
     def said_of(self, amount: float) -> str:
         return f"{self.name} {1e3 * amount:.3g} mm farther from the part"
 
@@ -255,14 +236,14 @@ class ObstacleBody(Relaxation):
         """Without it, or with it moved straight away from the middle of the part's surface."""
         place, scene, here = prepared.workplace, prepared.scene, self.number - 1
         moved: tuple[Solid, ...] = ()
-        if self.farther < np.inf:
+        if self.amount < np.inf:
             obstacle = scene.obstacle[here]
             vertices, _ = obstacle.shell(scene.folder)
             middle = obstacle.placed(vertices).mean(axis=0)
             away = middle - np.average(
                 prepared.surface.vertices, axis=0, weights=prepared.surface.vertex_areas()
             )
-            step = self.farther * away / max(float(np.linalg.norm(away)), 1e-9)
+            step = self.amount * away / max(float(np.linalg.norm(away)), 1e-9)
             position = tuple((np.array(obstacle.position_m) + step).tolist())
             there = obstacle.model_copy(update={"position_m": position})
             moved = (there.solid(scene.folder),)
@@ -311,7 +292,7 @@ class ToolLength(Relaxation):
     not be valid with another tool.
     """
 
-    longer: float = 0.04
+    amount: float = field(default=0.04, kw_only=True)
     reasons = None
     unit = "m"
     finest = (8, 1)  # each amount takes a whole build
@@ -319,15 +300,12 @@ class ToolLength(Relaxation):
     key = "task.stand_off_m"
     most = 0.04
 
-    def by(self, amount: float) -> ToolLength:
-        return replace(self, longer=amount)
-
     def said_of(self, amount: float) -> str:
         return f"tool {1e3 * amount:.3g} mm longer"
 
     def applied(self, prepared: PreparedScene) -> PreparedScene:
         """With a larger stand-off, which is where the tip link ends."""
-        longer = prepared.setup.task.stand_off_m + self.longer
+        longer = prepared.setup.task.stand_off_m + self.amount
         setup = prepared.setup.varied(task={"stand_off_m": longer})
         place = _around(replace(prepared.workplace, arm=prepare_arm(setup)))
         return _remade(replace(prepared, scene=prepared.scene.with_setup(setup)), place)

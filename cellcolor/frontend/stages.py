@@ -115,7 +115,7 @@ def judged_in_place(
             the turns of the tool.
     """
     deadline = clock.deadline
-    names, known = prepared.kinematics.branches, None if before is None else before.stages
+    known = None if before is None else before.stages
     first = 0 if known is None else len(known.surface.vertices)
     setup, surface = prepared.setup, prepared.surface
     if setup.task.turn is not None:
@@ -139,22 +139,22 @@ def judged_in_place(
         with clock.timed("validity between vertices"):
             taken = None if known is None else (known.links, known.candidates)
             links = valid_links(prepared, candidates, continuous, tracked, taken, deadline)
-    return Judged(colored_stages(prepared, names, candidates, continuous, links, clock), verdicts)
+    return Judged(colored_stages(prepared, candidates, continuous, links, clock), verdicts)
 
 
 def colored_stages(
     prepared: PreparedScene,
-    names: tuple[str, ...],
     candidates: Candidates,
     continuous: Links,
     links: Links,
     clock: StageClock,
 ) -> Stages:
     """The stages, the last ones made."""
+    names = prepared.kinematics.branches
     with clock.timed("colors and cracks"):
         coloring = _colored(names, candidates, candidates.valid, links)
         clock.deadline.check()
-        cleaned = _cleaned(prepared, names, candidates, links, coloring, clock.deadline)
+        cleaned = _cleaned(prepared, candidates, links, coloring, clock.deadline)
     return Stages(
         surface=prepared.surface,
         candidates=candidates,
@@ -196,7 +196,6 @@ def _colored(names: tuple[str, ...], candidates: Candidates, nodes: Mask, links:
 
 def _cleaned(
     prepared: PreparedScene,
-    names: tuple[str, ...],
     candidates: Candidates,
     links: Links,
     coloring: Coloring,
@@ -209,7 +208,7 @@ def _cleaned(
         areas = prepared.surface.vertex_areas()
         kept, report = clean(edges, links.linked, coloring, areas, policy, deadline)
         links = Links.of(edges, links.linked & kept[edges].all(axis=1))
-        coloring = _colored(names, candidates, kept, links)
+        coloring = _colored(prepared.kinematics.branches, candidates, kept, links)
     return Cleaned(links, coloring, find_cracks(edges, links.linked, coloring), report)
 
 
@@ -270,7 +269,7 @@ def _held(
             (stages.links, [one.links for one in elsewhere]),
         )
     )
-    return colored_stages(prepared, stages.branches, candidates, continuous, linked, clock)
+    return colored_stages(prepared, candidates, continuous, linked, clock)
 
 
 _WITH_SLIVERS = 4  # times as long are mesh edges at borders that the sliver policy takes away

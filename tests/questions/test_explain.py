@@ -80,7 +80,7 @@ def changed(scene: Scene, what: Relaxation) -> Scene:
         case ObstacleBody(number=number):
             kept = [one for at, one in enumerate(scene.obstacle, 1) if at != number]
             return scene.varied(obstacle=tuple(kept))
-        case GroundPlane(lower=lower):
+        case GroundPlane(amount=lower):
             lowered = None
             if lower < np.inf:
                 assert scene.ground is not None
@@ -93,17 +93,17 @@ def changed(scene: Scene, what: Relaxation) -> Scene:
             return scene.with_setup(setup.varied(robot={"may_touch": may_touch}))
         case Torques():
             return scene.with_setup(setup.varied(constraints={"force": False}))
-        case Threshold(given=name, share=share):
-            kept_share = share * getattr(setup.thresholds, name)
+        case Threshold(given=name, amount=percent):
+            kept_share = max(1 - percent / 100, 0) * getattr(setup.thresholds, name)
             return scene.with_setup(setup.varied(thresholds={name: kept_share}))
-        case JointRange(joint=joint, wider=wider):
+        case JointRange(joint=joint, amount=wider):
             limit = 1e3 if wider == np.inf else 2.0 + wider
             assert joint == "wrist_1_joint" or limit == 1e3
             text = with_range(urdf_of(scene, "arm_urdf"), joint, limit)
             return scene.with_setup(setup.varied(robot={"arm_urdf": text}))
         case Distance(margin=key):
             return scene.with_setup(setup.varied(margins={key: 0}))
-        case ToolLength(longer=longer):
+        case ToolLength(amount=longer):
             return scene.with_setup(setup.varied(task={"stand_off_m": longer}))
         case ToolBody():
             text = re.sub(
@@ -297,7 +297,7 @@ def test_an_amount_saves_what_it_says_and_less_of_it_does_not(tilted: Explanatio
     assert 0 < too_little < enough < 1.1 * too_little
     numbers = {}
     for lower in (enough * 1.001, too_little * 0.999):
-        built = cellcolor.build(changed(scene, GroundPlane(lower)))
+        built = cellcolor.build(changed(scene, GroundPlane(amount=lower)))
         numbers[lower] = cellcolor.solve(built).solution.segments
     assert list(numbers.values()) == [row.segments, tilted.base.segments]
     assert row.segments is not None and row.segments < (tilted.base.segments or 0)

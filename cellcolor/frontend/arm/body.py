@@ -48,17 +48,6 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Primitive:
-    """A cylinder, sphere or capsule in the frame of a joint; ``turn`` (3, 3), ``center`` (3,)."""
-
-    kind: str
-    center: Array
-    turn: Array
-    radius: float
-    length: float
-
-
-@dataclass(frozen=True)
 class StandIn:
     """What collides in the place of a link's mesh.
 
@@ -103,19 +92,25 @@ def _polyhedral(link: str, joint: int, solid: Polyhedron) -> Body:
     return Body(link, joint, *capsule_around(solid.vertices), flat=False, solid=solid)
 
 
-def round_bodies(link: str, joint: int, primitives: list[Primitive]) -> list[Body]:
-    """Bodies of a link's cylinders, spheres and capsules.
+def _round_bodies(
+    link: str, joint: int, own: tuple[LinkShape, ...], placed: list[pin.GeometryObject]
+) -> list[Body]:
+    """Bodies of a link's cylinders, spheres and capsules, where Pinocchio has them.
 
     A cylinder with a sphere of its radius on both ends is a capsule.
     """
-    spheres = [(each.center, each.radius) for each in primitives if each.kind == "sphere"]
+    shapes = [(shape, each.placement) for shape, each in zip(own, placed, strict=True)]
+    spheres = [
+        (np.array(at.translation), shape.sizes[0]) for shape, at in shapes if shape.kind == "sphere"
+    ]
     bodies = []
-    for each in primitives:
-        if each.kind == "sphere":
+    for shape, at in shapes:
+        if shape.kind not in ("capsule", "cylinder"):
             continue
-        half = each.turn[:, 2] * (each.length / 2)
-        start, end, radius = each.center - half, each.center + half, each.radius
-        round_ends = each.kind == "capsule"
+        radius, length = shape.sizes
+        center, half = np.array(at.translation), np.array(at.rotation)[:, 2] * (length / 2)
+        start, end = center - half, center + half
+        round_ends = shape.kind == "capsule"
         if not round_ends:
             caps = [
                 next((s for s in spheres if _is_cap(s, point, radius)), None)
@@ -182,7 +177,7 @@ def place_shapes(
         if len(placed) != len(own):
             message = f"Pinocchio read {len(placed)} of {len(own)} shapes"
             raise InputError(str(whole.file), f"link[{link}].collision", message)
-        bodies += round_bodies(link, int(placed[0].parentJoint), _primitives(own, placed))
+        bodies += _round_bodies(link, int(placed[0].parentJoint), own, placed)
         for number, (shape, at) in enumerate(zip(own, placed, strict=True)):
             if shape.kind not in ("box", "mesh"):
                 continue
@@ -201,18 +196,3 @@ def place_shapes(
             stand_ins.append(mesh_bodies(link, joint, file, *own_mesh, chosen))
             bodies += stand_ins[-1].bodies
     return tuple(bodies), tuple(stand_ins)
-
-
-def _primitives(own: tuple[LinkShape, ...], placed: list[pin.GeometryObject]) -> list[Primitive]:
-    """The round shapes of a link, placed as Pinocchio has read them."""
-    return [
-        Primitive(
-            shape.kind,
-            np.array(at.placement.translation),
-            np.array(at.placement.rotation),
-            shape.sizes[0],
-            shape.sizes[1] if len(shape.sizes) > 1 else 0.0,
-        )
-        for shape, at in zip(own, placed, strict=True)
-        if shape.kind in ("capsule", "cylinder", "sphere")
-    ]

@@ -91,31 +91,22 @@ def find_mesh(
     Raises:
         InputError: there is no such file; says what was tried.
     """
-    parts = urlsplit(named)
-    tried: list[str] = []
+    parts, places = urlsplit(named), iter([folder / named])
     if parts.scheme == "package":
-        package, inside = parts.netloc, unquote(parts.path.lstrip("/"))
-        for root in _roots(package, folder, package_folders):
-            path = root / inside
-            if path.is_file():
-                return path
-            tried.append(str(path))
-        if not tried:
-            tried = [_searched(package, folder, package_folders)]
+        inside = unquote(parts.path.lstrip("/"))
+        places = (root / inside for root in _roots(parts.netloc, folder, package_folders))
     elif parts.scheme == "file":
-        path = Path(unquote(parts.path))
-        tried.append(str(path))
-    elif parts.scheme and len(parts.scheme) > 1:  # one letter is a drive of Windows
+        places = iter([Path(unquote(parts.path))])
+    elif len(parts.scheme) > 1:  # one letter is a drive of Windows
         message = f"{named!r}: only package://, file:// and names of files are known"
         raise InputError(str(file), field, message)
-    else:
-        path = folder / named
+    tried = []
+    for path in places:
+        if path.is_file():
+            return path
         tried.append(str(path))
-    if parts.scheme != "package" and path.is_file():
-        return path
-    raise InputError(
-        str(file), field, f"no mesh {named!r}; tried {'; '.join(dict.fromkeys(tried))}"
-    )
+    where = "; ".join(dict.fromkeys(tried)) or _searched(parts.netloc, folder, package_folders)
+    raise InputError(str(file), field, f"no mesh {named!r}; tried {where}")
 
 
 def _searched(package: str, folder: Path, package_folders: Sequence[Path]) -> str:

@@ -51,7 +51,10 @@ class PlanarTwo(InverseKinematics):
 
     def __init__(self, robot: Robot, files: RobotFiles) -> None:
         """The lengths of both links, and their angles with the joints at zero."""
-        self._check_locked(files)
+        # Where the turn is given, the joint that makes it is solved for: what locks it is ignored.
+        if files.locked_joint_6_rad is not None and self.free_turn is not None:
+            message = "a planar arm has no joint 6: leave it out"
+            raise InputError(None, "robot.locked_joint_6_rad", message)
         poses, self._turning = pose_at_zero(robot), robot.turning
         axes, origins, tip = poses.axis[0], poses.origin[0, 1:][self._turning], poses.tip[0]
         up = -poses.tool_axis[0]
@@ -78,11 +81,6 @@ class PlanarTwo(InverseKinematics):
         self.lever, self.reach = self._fore, self._upper + self._fore
         above = np.array([*self._shoulder, self._height + self.reach])
         self.viewpoints = (self._frame @ above)[None]
-
-    def _check_locked(self, files: RobotFiles) -> None:
-        if files.locked_joint_6_rad is not None:
-            message = "a planar arm has no joint 6: leave it out"
-            raise InputError(None, "robot.locked_joint_6_rad", message)
 
     def solve(
         self, points: Array, directions: Array, branches: NDArray[np.intp] | None = None
@@ -119,9 +117,6 @@ class PlanarThree(PlanarTwo):
 
     joints = 3
     free_turn: ClassVar[TaskSpace | None] = None
-
-    def _check_locked(self, files: RobotFiles) -> None:
-        """No joint is locked: the one that turns the tool is solved for with the turn."""
 
 
 class ScaraWithoutTurn(PlanarTwo):
@@ -165,6 +160,3 @@ class Scara(ScaraWithoutTurn):
 
     joints = 4
     free_turn: ClassVar[TaskSpace | None] = None
-
-    def _check_locked(self, files: RobotFiles) -> None:
-        """No joint is locked: the one that turns the tool is solved for with the turn."""

@@ -64,25 +64,20 @@ _SAME_HEIGHT = 1e-6  # m
 _LEAST = 0.01  # m; no tool on the axis ends nearer to the wrist than this
 
 
-def wrist_of(robot: Robot) -> Array:
-    """Where the last axis is nearest to the one before it, (3,) with all joints at zero, m.
+_WRIST, _SHOULDER = (-1, -2), (0, 1)  # axes that turn, as they are counted
+
+
+def _where_near(robot: Robot, pair: tuple[int, int]) -> Array:
+    """Where the first axis of a pair is nearest to the second, (3,) with all joints at zero, m.
 
     If they are parallel, where it is nearest to the tip.
     """
     poses = pose_at_zero(robot)
-    axes, origins = poses.axis[0, robot.turning], poses.origin[0, 1:][robot.turning]
-    if np.linalg.norm(np.cross(axes[-1], axes[-2])) < _PARALLEL:
-        return np.asarray(origins[-1] + ((poses.tip[0] - origins[-1]) @ axes[-1]) * axes[-1])
-    return nearest_points(origins[-1], axes[-1], origins[-2], axes[-2])[0]
-
-
-def shoulder_of(robot: Robot) -> Array:
-    """The same of the first axis and the second."""
-    poses = pose_at_zero(robot)
-    axes, origins = poses.axis[0, robot.turning], poses.origin[0, 1:][robot.turning]
-    if np.linalg.norm(np.cross(axes[0], axes[1])) < _PARALLEL:
-        return np.asarray(origins[0] + ((poses.tip[0] - origins[0]) @ axes[0]) * axes[0])
-    return nearest_points(origins[0], axes[0], origins[1], axes[1])[0]
+    (joint, other), origins = robot.turning[list(pair)], poses.origin[0, 1:]
+    point, axis, beside = origins[joint], poses.axis[0, joint], poses.axis[0, other]
+    if np.linalg.norm(np.cross(axis, beside)) < _PARALLEL:
+        return np.asarray(point + ((poses.tip[0] - point) @ axis) * axis)
+    return nearest_points(point, axis, origins[other], beside)[0]
 
 
 def on_last_axis(robot: Robot) -> Robot:
@@ -92,7 +87,7 @@ def on_last_axis(robot: Robot) -> Robot:
     wrist's height has no side, as behind two parallel axes: there the true tool's z axis decides,
     since an arm whose axes are all parallel points its tool one way only.
     """
-    poses, wrist = pose_at_zero(robot), wrist_of(robot)
+    poses, wrist = pose_at_zero(robot), _where_near(robot, _WRIST)
     axis = poses.axis[0, robot.turning[-1]]
     out = float((poses.tip[0] - wrist) @ axis)
     side = out if abs(out) > _SAME_HEIGHT else float(poses.tool_axis[0] @ axis)
@@ -158,9 +153,9 @@ class TurnedKinematics(InverseKinematics):
         locked = float(np.clip(0.0, robot.lower[-1], robot.upper[-1]))
         self.own = family(self.straight, files.varied(locked_joint_6_rad=locked))
         poses = pose_at_zero(robot)
-        self.reach = farthest_reach(robot, shoulder_of(robot))
+        self.reach = farthest_reach(robot, _where_near(robot, _SHOULDER))
         self.viewpoints = self.own.viewpoints
-        self.lever = float(np.linalg.norm(poses.tip[0] - wrist_of(robot)))
+        self.lever = float(np.linalg.norm(poses.tip[0] - _where_near(robot, _WRIST)))
         check_lever(robot, files, self.lever, self.reach - self.lever)
         self._angles = np.radians(turn.degrees)
         self.branches = self.own.branches

@@ -6,8 +6,8 @@ no promise of a color is broken: a small cell is given the color set of a neighb
 part of its own, and cells that are still small may be given up.
 
 A surface can have as many small cells as vertices, so the time has to grow hardly faster than
-their number: a cell is asked again only when a neighbor has changed, and when two cells become one
-the shorter list of neighbors goes over into the longer one.
+their number: a cell is asked again only when a neighbor has changed, and when two places become one
+the list of neighbors of the one with fewer cells goes over into the other one's.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from cellcolor.deadline import NEVER, Deadline
 from cellcolor.frontend.reach.continuity import Coloring
 from cellcolor.frontend.setup import Slivers
 from cellcolor.mesh.triangle_mesh import grouped
+from cellcolor.union_find import UnionFind
 
 Branches = int
 """A set of branches, a bit each: on one vertex a color is told by its branch."""
@@ -110,7 +111,7 @@ class _CellGraph:
         self._branches: list[Branches] = ((node_color[first] >= 0) @ bits).tolist()
         self._area: list[float] = np.bincount(cell_of, areas, minlength=count).tolist()
         self._name = list(range(count))
-        self._merged_into = list(range(count))
+        self._places = UnionFind(range(count))
         # One border for both sides of it: it is the same object in the lists of both cells.
         self._borders: list[dict[int, Border]] = [{} for _ in range(count)]
         ends = np.sort(cell_of[edges], axis=1)
@@ -157,7 +158,7 @@ class _CellGraph:
             self._branches[place] = wanted
             # The new colors may be what a neighbor has been waiting for, or the cell still small.
             around = list(self._borders[place])
-            for other in {self._merge_equal(place), *map(self._place, around)}:
+            for other in {self._merge_equal(place), *map(self._places.__getitem__, around)}:
                 ask_again(other)
         return changed
 
@@ -165,8 +166,8 @@ class _CellGraph:
         """Take all branches from cells smaller than ``below`` (m^2); how many there were."""
         small = [
             place
-            for place, into in enumerate(self._merged_into)
-            if place == into and self._branches[place] and self._area[place] < below
+            for place in range(len(self._branches))
+            if self._places[place] == place and self._branches[place] and self._area[place] < below
         ]
         for place in small:
             self._branches[place] = 0
@@ -174,7 +175,7 @@ class _CellGraph:
 
     def final_branches(self) -> list[Branches]:
         """The branches of each original cell."""
-        return [self._branches[self._place(cell)] for cell in range(len(self._branches))]
+        return [self._branches[self._places[cell]] for cell in range(len(self._branches))]
 
     def _part_of_its_own(self, place: int) -> Branches | None:
         """The branches that a cell would take over from a neighbor."""
@@ -187,13 +188,6 @@ class _CellGraph:
                 if length:
                     choices.append((wanted.bit_count(), length, -self._name[other], wanted))
         return max(choices)[3] if choices else None
-
-    def _place(self, cell: int) -> int:
-        while self._merged_into[cell] != cell:
-            # Path halving: later look-ups have half as far to go.
-            self._merged_into[cell] = self._merged_into[self._merged_into[cell]]
-            cell = self._merged_into[cell]
-        return cell
 
     def _merge_equal(self, place: int) -> int:
         """Take in the neighbors that have the same branches and no crack all along the border.
@@ -215,9 +209,9 @@ class _CellGraph:
 
     def _united(self, first: int, second: int) -> int:
         """Make two neighboring places one."""
-        if len(self._borders[first]) < len(self._borders[second]):
+        self._places.union(first, second)
+        if self._places[first] != first:
             first, second = second, first
-        self._merged_into[second] = first
         self._area[second] = 0.0
         kept = self._borders[first]
         for third, border in self._borders[second].items():
