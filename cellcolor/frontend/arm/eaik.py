@@ -128,21 +128,17 @@ class EaikKinematics(InverseKinematics):
         asked = np.flatnonzero(np.isfinite(points + directions).all(axis=1))
         if not len(asked):
             return np.empty((len(points), 0, 6))
-        flanges = self._flanges(points[asked], directions[asked])
-        answers = self._solver.IK_batched(flanges, os.cpu_count() or 1)
+        # Poses of the last frame, turned as the world at zero, for any one turn of the tool.
+        flanges = np.tile(np.eye(4), (len(asked), 1, 1))
+        flanges[:, :3, :3] = frames_along(directions[asked]) @ self._tool_at_zero.T
+        flanges[:, :3, 3] = points[asked] - flanges[:, :3, :3] @ self._tip
+        answers = self._solver.IK_batched(list(flanges), os.cpu_count() or 1)
         every = [np.asarray(answer.Q).reshape(-1, 6) for answer in answers]
         counts[asked] = [len(each) for each in every]
         found = np.full((len(points), int(counts.max()), 6), np.nan)
         found[np.arange(found.shape[1]) < counts[:, None]] = np.concatenate(every)
         found[:, :, 5] = np.where(np.isnan(found[:, :, 0]), np.nan, self._locked)
         return found
-
-    def _flanges(self, points: Array, directions: Array) -> list[Array]:
-        """Poses (4, 4) of the last frame, turned as the world at zero, for any one turn."""
-        poses = np.tile(np.eye(4), (len(points), 1, 1))
-        poses[:, :3, :3] = frames_along(directions) @ self._tool_at_zero.T
-        poses[:, :3, 3] = points - poses[:, :3, :3] @ self._tip
-        return list(poses)
 
 
 _UNKNOWN = (

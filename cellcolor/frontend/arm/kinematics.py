@@ -371,6 +371,13 @@ def angle_about(axes: Array, first: Array, second: Array) -> Array:
     return np.asarray(np.arctan2(sine, np.einsum("...i,...i->...", first, second) - along))
 
 
+def turned_about(axes: Array, vectors: Array, angles: Array) -> Array:
+    """Vectors (..., 3) turned about unit vectors (..., 3) by angles (...,) in rad."""
+    sine, cosine = np.sin(angles)[..., None], np.cos(angles)[..., None]
+    along = np.einsum("...i,...i->...", vectors, axes)[..., None] * axes
+    return np.asarray(along + cosine * (vectors - along) + sine * np.cross(axes, vectors))
+
+
 def frames_along(directions: Array) -> Array:
     """Right-handed frames (n, 3, 3) with unit vectors (n, 3) as their z axes."""
     return np.concatenate([two_across(directions), directions[:, None]], axis=1).transpose(0, 2, 1)

@@ -43,6 +43,7 @@ from cellcolor.frontend.arm.kinematics import (
     frames_along,
     nearest_points,
     one_across,
+    turned_about,
 )
 from cellcolor.frontend.arm.newton import merged, polished
 from cellcolor.frontend.arm.robot import Robot
@@ -182,16 +183,16 @@ class OffsetWrist(InverseKinematics):
             spread = np.arccos(wanted / np.hypot(x, y))
         first = np.arctan2(y, x)[:, None] + spread[:, None] * np.array([1, 1, -1, -1])
         # Joints 2 and 3: a triangle in the plane across axis 2, seen with joint 1 at zero.
-        back = _turned(z, -first, center[:, None])
+        back = turned_about(z, center[:, None], -first)
         goal = (back - (self._shoulder - self._base)) @ self._flat
         far = np.einsum("kwi,kwi->kw", goal, goal)
         upper, fore = self._lengths
         with np.errstate(invalid="ignore", divide="ignore"):
             bend = np.arccos((far - upper**2 - fore**2) / (2 * upper * fore))
         third = bend * np.array([1, -1, 1, -1]) - angle_about(n, self._upper, self._fore)  # about n
-        second = angle_about(n, self._upper + _turned(n, third, self._fore), goal)
+        second = angle_about(n, self._upper + turned_about(n, self._fore, third), goal)
         joints = np.stack([first, second, np.sign(self._axes[2] @ n) * third], axis=2)
-        turned = _turned(z, first, _turned(n, second + third, fourth))
+        turned = turned_about(z, turned_about(n, fourth, second + third), first)
         cosine = np.einsum("kwi,ki->kw", turned, link.rotation @ fifth)
         circle = np.linalg.norm(np.cross(self._center - self._tip, self.tool))
         near = np.minimum(np.hypot(x, y), np.sqrt(far.min(axis=1))) / max(circle, _LEAST)
@@ -207,10 +208,10 @@ class OffsetWrist(InverseKinematics):
         def behind_third(vector: Array) -> Array:
             """A vector of the link before joint 6, seen from behind joint 3 at zero."""
             here = (link.rotation @ vector)[:, None]
-            return _turned(n, -both, _turned(z, -three[..., 0], here))
+            return turned_about(n, turned_about(z, here, -three[..., 0]), -both)
 
         q4 = angle_about(fourth, fifth, behind_third(fifth))
-        q5 = angle_about(fifth, across, _turned(fourth, -q4, behind_third(across)))
+        q5 = angle_about(fifth, across, turned_about(fourth, behind_third(across), -q4))
         last = np.full((*q4.shape, 1), self._locked)
         return np.concatenate([three, q4[..., None], q5[..., None], last], axis=2)
 
@@ -295,23 +296,11 @@ class _Turned:
     """The link before joint 6 with the tool in poses, turned about it by angles (k,)."""
 
     def __init__(self, points: Array, directions: Array, angles: Array, tool: Array) -> None:
-        frames = frames_along(directions)
-        sine, cosine = np.sin(angles)[:, None], np.cos(angles)[:, None]
-        x, y = (
-            cosine * frames[:, :, 0] + sine * frames[:, :, 1],
-            cosine * frames[:, :, 1] - sine * frames[:, :, 0],
-        )
-        there = np.stack([x, y, directions], axis=2)
+        x = turned_about(directions, frames_along(directions)[:, :, 0], angles)
+        there = np.stack([x, np.cross(directions, x), directions], axis=2)
         self.points = points
         self.rotation: Array = there @ frames_along(tool[None])[0].T
 
     def moved(self, point: Array, tip: Array) -> Array:
         """Where a point (3,) of the link at zero is, (k, 3)."""
         return np.asarray(self.points + self.rotation @ (point - tip))
-
-
-def _turned(axis: Array, angles: Array, vectors: Array) -> Array:
-    """Vectors (..., 3) turned about a unit vector (3,) by angles (...,)."""
-    sine, cosine = np.sin(angles)[..., None], np.cos(angles)[..., None]
-    along = (vectors @ axis)[..., None] * axis
-    return np.asarray(along + cosine * (vectors - along) + sine * np.cross(axis, vectors))

@@ -24,6 +24,7 @@ from cellcolor.frontend.arm.kinematics import (
     nearest_points,
     one_across,
     turned,
+    turned_about,
 )
 from cellcolor.frontend.arm.robot import FREE_TURN, Robot
 from cellcolor.frontend.setup import RobotFiles, Turn
@@ -51,12 +52,6 @@ def turn_at(turn: Turn, points: Array, directions: Array) -> Array:
     across = wanted - np.einsum("ni,ni->n", wanted, directions)[:, None] * directions
     lengths = np.linalg.norm(across, axis=1, keepdims=True)
     return np.asarray(np.where(lengths > least, across / np.maximum(lengths, least), np.nan))
-
-
-def turned_about(directions: Array, across: Array, angles: Array) -> Array:
-    """Vectors (n, 3) across unit vectors (n, 3), turned about these by angles (n,) in rad."""
-    cosine, sine = np.cos(angles)[:, None], np.sin(angles)[:, None]
-    return np.asarray(cosine * across + sine * np.cross(directions, across))
 
 
 _PARALLEL = 1e-6  # rad
@@ -186,9 +181,7 @@ class TurnedKinematics(InverseKinematics):
             found = self.solve_pose(points, directions, turned, branch)
             return _spread(found, rows, count)
         every = [
-            self.solve_pose(
-                points, directions, turned_about(directions, across, np.full(len(rows), angle))
-            )
+            self.solve_pose(points, directions, turned_about(directions, across, angle))
             for angle in self._angles
         ]
         return _spread(np.concatenate(every, axis=1), rows, count)
@@ -236,7 +229,7 @@ class TurnedKinematics(InverseKinematics):
         angle = self._angles[0] if angle is None else angle
         directions = self.taken(directions)
         across = turn_at(self.turn, points, directions)
-        turned_by = turned_about(directions, across, np.full(len(points), angle))
+        turned_by = turned_about(directions, across, np.array(angle))
         return self._on_last_axis(points, directions, turned_by)[1:]
 
     def with_own(self, own: InverseKinematics) -> TurnedKinematics:

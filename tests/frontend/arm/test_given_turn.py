@@ -23,9 +23,10 @@ from cellcolor.frontend.arm.kinematics import (
     manipulability,
     task_determinant,
     tip_jacobian,
+    turned_about,
 )
 from cellcolor.frontend.arm.robot import FREE_TURN, GIVEN_TURN, Robot
-from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at, turned_about
+from cellcolor.frontend.arm.turned import TurnedKinematics, turn_at
 from cellcolor.frontend.arm.ur import BRANCHES as UR_BRANCHES
 from cellcolor.frontend.arm.ur import UrKinematics
 from cellcolor.frontend.setup import RobotFiles, Turn
